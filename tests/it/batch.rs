@@ -1,7 +1,7 @@
 //! From a manifest of fixtures to the campaign: tables, shards and what is wrong with them, runs that are
 //! stopped and go on.
 
-use crate::run::{Answer, dropcheck, fixture, read_json, words};
+use crate::run::{Answer, dropcheck, fixture, read_json, tree, words};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -67,21 +67,6 @@ impl Series {
         }
         names
     }
-}
-
-/// Every file below a folder with its bytes.
-fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).expect("a folder").flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            let name = PathBuf::from(entry.file_name());
-            found.extend(tree(&path).into_iter().map(|(below, bytes)| (name.join(below), bytes)));
-        } else {
-            found.insert(entry.file_name().into(), fs::read(&path).expect("a file"));
-        }
-    }
-    found
 }
 
 #[track_caller]

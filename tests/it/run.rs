@@ -1,6 +1,7 @@
 //! From words for the command line to what the program answered.
 
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -55,19 +56,33 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file below a folder whose name ends so, sorted.
-pub fn files_below(folder: &Path, extension: &str) -> Vec<PathBuf> {
+/// Every file below a folder, sorted.
+fn all_below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.is_dir() {
-            found.extend(files_below(&path, extension));
-        } else if path.extension().is_some_and(|own| own == extension) {
+            found.extend(all_below(&path));
+        } else {
             found.push(path);
         }
     }
     found.sort();
     found
+}
+
+/// Those whose name ends so.
+pub fn files_below(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = all_below(folder);
+    found.retain(|path| path.extension().is_some_and(|own| own == extension));
+    found
+}
+
+/// Every file below a folder by its path from there, with its bytes.
+pub fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let from_here = |path: &Path| path.strip_prefix(folder).expect("below").to_owned();
+    let bytes = |path: &Path| std::fs::read(path).expect("a file");
+    all_below(folder).iter().map(|path| (from_here(path), bytes(path))).collect()
 }
 
 /// The folder of all fixtures.

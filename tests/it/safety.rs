@@ -2,36 +2,15 @@
 //! their place.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{dropcheck, fixture};
+use crate::run::{dropcheck, fixture, tree};
 use std::ffi::OsString;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The words of an analysis of fixture `stem` in `recording` into `out`.
 fn words(recording: &Path, cask: &Path, out: &Path) -> Vec<OsString> {
     let options = [recording, Path::new("--cask"), cask, Path::new("--out"), out];
     std::iter::once("analyze".into()).chain(options.map(|part| part.as_os_str().to_owned())).collect()
-}
-
-/// Every file below `folder` with its content, by its path from there.
-fn all_files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            found.extend(all_files(&path));
-        } else {
-            found.push((path.clone(), fs::read(&path).expect("a file")));
-        }
-    }
-    found.sort();
-    found
-}
-
-/// The same with the paths from `folder` on.
-fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let from_here = |path: PathBuf| path.strip_prefix(folder).expect("below").to_path_buf();
-    all_files(folder).into_iter().map(|(path, bytes)| (from_here(path), bytes)).collect()
 }
 
 const EVIL: [&str; 5] = [
@@ -88,9 +67,9 @@ fn names_in_a_file_stay_names() {
         assert!(answer.status < 2, "{}", answer.stderr);
         let printed = format!("{}{}", answer.stdout, answer.stderr);
         assert!(!printed.contains(['\u{1b}', '\u{7}', '\u{9b}', '\u{202e}']), "{printed:?}");
-        let files = all_files(&place);
+        let files = tree(&place);
         assert!(
-            files.iter().all(|(path, _)| path.parent() == Some(out.as_path())),
+            files.keys().all(|path| place.join(path).parent() == Some(out.as_path())),
             "{evil}: files elsewhere"
         );
         for (path, bytes) in files {
@@ -110,7 +89,7 @@ fn a_link_in_the_place_of_the_report_is_refused() {
     std::os::unix::fs::symlink(&elsewhere, &out).expect("a link");
     let answer = dropcheck(words(&fixture("anf10-plain.csv"), &fixture("anf10-plain.toml"), &out));
     at_fault(&answer, &["report", "symbolic link"]);
-    assert!(all_files(&elsewhere).is_empty());
+    assert!(tree(&elsewhere).is_empty());
 }
 
 #[test]
@@ -218,10 +197,12 @@ fn bomb_cask() -> String {
 #[cfg(unix)]
 mod interrupted {
     use super::*;
+    use std::collections::BTreeMap;
+    use std::path::PathBuf;
     use std::process::{Child, Command, Stdio};
     use std::time::{Duration, Instant};
 
-    type Content = Vec<(PathBuf, Vec<u8>)>;
+    type Content = BTreeMap<PathBuf, Vec<u8>>;
 
     /// In the folder around `out`, whose name is that of all: a report holds the words and the date of its
     /// run.
@@ -248,7 +229,7 @@ mod interrupted {
             let out = bench.0.path().join(stem).join("report");
             let begun = Instant::now();
             started(stem, recording, &out).wait().expect("a run");
-            (content(&out), begun.elapsed())
+            (tree(&out), begun.elapsed())
         });
         let [one, other] = reports;
         assert!(one.0.len() > 5 && other.0.len() > 5 && one.0 != other.0);
@@ -274,9 +255,8 @@ mod interrupted {
             let _ =
                 Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
             child.wait().expect("a run");
-            let mut found = content(&out);
-            let notes = found.iter().position(|(path, _)| path == Path::new("notes.txt")).expect("the note");
-            found.remove(notes);
+            let mut found = tree(&out);
+            found.remove(Path::new("notes.txt")).expect("the note");
             kept += usize::from(found == one);
             replaced += usize::from(found == other);
             assert!(found == one || found == other, "run {run}: a mixture");
@@ -297,7 +277,7 @@ mod interrupted {
             for mut child in children {
                 assert!(child.wait().expect("a run").code().is_some_and(|code| code < 2));
             }
-            let found = content(&out);
+            let found = tree(&out);
             assert!(found == one || found == other, "a mixture");
         }
     }
@@ -307,7 +287,7 @@ mod interrupted {
         let bench = Bench::new();
         let out = bench.0.path().join("place/report");
         started(ONE.0, ONE.1, &out).wait().expect("a run");
-        let old = content(&out);
+        let old = tree(&out);
         // A limit on the size of a file is what a full disk is to whoever writes; the HDF5 library has its
         // own scratch file.
         for blocks in [1, 16, 60, 200] {
@@ -320,7 +300,7 @@ mod interrupted {
             let stderr = String::from_utf8_lossy(&answer.stderr);
             assert_eq!(answer.status.code(), Some(2), "{blocks}: {stderr}");
             assert!(!stderr.contains("panicked") && stderr.contains("error"), "{stderr}");
-            assert!(content(&out) == old, "{blocks} blocks: the old report was touched");
+            assert!(tree(&out) == old, "{blocks} blocks: the old report was touched");
             let left = fs::read_dir(out.parent().expect("a parent")).expect("a folder").count();
             assert_eq!(left, 1, "{blocks} blocks: something half-written is left");
         }

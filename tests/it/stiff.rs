@@ -119,9 +119,9 @@ fn are_near(a: &Numbers, b: &Numbers, share: f64) -> bool {
 /// decide.
 fn compared(case: &Case) -> Option<Result<(), String>> {
     let is_rest = case.k == 0.0;
-    let [coarse, fine] = [1.0, 0.5].map(|share| match is_rest {
-        true => case.stepped(share * RESTED_S, share * RESTED_K),
-        false => case.stepped(share * STIFF_S, case.k),
+    let [coarse, fine] = [1.0, 0.5].map(|share| {
+        let contact_s = if is_rest { RESTED_S } else { STIFF_S };
+        case.stepped(share * contact_s, if is_rest { share * RESTED_K } else { case.k })
     });
     let prediction = predict_grazing(&case.body(), &case.drop(), case.contact, case.k, 0.0);
     let returns = (!is_rest).then_some(fine.relands);
@@ -129,10 +129,9 @@ fn compared(case: &Case) -> Option<Result<(), String>> {
         return None;
     }
     let told = numbers_of_prediction(&prediction);
-    let (coarse, fine) = match [&coarse, &fine].map(numbers_of_truth) {
-        [Some(coarse), Some(fine)] => (coarse, fine),
+    let [Some(coarse), Some(fine)] = [&coarse, &fine].map(numbers_of_truth) else {
         // The stepping ends with the cask upright, and says no more of one that turns over.
-        _ => return told.is_none().then_some(Ok(())),
+        return told.is_none().then_some(Ok(()));
     };
     if !are_near(&coarse, &fine, CONVERGED[usize::from(is_rest)]) {
         return None;
