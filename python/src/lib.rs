@@ -18,7 +18,8 @@ pyo3::create_exception!(
     dropcheck,
     Error,
     PyException,
-    "What is wrong with a file, its content or what was asked, in the words of the command: where, and how to mend it."
+    "What is wrong with a file, its content or what was asked, in the words of the command: where, and how \
+     to mend it."
 );
 
 /// The exit status of a Rust program that broke off.

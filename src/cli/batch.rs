@@ -31,7 +31,8 @@ use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
 A NAME.toml beside NAME.mcap goes before --cask. A manifest is a CSV with the columns recording, cask and id;
-columns named like a key of the cask file (drop.angle_deg, channel.A1.polarity) override it, others are carried along.
+columns named like a key of the cask file (drop.angle_deg, channel.A1.polarity) override it, others are \
+carried along.
 
 Examples:
   dropcheck batch tests/*.mcap --cask cask.toml --out campaign
@@ -216,7 +217,8 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     files.find(|file| std::fs::canonicalize(file).is_ok_and(|file| !file.starts_with(&folder)))?;
     let (recording, cask) = (&test.shown, test.cask_shown.as_deref().unwrap_or("FILE"));
     Some(report::printable(&format!(
-        "{recording} or its cask file lies in another folder, so that what is wrong with it is not written here; \
+        "{recording} or its cask file lies in another folder, so that what is wrong with it is not written \
+         here; \
          `dropcheck analyze {recording} --cask {cask}` says it"
     )))
 }

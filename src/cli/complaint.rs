@@ -106,7 +106,8 @@ mod tests {
         let text = told(&Report::new(diagnostic).with_source_code(source));
         assert_eq!(
             text,
-            "cask.toml, line 2: no key mas_kg\n  line 2: mas_kg = 1.0   (unknown key)\n  help: did you mean mass_kg?"
+            "cask.toml, line 2: no key mas_kg\n  line 2: mas_kg = 1.0   (unknown key)\n  help: did you mean \
+             mass_kg?"
         );
     }
 

@@ -229,7 +229,8 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
         format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.rung))
     } else {
         format!(
-            "The measurement does not agree within both intervals; the {} is the richest model ({percent:+.1} %)",
+            "The measurement does not agree within both intervals; the {} is the richest model \
+             ({percent:+.1} %)",
             name(taken.rung)
         )
     };

@@ -202,7 +202,8 @@ mod tests {
         // 49 m/s³, known to 2/√2000 · √12/0.2 = 0.8, adds 49 · 0.06 · 0.13 = 0.38 m/s.
         let drifting = treat(&mut channel(49.0, 2), 0.2, true);
         assert!(
-            drifting.iter().any(|f| matches!(f.what, FindingKind::Channel(ChannelFinding::Drift { slope_m_s3, .. }) if slope_m_s3 > 0.0)),
+            drifting.iter().any(|f| matches!(f.what,
+                FindingKind::Channel(ChannelFinding::Drift { slope_m_s3, .. }) if slope_m_s3 > 0.0)),
             "{drifting:?}"
         );
         for seed in 0..50 {

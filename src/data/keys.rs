@@ -112,7 +112,8 @@ pub const DROP: [Key; 6] = [
         .within(
             0.0,
             90.0,
-            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
+            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first \
+             end is the low one",
         )
         .asked("15.0", "inclination of the axis above the horizontal"),
     // From below the velocity of the least drop to above that of the highest; beyond, a body turns thousands
@@ -127,7 +128,11 @@ pub const DROP: [Key; 6] = [
     // Ten times what a hook that lets go of one end first gives a cask in a fall of 9 m.
     number("angular_velocity_deg_s", "0")
         .within(-60.0, 60.0, "in degrees a second, of the cask as the first end strikes")
-        .shown("0.0", "rotation as the first end strikes, positive brings the second end down; `height_m` is then the fall of the centre of gravity"),
+        .shown(
+            "0.0",
+            "rotation as the first end strikes, positive brings the second end down; `height_m` is \
+                       then the fall of the centre of gravity",
+        ),
     number("horizontal_velocity_m_s", "0")
         .within(-5.0, 5.0, "in m/s, of the centre of gravity as the first end strikes")
         .shown("0.0", "of the centre of gravity as the first end strikes, positive towards the second end"),
@@ -137,7 +142,7 @@ pub const DROP: [Key; 6] = [
 pub const CONTACT: [Key; 2] = [
     Key { takes: Takes::TextOrNumber, ..text("friction", "`\"unknown\"`") }.shown(
         r#""unknown""#,
-        r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown" (default): all that lies between"#,
+        r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown": all that lies between"#,
     ),
     number("duration_s", "–")
         .within(0.0, LONGEST_CONTACT_S, "how long the first end's impact lasts, in seconds: 20 ms are 0.02")

@@ -82,8 +82,15 @@ fn chosen<'a>(held: &'a [HeldSamples], cask_file: &CaskFile) -> Result<Vec<&'a H
         error::source(
             Path::new(NAME),
             &spec.name,
-            format!("there are no samples {:?}, which is its source, nor are all channels there by name", spec.source.to_string()),
-            format!("there is: {there}; name the samples of every channel by its `source`, or of every one by its `name`"),
+            format!(
+                "there are no samples {:?}, which is its source, nor are all channels there by \
+                     name",
+                spec.source.to_string()
+            ),
+            format!(
+                "there is: {there}; name the samples of every channel by its `source`, or of every one \
+                     by its `name`"
+            ),
         )
     })
 }

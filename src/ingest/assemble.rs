@@ -50,14 +50,16 @@ fn overlap(path: &Path, channels: &[Channel]) -> Result<(), IngestError> {
         path,
         &late.name,
         format!(
-            "it begins at {} s and {} ends at {} s: by their times the two share no moment, so that their clocks are {} s apart or they are of \
+            "it begins at {} s and {} ends at {} s: by their times the two share no moment, so that their \
+             clocks are {} s apart or they are of \
              different recordings",
             s(late.start_s),
             first.name,
             s(end_s(first)),
             s(late.start_s - first.start_s)
         ),
-        "check the clocks of both; name times that they share (`time`; of MCAP messages also `time = \"log_time\"`), or take one of the \
+        "check the clocks of both; name times that they share (`time`; of MCAP messages also `time = \
+         \"log_time\"`), or take one of the \
          two out",
     ))
 }
@@ -90,7 +92,8 @@ fn channel(
                 SAMPLE_RATES_HZ.start(),
                 SAMPLE_RATES_HZ.end()
             ),
-            "check the rate that the recording states, or the unit of its times, or write the true `sample_rate_hz` in this channel of the cask file",
+            "check the rate that the recording states, or the unit of its times, or write the true \
+             `sample_rate_hz` in this channel of the cask file",
         ));
     }
     let scale = scale(path, spec, raw.unit.as_deref())?;
@@ -156,7 +159,8 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Unit
             path,
             &spec.name,
             format!("neither the recording nor the cask file says the unit of {}", spec.source),
-            "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of the cask file",
+            "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of \
+             the cask file",
         ));
     };
     match acceleration_unit_m_s2(text) {
@@ -166,7 +170,8 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Unit
             &spec.name,
             format!("the recording gives {} in {text:?}, a voltage", spec.source),
             format!(
-                "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in this channel of the cask file"
+                "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in this \
+                 channel of the cask file"
             ),
         )),
         None => Err(error::source(
@@ -176,7 +181,8 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Unit
                 "the recording gives {} in {text:?}, which is no unit of acceleration known here",
                 spec.source
             ),
-            "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel of the cask file",
+            "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel \
+             of the cask file",
         )),
     }
 }

@@ -77,7 +77,8 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
     }
     let problem = "the cask file has no [[channel]], so that no sensor can be found in the recording";
     let mend = format!(
-        "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of the accelerometers",
+        "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \
+         the accelerometers",
         recording.display()
     );
     Err(no_cask_file(&cask_file.path, problem, &mend))
@@ -122,7 +123,8 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
         no_cask_file(
             path,
             &format!("line {line} is not UTF-8 text"),
-            "save it as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its accent",
+            "save it as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its \
+             accent",
         )
     })?;
     if text.trim().is_empty() {
@@ -189,7 +191,8 @@ pub(crate) fn assumed(root: &Section, tables: &[&str]) -> Vec<String> {
 
 /// `[contact]`.
 pub(crate) fn contact(table: &Section) -> Result<Contact, CaskFileError> {
-    const MEND: &str = "friction = \"rough\" (no sliding), \"smooth\" (no friction), \"unknown\", or a coefficient such as 0.4";
+    const MEND: &str = "friction = \"rough\" (no sliding), \"smooth\" (no friction), \"unknown\", or a \
+                        coefficient such as 0.4";
     let Some(value) = table.value("friction") else { return Ok(Contact::Unknown) };
     if value.get_ref().is_str() {
         let words = [("rough", Contact::Rough), ("smooth", Contact::Smooth), ("unknown", Contact::Unknown)];
@@ -213,7 +216,8 @@ fn filter(table: &Section) -> Result<FilterChoice, CaskFileError> {
             cutoff.span,
             "[filter] gives both cfc and cutoff_hz".into(),
             "one of the two".into(),
-            "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete the other line",
+            "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete the other \
+             line",
         )),
         (Some(class), None) => Ok(FilterChoice::Cfc(class.value)),
         (None, Some(cutoff)) => Ok(FilterChoice::CutoffHz(cutoff.value)),

@@ -158,7 +158,8 @@ fn contradiction(taken: &Statement, other: &Statement) -> Refusal {
     Refusal::new(
         format!("{}: one of the two is wrong, and every velocity goes with the rate", apart(taken, other)),
         format!(
-            "write the right one into this channel of the cask file: sample_rate_hz = {one} or sample_rate_hz = {two}"
+            "write the right one into this channel of the cask file: sample_rate_hz = {one} or \
+             sample_rate_hz = {two}"
         ),
     )
 }
@@ -227,7 +228,8 @@ impl Clock<'_> {
         let apart = TimesApart { taken: one.to_owned(), other: two.to_owned(), how };
         if whole.max(worst).max(start) > FAR && !is_decided {
             let remedy = format!(
-                "write which is right into the cask file, under [recording] or in the [[channel]]: time = {one} or time = {two}; or \
+                "write which is right into the cask file, under [recording] or in the [[channel]]: time = \
+                 {one} or time = {two}; or \
                  sample_rate_hz in each [[channel]]"
             );
             return Err(Refusal::new(apart.to_string(), remedy));

@@ -55,7 +55,8 @@ pub enum IngestError {
     /// A part of the file would take more memory than reading may.
     #[error("{path}: {what} more than {limit}, the limit where reading may take {memory} of memory")]
     #[diagnostic(help(
-        "a file that claims so much is damaged or made to do harm; if it is sound, allow more: --max-memory {more}"
+        "a file that claims so much is damaged or made to do harm; if it is sound, allow more: --max-memory \
+         {more}"
     ))]
     TooLarge {
         /// The file.

@@ -35,7 +35,8 @@ static DATASETS: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["/a", "/m[1]", 
 fn cask_of(sources: &[&str]) -> CaskFile {
     let channel = |source: &&str| {
         format!(
-            "[[channel]]\nname = '{source}'\nend = 'first'\naxis = 'transverse'\nsource = '{source}'\nposition_m = 0\n"
+            "[[channel]]\nname = '{source}'\nend = 'first'\naxis = 'transverse'\nsource = \
+             '{source}'\nposition_m = 0\n"
         )
     };
     let head = "[cask]\nname = 'c'\nmass_kg = 1\nlength_m = 1\n[drop]\nheight_m = 1\nangle_deg = 1\n";

@@ -187,8 +187,10 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
 /// converter ran over its range.
 #[rustfmt::skip]
 const MISSING: [&str; 36] = [
-    "nan", "nan(ind)", "inf", "infinity", "∞", "null", "none", "na", "n/a", "nv", "novalue", "no value", "-", "--",
-    "value!", "wert!", "div/0!", "num!", "zahl!", "ref!", "bezug!", "name?", "null!", "1.#qnan", "1.#ind", "1.#inf",
+    "nan", "nan(ind)", "inf", "infinity", "∞", "null", "none", "na", "n/a", "nv", "novalue", "no value",
+    "-", "--",
+    "value!", "wert!", "div/0!", "num!", "zahl!", "ref!", "bezug!", "name?", "null!", "1.#qnan", "1.#ind",
+    "1.#inf",
     "ol", "ovl", "ovld", "over", "overload", "overrange", "overflow",
     "err", "error", "n.a.",
 ];

@@ -151,8 +151,13 @@ pub(super) fn seconds_a_unit(
             };
             [named_s, unit_s].into_iter().find(agrees).ok_or_else(|| {
                 Refusal::new(
-                    format!("the times in {} are in another unit by their name than by their unit", carrier.place()),
-                    "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], which tells them apart",
+                    format!(
+                        "the times in {} are in another unit by their name than by their \
+                             unit",
+                        carrier.place()
+                    ),
+                    "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], \
+                     which tells them apart",
                 )
             })
         }
@@ -284,7 +289,8 @@ impl Counted {
                 shown::digits(self.rate, 4)
             ),
             format!(
-                "{counter}are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each [[channel]]; {} if they are seconds",
+                "{counter}are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each \
+                 [[channel]]; {} if they are seconds",
                 asked.join(", or in "),
                 carrier.stating(name),
                 shown::digits(self.rate / unit_s, 6),

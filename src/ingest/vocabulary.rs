@@ -20,7 +20,8 @@ const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"
 #[rustfmt::skip]
 const RATES: [&str; 10] = [
     // `startingtimerate` is what NWB has beside the time of the first sample.
-    "startingtimerate", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency", "fs", "scanrate", "abtastrate",
+    "startingtimerate", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency", "fs",
+    "scanrate", "abtastrate",
     "abtastfrequenz", "samplingfrequenz",
 ];
 
@@ -28,7 +29,8 @@ const RATES: [&str; 10] = [
 #[rustfmt::skip]
 const INTERVALS: [&str; 11] = [
     // `xinc` is Keysight's, with its unit beside it.
-    "xinc", "hresolution", "dt", "deltat", "wfincrement", "sampleinterval", "samplinginterval", "sampleperiod",
+    "xinc", "hresolution", "dt", "deltat", "wfincrement", "sampleinterval", "samplinginterval",
+    "sampleperiod",
     "samplingperiod", "abtastintervall", "abtastperiode",
 ];
 
@@ -48,14 +50,16 @@ const COUNTERS: [&str; 12] = [
 /// Names of the sensor that a message or a row is of, as [`RATES`].
 #[rustfmt::skip]
 const SENSORS: [&str; 12] = [
-    "frameid", "sensor", "sensorid", "sensorname", "sensornumber", "sensorno", "device", "deviceid", "devicename",
+    "frameid", "sensor", "sensorid", "sensorname", "sensornumber", "sensorno", "device", "deviceid",
+    "devicename",
     "node", "nodeid", "serialnumber",
 ];
 
 /// Names that say so of a row of a table; in messages they name much else.
 #[rustfmt::skip]
 const SENSORS_OF_ROWS: [&str; 14] = [
-    "id", "name", "module", "moduleid", "channel", "channelid", "channelname", "location", "source", "topic", "mac",
+    "id", "name", "module", "moduleid", "channel", "channelid", "channelname", "location", "source",
+    "topic", "mac",
     "kanal", "knoten", "messstelle",
 ];
 
@@ -67,7 +71,8 @@ const UNITS: [&str; 5] = ["vunit", "unit", "units", "engineeringunit", "yunitlab
 /// First words of lines that sum up a table, as [`RATES`].
 #[rustfmt::skip]
 const SUMMARIES: [&str; 16] = [
-    "sum", "summe", "total", "mean", "average", "mittelwert", "mittel", "min", "minimum", "max", "maximum", "std", "rms",
+    "sum", "summe", "total", "mean", "average", "mittelwert", "mittel", "min", "minimum", "max", "maximum",
+    "std", "rms",
     "end", "ende", "eof",
 ];
 

@@ -33,7 +33,10 @@ pub fn judge_fall_time(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Option<Finding> {
-    let is_of_fall = |f: &Finding| matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure, .. }) if closure.kind == ClosureKind::Fall);
+    let is_of_fall = |f: &Finding| {
+        matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure,
+        .. }) if closure.kind == ClosureKind::Fall)
+    };
     let fallen_m_s = drop.gravity_m_s2 * (events.fall_end_s? - events.release_s?);
     let v0_m_s = drop.impact_velocity_m_s;
     // Half of a 95 % half-width is a standard uncertainty.
@@ -66,7 +69,10 @@ pub fn judge_slowed(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Vec<Finding> {
-    let is_explained = |f: &Finding| matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure, .. }) if matches!(closure.kind, ClosureKind::Rest | ClosureKind::Fall));
+    let is_explained = |f: &Finding| {
+        matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure,
+        .. }) if matches!(closure.kind, ClosureKind::Rest | ClosureKind::Fall))
+    };
     let severity = found.iter().filter(|f| is_explained(f)).map(|f| f.severity).max();
     let slowed = slowed_share(drop, rests, events, tolerances);
     if let (Some(severity), Some((share, u))) = (severity, slowed) {

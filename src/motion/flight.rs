@@ -97,7 +97,8 @@ fn does_as_well(series: &[Series], fit: &Fit, best: &Fit) -> bool {
     let material_m_s = IMMATERIAL * largest_m_s;
     series.iter().zip(&fit.series).zip(&best.series).all(|((series, own), best)| {
         let length_s = series.time_s.last().copied().unwrap_or(0.0);
-        let before = |f: &SeriesFit| f.plateau - f.drift * length_s / 3.0; // A drift is followed back into the contact.
+        // A drift is followed back into the contact.
+        let before = |f: &SeriesFit| f.plateau - f.drift * length_s / 3.0;
         (own.plateau - best.plateau).abs() <= material_m_s
             && (before(own) - before(best)).abs() <= material_m_s
             && own.residual <= material_m_s.hypot(NOISE_LEFT * series.floor)

@@ -180,7 +180,8 @@ mod tests {
     proptest! {
         #[test]
         fn momentum_balances_and_energy_never_rises(
-            angle in 0.0..=std::f64::consts::FRAC_PI_2, k in 0.0..=1.0_f64, mu in 0.0..=2.0_f64, h in 0.0..1.2_f64, c in 1.5..3.0_f64,
+            angle in 0.0..=std::f64::consts::FRAC_PI_2, k in 0.0..=1.0_f64, mu in 0.0..=2.0_f64,
+                h in 0.0..1.2_f64, c in 1.5..3.0_f64,
             x in -15.0..15.0_f64, z in -15.0..15.0_f64, w in -8.0..8.0_f64,
         ) {
             let body = body(h, c);
@@ -189,7 +190,8 @@ mod tests {
             let (a, b) = arms_m(&body, angle, c);
             for contact in [Contact::Rough, Contact::Smooth, Contact::Coulomb(mu)] {
                 let struck = strike_first_end(&body, &before, contact, k);
-                let (after, ix, iz) = (struck.after, struck.horizontal_impulse_n_s, struck.vertical_impulse_n_s);
+                let (after, ix, iz) = (struck.after, struck.horizontal_impulse_n_s,
+                    struck.vertical_impulse_n_s);
                 // Sums of a few terms of size m v l: 1e-12 of that is a dozen roundings.
                 let round_off = 1e-12 * body.mass_kg * 20.0 * body.length_m;
                 prop_assert!((body.mass_kg * (after.horizontal_velocity_m_s - x) - ix).abs() < round_off);
@@ -205,7 +207,8 @@ mod tests {
 
         #[test]
         fn a_corner_that_does_not_slide_before_rebounds_with_k(
-            angle in 0.0..1.57_f64, k in 0.0..1.0_f64, mu in 0.0..2.0_f64, h in 0.0..1.2_f64, c in 1.5..3.0_f64,
+            angle in 0.0..1.57_f64, k in 0.0..1.0_f64, mu in 0.0..2.0_f64, h in 0.0..1.2_f64,
+                c in 1.5..3.0_f64,
         ) {
             let body = body(h, c);
             let before = moving(angle, (0.0, -13.3, 0.0));

@@ -89,10 +89,12 @@ pub(super) fn none(listing: &Listing) -> NoChannels {
     };
     let mend = match listing.format {
         _ if reasons.is_empty() => {
-            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables by hand, each with its source"
+            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables \
+             by hand, each with its source"
         }
         RecordingFormat::Csv | RecordingFormat::Samples => {
-            "in a copy, make every cell of these columns a number with one decimal mark and no thousands separators, or empty it: an empty cell counts as missing"
+            "in a copy, make every cell of these columns a number with one decimal mark and no thousands \
+             separators, or empty it: an empty cell counts as missing"
         }
         RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
         RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",

@@ -55,7 +55,9 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             version: result.version.to_owned(),
             heading: format!("{name}: slap-down drop test"),
             about: result.input.recording.clone(),
-            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample. Body axes: axial from the first end to the second, transverse away from the target.",
+            footer: "An interval holds the value with 95 % probability. Times count from the recording's \
+                     first sample. Body axes: axial from the first end to the second, transverse away from \
+                     the target.",
             style: "",
             ..Frame::default()
         },
@@ -85,7 +87,8 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
 }
 
 /// What no reader of the first page should miss.
-const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals were tested on simulated drops of known \
+const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals \
+                            were tested on simulated drops of known \
                             truth; no recording with a certified slap-down velocity was at hand.";
 
 /// Lines to sign, where the cask file names who does.
@@ -220,7 +223,10 @@ fn comparison(result: &DropResult) -> Chapter {
     );
     let model = taken.map(|model| {
         let candidates = ReportTable::of(&model.candidates)
-            .caption("The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out")
+            .caption(
+                "The ladder of analytical models with the measured k, the simplest first; rungs that \
+                      change nothing are left out",
+            )
             .chosen(|c| c.rung == model.rung)
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
             .number("Predicted, m/s", |c| optional_fixed(c.predicted, 2))
@@ -264,7 +270,8 @@ fn predictions(result: &DropResult) -> Chapter {
         return Chapter::new("");
     }
     let table = ReportTable::of(&result.predictions).class("").caption(
-        "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the first impact.",
+        "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the \
+         first impact.",
     );
     let table = prediction_columns(table, Some, false)
         .number("Angle, °", |p| optional_fixed(p.slap_down_angle_deg, 1))
@@ -284,7 +291,8 @@ fn channels(result: &DropResult) -> Chapter {
     let table = ReportTable::of(&result.channels)
         .class("")
         .caption(
-            "Offset, noise (RMS) and peaks in g. The peaks are those of the event that the curves show, from just before the first impact, \
+            "Offset, noise (RMS) and peaks in g. The peaks are those of the event that the curves show, from \
+             just before the first impact, \
              not of the whole recording: of the filtered curve, and of the unfiltered one.",
         )
         .head(Words::or("Channel", "channel"), |c| &c.name[..])

@@ -29,7 +29,8 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
-                style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) { (PreEscaped(UPLOT_STYLE)) } }
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) {
+                    (PreEscaped(UPLOT_STYLE)) } }
             }
             body { main {
                 header {
@@ -56,7 +57,8 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
     match &passage.content {
         PartContent::Sentence(role, words) => sentence(*role, words),
         PartContent::Banner(Tone(style, word), sentence) => html! {
-            div class=(format!("banner {}", banner_class(*style))) role="status" { strong { (word) } span { (prose(sentence)) } }
+            div class=(format!("banner {}",
+                banner_class(*style))) role="status" { strong { (word) } span { (prose(sentence)) } }
         },
         PartContent::Figures(figures) => html! {
             dl class="figures" { @for [name, value, detail] in figures {
@@ -81,7 +83,8 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
             @for photo in photos {
                 @let words = printable(&photo.name);
                 figure class="photo" {
-                    img alt=(words) src=(format!("data:{};base64,{}", photo.media_type, STANDARD.encode(&photo.bytes)));
+                    img alt=(words) src=(format!("data:{};base64,{}", photo.media_type,
+                        STANDARD.encode(&photo.bytes)));
                     figcaption { (words) }
                 }
             }
@@ -90,7 +93,8 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
             html! { ul class="limits" { @for sentence in sentences { li { (sentence) } } } }
         }
         PartContent::Beside(columns) => html! {
-            div class="pair" { @for column in columns { div { @for passage in column.iter().filter(|p| p.is_shown(Medium::Page)) {
+            div class="pair" { @for column in columns { div {
+                @for passage in column.iter().filter(|p| p.is_shown(Medium::Page)) {
                 (self::passage(passage, pictures))
             } } } }
         },
@@ -144,7 +148,8 @@ fn sentence(role: SentenceRole, words: &Words) -> Markup {
 /// A sentence; what stands between backticks in it is a key or a word of the command line.
 fn prose(words: &str) -> Markup {
     let words = printable(words);
-    html! { @for (i, part) in words.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
+    html! { @for (i, part) in words.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else {
+    (part) } } }
 }
 
 fn facts(caption: &str, facts: &[Fact]) -> Markup {
@@ -153,7 +158,8 @@ fn facts(caption: &str, facts: &[Fact]) -> Markup {
         table class="whole" {
             @if !caption.is_empty() { caption { (printable(caption)) } }
             tbody { @for fact in facts { tr {
-                th scope="row" { (capital(&printable(&fact.name))) @if fact.is_default { " " (default_mark("default")) } }
+                th scope="row" { (capital(&printable(&fact.name))) @if fact.is_default {
+                    " " (default_mark("default")) } }
                 (cell(fact.kind, &fact.value.as_str().into()))
                 @if noted { td class="soft" { (printable(fact.shown_note())) } }
             } } }
@@ -176,7 +182,8 @@ fn table(table: &ReportTable) -> Markup {
                 th scope="col" class=[number(column)] { (printable(column.head.on(Medium::Page))) }
             } } }
             tbody { @for (row, is_chosen) in table.chosen.iter().enumerate().take(rows) {
-                tr class=[is_chosen.then_some("chosen")] { @for column in &columns { (cell(column.kind, &column.cells[row])) } }
+                tr class=[is_chosen.then_some("chosen")] { @for column in &columns {
+                    (cell(column.kind, &column.cells[row])) } }
             } }
         }
         @if let Some(sentence) = left_out { p class="note" { (sentence) } }
@@ -186,7 +193,8 @@ fn table(table: &ReportTable) -> Markup {
 fn cell(kind: CellKind, cell: &TableCell) -> Markup {
     let text = printable(cell.words.on(Medium::Page));
     let shown = html! { @if cell.link.is_empty() { (prose(&text)) } @else { a href=(cell.link) { (text) } } };
-    let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() { " " } (default_mark(cell.mark)) } };
+    let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() {
+    " " } (default_mark(cell.mark)) } };
     match kind {
         CellKind::Head => html! { th scope="row" { (words) } },
         CellKind::Text => html! { td { (words) } },

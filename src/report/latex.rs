@@ -25,8 +25,11 @@ pub(super) fn table(result: &DropResult) -> Vec<u8> {
         "% dropcheck {}, SHA-256 of the recording: {}",
         result.version, result.input.recording_sha256
     );
-    format!("{head}\n\\begin{{tabular}}{{lr}}\n\\hline\nQuantity & Value $\\pm$ 95\\,\\% \\\\\n\\hline\n{lines}\\hline\n\\end{{tabular}}\n")
-        .into_bytes()
+    format!(
+        "{head}\n\\begin{{tabular}}{{lr}}\n\\hline\nQuantity & Value $\\pm$ 95\\,\\% \
+             \\\\\n\\hline\n{lines}\\hline\n\\end{{tabular}}\n"
+    )
+    .into_bytes()
 }
 
 /// "$20.62 \pm 0.40$ m/s".

@@ -17,8 +17,10 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
     let Some(choice) = &result.reconstruction else { return chapter };
     let rungs = ReportTable::of(&choice.candidates)
         .caption(
-            "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken that noise and tolerances explain \
-             and whose answer the next would neither change by more than the narrower interval nor know better by a quarter.",
+            "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken \
+             that noise and tolerances explain \
+             and whose answer the next would neither change by more than the narrower interval nor know \
+             better by a quarter.",
         )
         .chosen(|c| c.rung == choice.rung)
         .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), taken_mark(c.rung == choice.rung)))
@@ -51,7 +53,8 @@ fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
 fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
     let table = ReportTable::of(&choice.closures)
         .caption(
-            "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard uncertainties (u) of all inputs \
+            "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard \
+             uncertainties (u) of all inputs \
              together is within noise and tolerances; one far beyond is a finding.",
         )
         .head("Closure", |c| &c.name[..])
@@ -72,14 +75,18 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
     };
     let still = " It moves no input by more than a twentieth of its standard uncertainty.";
     let sentence = format!(
-        "The joint fit moves every input within its tolerance until the closures are met: χ² = {} with {degrees} degree{} of freedom, one a \
+        "The joint fit moves every input within its tolerance until the closures are met: χ² = {} with \
+         {degrees} degree{} of freedom, one a \
          closure. {used}{}",
         significant(chi_square, 2),
         if degrees == 1 { "" } else { "s" },
         if choice.adjustments.is_empty() { still } else { "" }
     );
     let moved = ReportTable::of(&choice.adjustments)
-        .caption("What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before.")
+        .caption(
+            "What the joint fit moves, the largest first. Left: the input's standard uncertainty after \
+                  the fit over the one before.",
+        )
         .most(0, MOST_MOVES, "each moved by less.")
         .head("Input", |a| &a.input[..])
         .number("Standard uncertainty u", |a| &a.standard_uncertainty[..])
@@ -132,10 +139,12 @@ fn flight_sentence(fit: &FlightFit) -> String {
     let among = if fit.candidates.first().is_none_or(|c| c.taken) {
         "."
     } else {
-        " of those with which the second end is on the target as it strikes and the cask turns as the first impact has it."
+        " of those with which the second end is on the target as it strikes and the cask turns as the first \
+         impact has it."
     };
     format!(
-        "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes is the one with the lowest \
+        "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes \
+         is the one with the lowest \
          information criterion{among}",
         fixed(fit.from_s * 1e3, 2),
         fixed(fit.to_s * 1e3, 2)
@@ -172,11 +181,13 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         })
         .number("k", |c| c.map_or_else(|| sum(|c| c.k, 4), |c| optional_fixed(c.k, 4)));
     let lead = format!(
-        "Each line is what one standard uncertainty of the input changes. The changes add in squares, and an interval is twice their root. {}",
+        "Each line is what one standard uncertainty of the input changes. The changes add in squares, and an \
+         interval is twice their root. {}",
         largest(budget)
     );
     let is_planar = result.reconstruction.as_ref().is_none_or(|r| r.rung != ReconstructionRung::Channels);
-    let single = "Speed and k were read off single channels, with the intervals given there: this table is that of the planar motion.";
+    let single = "Speed and k were read off single channels, with the intervals given there: this table is \
+                  that of the planar motion.";
     chapter
         .with(ChapterPart::lead(lead))
         .with(table)

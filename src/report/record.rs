@@ -79,7 +79,10 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
     let calibration = |spec: &ChannelSpec| spec.calibration.unwrap_or(file.tolerances.calibration);
     ReportTable::of(&file.channels)
         .class("")
-        .caption("Sensors: places from the first end along the axis and off it, the sign of a reading away from the target or towards the second end.")
+        .caption(
+            "Sensors: places from the first end along the axis and off it, the sign of a reading away \
+                  from the target or towards the second end.",
+        )
         .shape(TableShape::Items)
         .head("Channel", |s| &s.name[..])
         .text("End, axis", |s| format!("{}, {}", json_word(s.end), json_word(s.axis)))

@@ -138,7 +138,8 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
         |range| format!("μ {}", spread_words(range)),
     );
     format!(
-        "Drawn: k {}, {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity {} of \
+        "Drawn: k {}, {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity \
+         {} of \
          the length, inertia {} (95 % of normal distributions); seed {}.",
         spread_words(u.k),
         plain(u.angle_deg, 3),

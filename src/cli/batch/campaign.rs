@@ -20,7 +20,8 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
     let count = batch.column_count();
     if count > MOST_COLUMNS {
         return Err(miette::miette!(
-            help = "name channels and carried columns alike in all tests, or make several campaigns; the lines of the results are kept",
+            help = "name channels and carried columns alike in all tests, or make several campaigns; the \
+                    lines of the results are kept",
             "campaign.csv would have {count} columns, more than a spreadsheet holds"
         ));
     }

@@ -107,7 +107,8 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
     let name = path.display();
     if !heads.iter().any(|head| head == RECORDING) {
         return Err(miette::miette!(
-            help = "the first line names the columns: id, recording, cask, and what you like; `dropcheck init FOLDER` writes one",
+            help = "the first line names the columns: id, recording, cask, and what you like; `dropcheck \
+                    init FOLDER` writes one",
             "{name}, line 1: there is no column `recording`"
         ));
     }
@@ -121,7 +122,8 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
         }
         key_of_column(head).map_err(|problem| {
             miette::miette!(
-                help = "a column that is only to be carried into the tables needs a name without that table's word and a point",
+                help = "a column that is only to be carried into the tables needs a name without that \
+                        table's word and a point",
                 "{name}, line 1: {problem}"
             )
         })?;
@@ -164,7 +166,9 @@ mod tests {
 
     #[test]
     fn a_spreadsheets_manifest_is_read() {
-        let tests = of("\u{feff}recording;cask;drop.angle_deg;Halle\r\na.mcap;c.toml;12,5;3\r\n;;;\r\nx/b.h5;c.toml;;\r\n").unwrap();
+        let tests = of("\u{feff}recording;cask;drop.angle_deg;Halle\r\n\
+             a.mcap;c.toml;12,5;3\r\n;;;\r\nx/b.h5;c.toml;;\r\n")
+        .unwrap();
         assert_eq!(tests.len(), 2);
         assert_eq!(tests[0].stated, [("drop.angle_deg".to_owned(), "12,5".to_owned())]);
         assert_eq!(tests[0].carried, [("Halle".to_owned(), "3".to_owned())]);

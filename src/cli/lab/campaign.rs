@@ -26,7 +26,8 @@ pub struct Parts {
     #[arg(long, value_name = "FILE|-", requires = "campaign")]
     jsonl: Option<PathBuf>,
     /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = lines::part, default_value = "0/1", hide_default_value = true,
+    #[arg(long, value_name = "I/N", value_parser = lines::part, default_value = "0/1",
+        hide_default_value = true,
         requires = "jsonl", conflicts_with_all = ["out", "into"])]
     shard: (usize, usize),
     /// Go on with the lines of --jsonl that an earlier run of the same words has left

@@ -9,7 +9,8 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
-Beside FILE come the cask file (.toml) and the truth (.truth.json). The same scene and seed give the same samples.
+Beside FILE come the cask file (.toml) and the truth (.truth.json). The same scene and seed give the same \
+samples.
 The scene's keys: docs/formats.md; an example: fixtures/examples/scene-anf18.toml.
 
 Examples:

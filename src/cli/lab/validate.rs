@@ -10,7 +10,7 @@ use crate::{lab, report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not (exit status 1):
+const AFTER_HELP: &str = r#"Without --campaign and --scene: whether the program is accepted on this machine (exit 1: not):
 speed against accuracy, what becomes of damages, and every limit beside what was found.
 --quick takes a minute. reference.toml has a table a recording:
 
@@ -19,7 +19,8 @@ speed against accuracy, what becomes of damages, and every limit beside what was
   slap_down_speed_m_s = 20.44  # the stated interval must hold it
   k = { value = 0.51, within = 0.02 }
 
-Undamaged scenes are U0, U1 …, those of other kinds D0, D1 …: with its seed a number names the same scene for ever.
+Undamaged scenes are U0, U1 …, those of other kinds D0,
+    D1 …: with its seed a number names the same scene for ever.
 
 Examples:
   dropcheck validate --quick --out validation
@@ -53,7 +54,8 @@ pub struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
-    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind, requires = "campaign")]
+    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind,
+        requires = "campaign")]
     kinds: Vec<&'static str>,
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]

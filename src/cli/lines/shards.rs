@@ -122,7 +122,8 @@ pub fn schema(path: &Path) -> miette::Result<String> {
 /// The refusal of a file that no `--jsonl` of this program wrote.
 pub fn no_shard(path: &Path) -> miette::Report {
     miette::miette!(
-        help = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was stopped goes on with --resume",
+        help = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was \
+                stopped goes on with --resume",
         "{} is no shard of a campaign: its first line does not say of which",
         path.display()
     )

@@ -38,40 +38,51 @@ pub struct Arguments {
     #[arg(short, long)]
     cask: PathBuf,
     /// Inclination at first contact, 0 to 90 degrees [default: the cask file's]
-    #[arg(long, value_name = "DEG", help_heading = CASES, allow_hyphen_values = true, value_parser = words::angle)]
+    #[arg(long, value_name = "DEG", help_heading = CASES, allow_hyphen_values = true,
+        value_parser = words::angle)]
     angle: Option<f64>,
     /// Coefficient of restitution, 0 to 1
-    #[arg(long, value_name = "K", help_heading = CASES, allow_hyphen_values = true, value_parser = words::restitution)]
+    #[arg(long, value_name = "K", help_heading = CASES, allow_hyphen_values = true,
+        value_parser = words::restitution)]
     k: Option<f64>,
     /// Contact of the first end: rough, smooth or a Coulomb coefficient
-    #[arg(long, value_name = "C", help_heading = CASES, allow_hyphen_values = true, value_parser = words::contact)]
+    #[arg(long, value_name = "C", help_heading = CASES, allow_hyphen_values = true,
+        value_parser = words::contact)]
     contact: Option<Contact>,
     /// How long the first impact lasts, seconds: 20 ms are 0.02 [default: the cask file's, else an impulse]
-    #[arg(long, value_name = "S", help_heading = CASES, allow_hyphen_values = true, value_parser = words::duration)]
+    #[arg(long, value_name = "S", help_heading = CASES, allow_hyphen_values = true,
+        value_parser = words::duration)]
     duration: Option<f64>,
     /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m);
     /// several times for every combination
-    #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true, value_parser = sweep::sweep)]
+    #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true,
+        value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
     /// An angle is critical where the slap-down comes within this of its largest, percent
-    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, default_value = "5", allow_hyphen_values = true, value_parser = words::band)]
+    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, default_value = "5",
+        allow_hyphen_values = true, value_parser = words::band)]
     band: f64,
     /// Range of k, such as 0.3:0.7 [default: --k or its sweep, else 0:1]
-    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::restitution_range)]
+    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true,
+        value_parser = words::restitution_range)]
     k_range: Option<(f64, f64)>,
     /// Range of the Coulomb coefficient, such as 0.2:0.6 [default: --contact or its sweep, else the cask
     /// file's]
-    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::friction_range)]
+    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true,
+        value_parser = words::friction_range)]
     friction_range: Option<(f64, f64)>,
     /// Tolerance of the angle, degrees [default: 1]
-    #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::angle_tolerance)]
+    #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true,
+        value_parser = words::angle_tolerance)]
     angle_tolerance: Option<f64>,
     /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: 0.5,
     /// and 1 for the centre of gravity]
-    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::geometry_tolerance)]
+    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true,
+        value_parser = words::geometry_tolerance)]
     geometry_tolerance: Option<f64>,
     /// Casks and drops that Monte Carlo draws; 0 for none
-    #[arg(long, value_name = "N", help_heading = CRITICAL, default_value = "1000", allow_hyphen_values = true, value_parser = words::draws)]
+    #[arg(long, value_name = "N", help_heading = CRITICAL, default_value = "1000",
+        allow_hyphen_values = true, value_parser = words::draws)]
     draws: u32,
     /// Seed of the draws: the same seed gives the same draws everywhere [default: 1]
     #[arg(long, value_name = "N", help_heading = CRITICAL)]

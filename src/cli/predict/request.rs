@@ -78,7 +78,8 @@ fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result
                 "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {}",
                 file.path.display()
             ),
-            "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask is longer than its section"
+            "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask \
+             is longer than its section"
         )),
         _ => Ok(()),
     }

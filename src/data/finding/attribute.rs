@@ -9,7 +9,9 @@ pub enum AttributeFinding {
     /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless
     /// where its value does nothing.
     #[error(
-        "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
+        "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of \
+         the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete \
+         that of the group where each dataset has its own"
     )]
     GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool },
     /// Reading would refuse them: the problem and its remedy.

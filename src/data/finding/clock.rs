@@ -8,7 +8,8 @@ use crate::data::shown::{digits, hz};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClockFinding {
     /// A rate was taken, and another one is said.
-    #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write sample_rate_hz = {rate}", rate = hz(.0.other_hz))]
+    #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write \
+             sample_rate_hz = {rate}", rate = hz(.0.other_hz))]
     Rates(RatesApart),
     /// Times were taken, and another column or dataset does not bear them out.
     #[error("{0}; the first was taken, and every velocity goes with it")]
@@ -21,7 +22,8 @@ pub enum ClockFinding {
 /// Two rates that contradict each other, each in Hz with what says it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit")]
-#[error("two rates contradict each other: {} Hz by {taken_by}, {} Hz by {other_by}", hz(*.taken_hz), hz(*.other_hz))]
+#[error("two rates contradict each other: {} Hz by {taken_by}, {} Hz by \
+         {other_by}", hz(*.taken_hz), hz(*.other_hz))]
 pub struct RatesApart {
     pub taken_hz: f64,
     pub taken_by: String,
@@ -44,7 +46,8 @@ pub struct TimesApart {
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum HowApart {
     /// By how long they last.
-    #[error("from the first row to the last they say {} s and {} s", digits(*.taken_s, 5), digits(*.other_s, 5))]
+    #[error("from the first row to the last they say {} s and {} \
+             s", digits(*.taken_s, 5), digits(*.other_s, 5))]
     Lasting { taken_s: f64, other_s: f64 },
     /// By so much in a row, from 1.
     #[error("in row {row} of the table they are {} s apart", digits(*.apart_s, 5))]

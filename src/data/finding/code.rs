@@ -44,7 +44,8 @@ issue_codes! {
     Unlisted, "File": "the recording holds more than `inspect` and `init` list";
     NonFinite, "File": "samples are empty, NaN or infinite and count as missing";
     TimeJitter, "File": "a channel's times jitter and were put on an even base";
-    Clock, "File": "statements about the rate, or about the unit of times, are contradictory or not sufficient";
+    Clock, "File": "statements about the rate, or about the unit of times, are contradictory or not \
+                    sufficient";
     LogTimeUsed, "File": "a message has no time stamp of its own, and its log time was used";
     Spikes, "Channel": "one to five samples are far off their neighbours";
     Dropout, "Channel": "runs of equal samples begin or end with a jump";
@@ -55,10 +56,13 @@ issue_codes! {
     Noise, "Channel": "noise makes the velocity uncertain";
     Hum, "Channel": "there is mains hum in the free fall";
     LowRate, "Channel": "the first pulse has too few samples";
-    Aliasing, "Channel": "the signal has content up to half the sample rate, so higher frequencies are aliased";
+    Aliasing, "Channel": "the signal has content up to half the sample rate, so higher frequencies are \
+                          aliased";
     AcCoupled, "Channel": "a channel is AC-coupled: stated and undone, or found by its droop";
-    Scale, "Channels together": "units, sensitivities or rest levels contradict each other, or nothing tests them";
-    NotRigid, "Channels together": "channels cannot belong to one rigid body, or the rotation does not follow from the impact";
+    Scale, "Channels together": "units, sensitivities or rest levels contradict each other, or nothing tests \
+                                 them";
+    NotRigid, "Channels together": "channels cannot belong to one rigid body, or the rotation does not \
+                                    follow from the impact";
     Skew, "Channels together": "a channel responds to the first impact too early or too late";
     BeginsLate, "Channel": "the free fall is too short for an offset, or the recording begins in the impact";
     EndsEarly, "Drop": "the recording ends before the slap-down";

@@ -10,76 +10,120 @@ use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Esti
 pub enum DropFinding {
     /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a
     /// clock that may be why.
-    #[error("no impact was found: {}; check source, unit and that the recording covers the drop{}", what_was_seen(*.least_m_s, *.without_rise), doubt_of_rate(.doubt.as_deref()))]
+    #[error("no impact was found: {}; check source, unit and that the recording covers the \
+             drop{}", what_was_seen(*.least_m_s, *.without_rise), doubt_of_rate(.doubt.as_deref()))]
     NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> },
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
     #[error(
-        "{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: whether the recording shows one cannot be told; record with {least_hz:.0} Hz and more, or check `sample_rate_hz`"
+        "{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: \
+         whether the recording shows one cannot be told; record with {least_hz:.0} Hz and more, or check \
+         `sample_rate_hz`"
     )]
     TooSlow { rate_hz: f64, samples: f64, least_hz: f64 },
     /// No transverse channel on an end, which the mass properties may stand in for.
     #[error("no transverse channel on the {end} end: {}", without_end(*.end, *.is_stood_in_for))]
     MissingEnd { end: End, is_stood_in_for: bool },
     /// The recording ends so long after the separation, before a slap-down.
-    #[error("no slap-down within {:.0} ms after the first end left the target: the recording ends before it", 1e3 * .after_s)]
+    #[error("no slap-down within {:.0} ms after the first end left the target: the recording ends before \
+             it", 1e3 * .after_s)]
     EndsEarly { after_s: f64 },
     /// No slap-down for so long after the separation.
-    #[error("no slap-down within {:.0} ms after the first end left the target: the second end shows no impact", 1e3 * .after_s)]
+    #[error("no slap-down within {:.0} ms after the first end left the target: the second end shows no \
+             impact", 1e3 * .after_s)]
     NoSlapDown { after_s: f64 },
     /// The flight is too short to be fitted.
     #[error("the free flight between the impacts is too short to be told from them and from ringing")]
     ShortFlight,
     /// Another drop, so long after the one that was analysed.
     #[error(
-        "the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and changes its velocity by {step_m_s:.1} m/s ({first_step_m_s:.1} m/s there): that is another drop. The first one was analysed; for the other, cut the recording between them in a copy"
+        "the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and \
+         changes its velocity by {step_m_s:.1} m/s ({first_step_m_s:.1} m/s there): that is another drop. \
+         The first one was analysed; for the other, cut the recording between them in a copy"
     )]
     SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 },
     /// The free fall ends well before the impact.
-    #[error("the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: something soft (water, a guide, a cable) was touched first, and the impact velocity is not that of a free fall", 1e3 * (.contact_s - .end_s))]
+    #[error("the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: \
+             something soft (water, a guide, a cable) was touched first, and the impact velocity is not that \
+             of a free fall", 1e3 * (.contact_s - .end_s))]
     SoftTouch { end_s: f64, contact_s: f64 },
     /// A coefficient of restitution that is none.
-    #[error("k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is wrong", .k.value, .k.u95, if .k.u95 > 1.0 { "says nothing of a number between 0 and 1" } else { "lies outside 0 to 1" })]
+    #[error("k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is \
+             wrong", .k.value, .k.u95, if .k.u95 > 1.0 { "says nothing of a number between 0 and \
+                                                          1" } else { "lies outside 0 to 1" })]
     Restitution { k: Estimate },
     /// The second end rises.
     #[error(
-        "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong in the cask file"
+        "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong \
+         in the cask file"
     )]
     TurnsTheWrongWay,
     /// The axial channel has L slide on a contact that is called rough.
-    #[error("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`", .slip.value, .slip.u95)]
+    #[error("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file \
+             calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set \
+             `friction`", .slip.value, .slip.u95)]
     Slides { slip: Estimate },
     /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
     /// friction that was taken.
-    #[error("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state `friction`", .taken.value, .taken.u95)]
+    #[error("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if \
+             it sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between \
+             ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or \
+             state `friction`", .taken.value, .taken.u95)]
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
     /// L would sink so far below where it left the target.
-    #[error("the first end would sink {:.0} mm below where it left the target before the second end strikes: it touched again, and the flight was not free", 1e3 * .depth_m)]
+    #[error("the first end would sink {:.0} mm below where it left the target before the second end strikes: \
+             it touched again, and the flight was not free", 1e3 * .depth_m)]
     Sinks { depth_m: f64 },
     /// L comes down to the target so softly that no channel shows it.
-    #[error("the first end comes down to the target before the second end strikes ({:.0} mm below where it left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, and the flight leaves it out", 1e3 * .depth_m)]
+    #[error("the first end comes down to the target before the second end strikes ({:.0} mm below where it \
+             left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, \
+             and the flight leaves it out", 1e3 * .depth_m)]
     Settles { depth_m: f64, effect_m_s: f64 },
     /// The velocities step in the flight.
-    #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down speed may be off by more than their intervals", .step_m_s.abs(), 1e3 * .after_s)]
+    #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
+             than ringing does: contents that strike the cask, a cable or a second touch; k and the \
+             slap-down speed may be off by more than their intervals", .step_m_s.abs(), 1e3 * .after_s)]
     Blow { step_m_s: f64, after_s: f64 },
     /// The target pushes L through the flight.
     #[error(
-        "in the flight every transverse channel goes on gaining what it gained in the first impact, {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
+        "in the flight every transverse channel goes on gaining what it gained in the first impact, \
+         {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
     )]
     Carried { rate_hz: f64 },
     /// The flight may have lasted no time.
-    #[error("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second end struck, and k and the slap-down speed then mean nothing", 1e3 * .flight_time.value, 1e3 * .flight_time.u95)]
+    #[error("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second \
+             end struck, and k and the slap-down speed then mean \
+             nothing", 1e3 * .flight_time.value, 1e3 * .flight_time.u95)]
     NoFlight { flight_time: Estimate },
     /// The flight is too short to tell its modes from one another.
-    #[error("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to it ({} Hz): they may stand for a contact that was not over, and the velocity steps, k and the slap-down speed be off by more than their intervals; look at the curves, and state only what they show", 1e3 * .flight_s, .modes_hz.len(), joined(.modes_hz, |f| format!("{f:.0}"), ", "))]
+    #[error("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to \
+             it ({} Hz): they may stand for a contact that was not over, and the velocity steps, k and the \
+             slap-down speed be off by more than their intervals; look at the curves, and state only what \
+             they show", 1e3 * .flight_s, .modes_hz.len(), joined(.modes_hz, |f| format!("{f:.0}"), ", "))]
     Unresolved { flight_s: f64, modes_hz: Vec<f64> },
     /// The second impact is not told by what is recorded after the slap-down.
-    #[error("the {:.0} ms that are recorded after the slap-down do not tell what the second end's impact came to: it may not have left the target by then, or something else strikes meanwhile; record until the cask lies still", 1e3 * .recorded_s)]
+    #[error("the {:.0} ms that are recorded after the slap-down do not tell what the second end's impact \
+             came to: it may not have left the target by then, or something else strikes meanwhile; record \
+             until the cask lies still", 1e3 * .recorded_s)]
     SecondUntold { recorded_s: f64 },
     /// Measured and predicted lie apart.
-    #[error("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = {e_n:.1}): check contact law, angle, mass properties and scales", .comparison.measured, .comparison.measured_u95, .comparison.predicted, .comparison.predicted_u95)]
+    #[error("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n \
+             = {e_n:.1}): check contact law, angle, mass properties and \
+             scales",
+        .comparison.measured,
+        .comparison.measured_u95,
+        .comparison.predicted,
+        .comparison.predicted_u95
+    )]
     Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
     /// What was seen otherwise lies apart from the result.
-    #[error("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); check what was observed, and the cask file", .beside.name, .beside.result.as_ref().map_or_else(String::new, plus_minus), .beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")), plus_minus(&.beside.observed))]
+    #[error("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); \
+             check what was observed, and the cask \
+             file",
+        .beside.name,
+        .beside.result.as_ref().map_or_else(String::new, plus_minus),
+        .beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")),
+        plus_minus(&.beside.observed)
+    )]
     ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity },
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The
     /// recording shows a free fall of `fall_s`.
@@ -87,10 +131,16 @@ pub enum DropFinding {
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
     /// The rest before the fall and its length say alike that something took this share of g off it, which
     /// makes another v0 of the drop height.
-    #[error("the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows of the rest before it and by its length alike: a guide, a rope or a brake; from the stated height that makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it as `impact_velocity_m_s`, with its tolerance", 100.0 * .share, 100.0 * .u95)]
+    #[error("the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows \
+             of the rest before it and by its length alike: a guide, a rope or a brake; from the stated \
+             height that makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it \
+             as `impact_velocity_m_s`, with its tolerance", 100.0 * .share, 100.0 * .u95)]
     SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity },
     /// All closures together are missed by more than chance.
-    #[error("what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for {degrees}): {}; check angle, height, scales, positions and mass properties of the cask file", joined(.closures, |c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs()), ", "))]
+    #[error("what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for \
+             {degrees}): {}; check angle, height, scales, positions and mass properties of the cask \
+             file", joined(.closures, |c| format!("{} by {} ({:.1} \
+                                                   u)", c.name, c.miss, c.miss_in_u.abs()), ", "))]
     AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
     /// With a usual slip put right everything closes; with either of two where nothing tells which.
     #[error("{}: check that first; it was not taken by itself", joined(.cures, Cure::words, "; "))]
@@ -100,7 +150,9 @@ pub enum DropFinding {
     AngleCloses { angle_deg: f64, severity: Severity },
     /// No rest before the release: nothing tests what all channels share.
     #[error(
-        "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors"
+        "the recording shows no rest before the release: nothing in it tests the drop height, the clock's \
+         rate or a scale error that all channels share, and little tests one of the first end alone, which k \
+         follows; they are taken as stated; record from before the release with DC-coupled sensors"
     )]
     Untested,
 }
@@ -156,7 +208,8 @@ fn what_was_seen(least_m_s: f64, without_rise: Option<CoarseEvent>) -> String {
     };
     let step_m_s = velocity_step_m_s.abs();
     format!(
-        "the velocity changes by {step_m_s:.1} m/s within 25 ms at {near_s:.3} s, but no rise of the force begins that"
+        "the velocity changes by {step_m_s:.1} m/s within 25 ms at {near_s:.3} s, but no rise of the force \
+         begins that"
     )
 }
 
@@ -164,17 +217,20 @@ fn doubt_of_rate(doubt: Option<&Finding>) -> String {
     let Some(finding) = doubt else { return String::new() };
     let of_channel = finding.channel.as_ref().map(|channel| format!(" of {channel}")).unwrap_or_default();
     format!(
-        "; the rate{of_channel} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first"
+        "; the rate{of_channel} is in doubt (clock), and a rate too high makes every velocity too small by \
+         as much: clear that up first"
     )
 }
 
 fn without_end(end: End, is_stood_in_for: bool) -> &'static str {
     match (is_stood_in_for, end) {
         (true, End::First) => {
-            "rotation, k and speed rest on the inertia and centre of gravity of the cask file, and first contact is seen a bending wave late; record both ends"
+            "rotation, k and speed rest on the inertia and centre of gravity of the cask file, and first \
+             contact is seen a bending wave late; record both ends"
         }
         (true, End::Second) => {
-            "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
+            "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows \
+             the slap-down; record both ends"
         }
         (false, _) => "rotation, k and slap-down need one on each end",
     }
@@ -197,10 +253,13 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
     let how_far = format!("{} ({:.1} standard uncertainties)", closure.miss, closure.miss_in_u.abs());
     match closure.kind {
         ClosureKind::Height => format!(
-            "the second end would be {how_far} from the target when it strikes: drop angle, drop height, a scale, the clock or a sensor position is not as stated"
+            "the second end would be {how_far} from the target when it strikes: drop angle, drop height, a \
+             scale, the clock or a sensor position is not as stated"
         ),
         ClosureKind::Turning => format!(
-            "the cask turns by {how_far} otherwise than the first impact turns a rigid body of this section, centre of gravity and inertia: check each channel's scale and position, and state `inertia_kg_m2` and `cog_m`"
+            "the cask turns by {how_far} otherwise than the first impact turns a rigid body of this section, \
+             centre of gravity and inertia: check each channel's scale and position, and state \
+             `inertia_kg_m2` and `cog_m`"
         ),
         ClosureKind::Rest => format!(
             "{} is off by {how_far} at rest before the release: check its sensitivity, unit and the angle",
@@ -222,7 +281,9 @@ fn fall(drop: &Drop, fall_s: f64) -> String {
     let off = fall_s / expected_s - 1.0;
     let which = if off < 0.0 { "slow" } else { "fast" };
     format!(
-        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it; if it is right the recorder's clock is {:.1} % {which}: state its true rate as `sample_rate_hz`",
+        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} \
+         m/s; {stated} in the cask file needs {expected_s:.3} s: check it; if it is right the recorder's \
+         clock is {:.1} % {which}: state its true rate as `sample_rate_hz`",
         100.0 * off.abs()
     )
 }

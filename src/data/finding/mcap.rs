@@ -9,15 +9,19 @@ use crate::data::shown::digits;
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum McapFinding {
     /// The file ends before its time; the last message kept begins at `kept_s`.
-    #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} s")).unwrap_or_default())]
+    #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} \
+                                                s")).unwrap_or_default())]
     Truncated { end: FileEnd, kept_s: Option<f64> },
     /// A chunk fails its check sum or does not unpack.
     #[error(
-        "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {lasts_s:.6} s"
+        "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over \
+         {lasts_s:.6} s"
     )]
     BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 },
     /// Bytes that are no record.
-    #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}", if *.resumed { "reading went on at the next chunk of the file's index" } else { "up to the end of the file" })]
+    #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, \
+             {}", if *.resumed { "reading went on at the next chunk of the file's index" } else { "up to the \
+                 end of the file" })]
     Garbage { at: u64, bytes: u64, resumed: bool },
     /// Damage that is not told place by place.
     #[error("{places} more places of the file are damaged and were left out")]
@@ -32,19 +36,25 @@ pub enum McapFinding {
     #[error("{count} of {messages} messages {}; the first: {first}", undecoded(.topic.as_deref()))]
     Undecoded { count: u64, messages: u64, topic: Option<String>, first: String },
     /// Messages whose stamp is of no use, beside others whose stamp is or not.
-    #[error("{count} of {messages} messages carry a stamp of zero or none that can be understood: their log time was taken{}", if *.beside_good { "; the others carry a stamp, and the two clocks may differ" } else { "" })]
+    #[error("{count} of {messages} messages carry a stamp of zero or none that can be understood: their log \
+             time was taken{}", if *.beside_good { "; the others carry a stamp, and the two clocks may \
+                                                    differ" } else { "" })]
     LogTime { count: u64, messages: u64, beside_good: bool },
     /// Log times that run at another pace than the stamps, by so much of it.
-    #[error("the stamps of its messages and their log times disagree: the log times run at a pace that differs by {} %; the stamps were taken, and every velocity goes with them: `time = \"log_time\"` in the cask file takes the other", digits(*.percent, 2))]
+    #[error("the stamps of its messages and their log times disagree: the log times run at a pace that \
+             differs by {} %; the stamps were taken, and every velocity goes with them: `time = \
+             \"log_time\"` in the cask file takes the other", digits(*.percent, 2))]
     LogDrift { percent: f64 },
     /// Bytes of the data that are not those that the writer summed up.
     #[error(
-        "the check sum of its data does not hold: bytes were changed after it was written, and nothing tells which samples are as they were: take the original from the logger again"
+        "the check sum of its data does not hold: bytes were changed after it was written, and nothing tells \
+         which samples are as they were: take the original from the logger again"
     )]
     DataChanged,
     /// The same of the summary.
     #[error(
-        "the check sum of its summary does not hold: bytes were changed after it was written; the summary was left out, the data were read"
+        "the check sum of its summary does not hold: bytes were changed after it was written; the summary \
+         was left out, the data were read"
     )]
     SummaryChanged,
     /// A unit that changes between messages, where the cask file states one; in a listing with its source
@@ -56,7 +66,8 @@ pub enum McapFinding {
     NoTimes { r#source: String, problem: String },
     /// What a listing has no room for.
     #[error(
-        "it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics and {fields} more fields of the listed ones; a source that is not listed is read all the same"
+        "it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics \
+         and {fields} more fields of the listed ones; a source that is not listed is read all the same"
     )]
     Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize },
 }
@@ -69,7 +80,8 @@ pub enum FileEnd {
     #[error("{}", ends_early(*.at, *.bytes, .inside))]
     Early { at: u64, bytes: u64, inside: &'static str },
     /// Within a chunk.
-    #[error("{} the chunk at byte {at}: {}, and what followed is lost", chunk_end(*.never_closed), kept_of_chunk(*.messages, *.bytes))]
+    #[error("{} the chunk at byte {at}: {}, and what followed is \
+             lost", chunk_end(*.never_closed), kept_of_chunk(*.messages, *.bytes))]
     InChunk { at: u64, never_closed: bool, bytes: u64, messages: u64 },
     /// Behind the footer, within the closing magic.
     #[error("the file ends at byte {at} within its closing mark; all records before it were read")]
@@ -118,10 +130,12 @@ fn changed_unit(source: Option<&str>, change: &str) -> String {
 fn ends_early(at: u64, bytes: u64, inside: &str) -> String {
     match bytes {
         0 => format!(
-            "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
+            "the file was never closed: it ends at byte {at} without its footer; every whole message before \
+             was read, what was not yet written is lost"
         ),
         _ => format!(
-            "the file ends in the middle of a {inside} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost"
+            "the file ends in the middle of a {inside} at byte {at}: its last {bytes} bytes could not be \
+             used, and what followed is lost"
         ),
     }
 }
@@ -138,7 +152,8 @@ fn kept_of_chunk(messages: u64, bytes: u64) -> String {
     match messages {
         0 => "no whole message is in it".into(),
         _ => format!(
-            "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
+            "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes \
+             could not be used"
         ),
     }
 }

@@ -9,7 +9,8 @@ use crate::data::shown::{digits, hz};
 pub enum TimesFinding {
     /// Times that run backward, first from one to another.
     #[error(
-        "times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by time"
+        "times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by \
+         time"
     )]
     Backward { count: usize, from_s: f64, to_s: f64 },
     /// Samples of equal times, some with different values.
@@ -23,7 +24,8 @@ pub enum TimesFinding {
     Gap { lost: usize, over_s: f64 },
     /// Many gaps, the longest of them over a span.
     #[error(
-        "{lost} samples are missing in {gaps} gaps, the longest of {longest} samples over {over_s:.3e} s (the span given)"
+        "{lost} samples are missing in {gaps} gaps, the longest of {longest} samples over {over_s:.3e} s \
+         (the span given)"
     )]
     Gaps { lost: usize, gaps: usize, longest: usize, over_s: f64 },
     /// Times off an even base, onto which the samples were interpolated.
@@ -31,8 +33,11 @@ pub enum TimesFinding {
     Jitter(Jitter),
     /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so
     /// unevenly.
-    #[error("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
-        digits(.step_s * .rate_hz, 3), digits(*.rate_hz, 6), digits(100.0 * .uncertainty, 2), uneven_steps(*.off_s),
+    #[error("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced \
+             at {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s \
+             only{}{}",
+        digits(.step_s * .rate_hz, 3), digits(*.rate_hz, 6), digits(100.0 * .uncertainty, 2),
+            uneven_steps(*.off_s),
         if *.is_sure { "" } else { "; give sample_rate_hz for this channel" }, step = digits(*.step_s, 3))]
     Coarse { step_s: f64, rate_hz: f64, uncertainty: f64, off_s: Option<f64>, is_sure: bool },
     /// Coarse times beside a stated rate; `off_s` where they contradict it.
@@ -40,24 +45,31 @@ pub enum TimesFinding {
         digits(*.step_s, 3), uneven_at_rate(*.off_s, *.rate_hz), rate = digits(*.rate_hz, 6))]
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> },
     /// Equal times beside a stated rate.
-    #[error("all times are equal; the samples were taken as evenly spaced at the declared {} Hz", digits(*.rate_hz, 6))]
+    #[error("all times are equal; the samples were taken as evenly spaced at the declared {} \
+             Hz", digits(*.rate_hz, 6))]
     AllEqual { rate_hz: f64 },
     /// Blocks that come after a later one.
     #[error("{count} block(s) came after a later one; they were put in order by their stamps")]
     BlocksBackward { count: usize },
     /// Blocks shorter than all others by less than their stamps tell.
-    #[error("{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up to {:.3} ms, do not tell whether samples are missing there; the blocks were joined", 1e3 * .off_s)]
+    #[error("{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by \
+             up to {:.3} ms, do not tell whether samples are missing there; the blocks were \
+             joined", 1e3 * .off_s)]
     ShortBlocks { count: usize, lacking: f64, off_s: f64 },
     /// Stamps of blocks that are cut, and agree with the stated rate; if they were exact they might tell
     /// another.
-    #[error("the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken{}; blocks that follow one another were joined",
+    #[error("the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken{}; \
+             blocks that follow one another were joined",
         .if_exact_hz.map(|hz| format!(", but would tell {hz:.6} Hz if they were exact")).unwrap_or_default())]
     StampsCut { cut_s: f64, rate_hz: f64, if_exact_hz: Option<f64> },
     /// Stamps of blocks that run at another rate than the stated one, far off or not.
-    #[error("the blocks' stamps run at {stamps_hz:.6} Hz, {:.1} ppm off the stated {stated_hz:.6} Hz, and scatter by {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the stamps' rate was taken", 1e6 * (.stamps_hz / .stated_hz - 1.0))]
+    #[error("the blocks' stamps run at {stamps_hz:.6} Hz, {:.1} ppm off the stated {stated_hz:.6} Hz, and \
+             scatter by {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the \
+             stamps' rate was taken", 1e6 * (.stamps_hz / .stated_hz - 1.0))]
     StampsRunOff { stamps_hz: f64, stated_hz: f64, rms_s: f64, is_far: bool },
     /// A few blocks that are stamped as at another rate than the one that was taken.
-    #[error("its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it", hz(*.stamps_hz), hz(*.taken_hz))]
+    #[error("its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, \
+             or the rate is wrong, and every velocity with it", hz(*.stamps_hz), hz(*.taken_hz))]
     FewBlocks { stamps_hz: f64, taken_hz: f64 },
     /// Blocks over times that are there already, some with different samples.
     #[error("{count} block(s) {}", copied_blocks(*.different))]
@@ -66,7 +78,10 @@ pub enum TimesFinding {
 
 /// How far times lie off an even base, and what interpolating onto it may add.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("times lie {rms_s:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {max_s:.3e} s at most; the samples were interpolated onto it. Cubic and linear interpolation differ by {rms_percent:.2} % of the largest sample RMS, {max_percent:.2} % at most, which bounds the error of doing so{}", 100.0 * .rms_s / .period_s, 1.0 / .period_s, self.doubt_of_clock())]
+#[error("times lie {rms_s:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, \
+         {max_s:.3e} s at most; the samples were interpolated onto it. Cubic and linear interpolation differ \
+         by {rms_percent:.2} % of the largest sample RMS, {max_percent:.2} % at most, which bounds the error \
+         of doing so{}", 100.0 * .rms_s / .period_s, 1.0 / .period_s, self.doubt_of_clock())]
 pub struct Jitter {
     /// Interval of the base, s.
     pub period_s: f64,
@@ -93,8 +108,16 @@ impl Jitter {
 
     fn doubt_of_clock(&self) -> String {
         match self.rates_hz {
-            Some((one_hz, other_hz)) => format!("; they rise at {one_hz:.6} Hz in one part and at {other_hz:.6} Hz in another, which is no jitter but a clock that changed its rate: look at the times; where the samples were taken evenly, take the times out in a copy and state sample_rate_hz"),
-            None if self.is_late() => "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times".into(),
+            Some((one_hz, other_hz)) => format!(
+                "; they rise at {one_hz:.6} Hz in one part and at \
+                                                 {other_hz:.6} Hz in another, which is no jitter but a clock \
+                                                 that changed its rate: look at the times; where the samples \
+                                                 were taken evenly, take the times out in a copy and state \
+                                                 sample_rate_hz"
+            ),
+            None if self.is_late() => "; so far off is no jitter but a clock that ran at another rate for a \
+                                       while, was set or began anew: look at the times"
+                .into(),
             None => String::new(),
         }
     }
@@ -139,7 +162,9 @@ fn copied_blocks(different: usize) -> String {
     match different {
         0 => "repeat samples that are there already; the copies were dropped".into(),
         _ => format!(
-            "cover times that are there already, {different} of them with different samples; the first to start was kept; where they follow on one another in truth, the stamps are too coarse for such blocks"
+            "cover times that are there already, {different} of them with different samples; the first to \
+             start was kept; where they follow on one another in truth, the stamps are too coarse for such \
+             blocks"
         ),
     }
 }
@@ -153,7 +178,8 @@ fn uneven_steps(off_s: Option<f64>) -> String {
 fn uneven_at_rate(off_s: Option<f64>, rate_hz: f64) -> String {
     let words = |off, rate| {
         format!(
-            " and change up to {off} s off even steps at the declared {rate} Hz: samples are missing, or the rate is another"
+            " and change up to {off} s off even steps at the declared {rate} Hz: samples are missing, or the \
+             rate is another"
         )
     };
     off_s.map(|off_s| words(digits(off_s, 2), digits(rate_hz, 6))).unwrap_or_default()

@@ -32,9 +32,14 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
     {
         return Err(table.wrong(
             height.span.clone(),
-            format!("the section is longer than the cask: height_m {} exceeds length_m {length_m}", height.value),
+            format!(
+                "the section is longer than the cask: height_m {} exceeds length_m \
+                     {length_m}",
+                height.value
+            ),
             format!("0 to {length_m} m"),
-            "length_m runs along the axis between the two ends that strike, height_m across it; perhaps they are exchanged",
+            "length_m runs along the axis between the two ends that strike, height_m across it; perhaps they \
+             are exchanged",
         ));
     }
     let cog = table.number("cog_m")?;
@@ -108,7 +113,8 @@ fn inertia_is_possible(
         format!("no cask of this mass and size has an inertia_kg_m2 of {}", inertia.value),
         format!("at least {} and at most {}", four_digits(least), four_digits(most)),
         &format!(
-            "it counts about the centre of gravity, not about an end, in kg m²; a homogeneous cask of this mass, length and section has {homogeneous}"
+            "it counts about the centre of gravity, not about an end, in kg m²; a homogeneous cask of this \
+             mass, length and section has {homogeneous}"
         ),
     ))
 }

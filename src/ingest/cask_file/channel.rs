@@ -8,7 +8,8 @@ use crate::data::{
 use std::ops::Range;
 use toml::de::DeValue;
 
-const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: what the recording says";
+const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: \
+                     what the recording says";
 
 /// All channels, in the file's order, with names of their own.
 pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, CaskFileError> {
@@ -99,7 +100,8 @@ pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, CaskFileError> {
 }
 
 fn source(table: &Section) -> Result<Source, CaskFileError> {
-    const MEND: &str = "`dropcheck inspect RECORDING` lists what to write: source = \"/topic.field\" (MCAP), \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
+    const MEND: &str = "`dropcheck inspect RECORDING` lists what to write: source = \"/topic.field\" (MCAP), \
+                        \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
     let Some(value) = table.value("source") else { return Err(table.missing("source", MEND)) };
     if !value.get_ref().is_table() {
         return Ok(Source::Path(table.required_text("source")?.value));
@@ -146,7 +148,8 @@ fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
                     table.place("unit"),
                     "a unit of voltage needs sensitivity".into(),
                     "needs sensitivity beside it".into(),
-                    "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the amplifier's gain)",
+                    "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the \
+                     amplifier's gain)",
                 )
             })?;
             *sensitivity_mv_per_g = given.value;
@@ -156,7 +159,8 @@ fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
                 given.span,
                 "sensitivity has no meaning without unit = \"V\" or \"mV\"".into(),
                 "only with \"V\" or \"mV\"".into(),
-                "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it holds g or m/s²",
+                "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it \
+                 holds g or m/s²",
             ));
         }
         _ => {}
@@ -200,7 +204,8 @@ pub(crate) fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
             table.place("coupling"),
             "coupling = \"ac\" needs time_constant_s".into(),
             "needs time_constant_s beside it".into(),
-            "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet (0.5 Hz: 0.318)",
+            "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet \
+             (0.5 Hz: 0.318)",
         )),
         (false, Some(constant)) => Err(table.wrong(
             constant.span,

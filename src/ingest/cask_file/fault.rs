@@ -11,7 +11,8 @@ pub(crate) const THE_CASK_FILE: &str = "the cask file";
 pub enum CaskFileError {
     /// The operating system refused.
     #[error("{path}: {kind} cannot be read: {}", bare(.refusal))]
-    #[diagnostic(help("check the name{}, and that you may read it", if *.kind == THE_CASK_FILE { " after --cask" } else { "" }))]
+    #[diagnostic(help("check the name{}, and that you may read \
+                       it", if *.kind == THE_CASK_FILE { " after --cask" } else { "" }))]
     Io {
         /// The file.
         path: String,

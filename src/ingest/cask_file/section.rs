@@ -145,7 +145,12 @@ impl<'a> Document<'a> {
             (format!("{value} has a unit behind the number"), unit_mend(number, unit))
         } else {
             let said = error.message().lines().next().unwrap_or("this is no TOML").to_owned();
-            (said, "each line is `key = value` or a table's name in brackets such as [cask]; words stand in quotes, numbers have a decimal point".to_owned())
+            (
+                said,
+                "each line is `key = value` or a table's name in brackets such as [cask]; words stand in \
+                    quotes, numbers have a decimal point"
+                    .to_owned(),
+            )
         };
         self.wrong(span, message, "this is not TOML".into(), mend)
     }

@@ -211,7 +211,8 @@ fn what_no_cask_and_no_drop_can_be_is_refused_with_its_range() {
     // ANF-18 in tonnes.
     let anf_18 = |mass: &str| {
         of(&format!(
-            "[cask]\nmass_kg = {mass}\nlength_m = 5.512\nheight_m = 0.792\n[drop]\nheight_m = 9\nangle_deg = 15\n"
+            "[cask]\nmass_kg = {mass}\nlength_m = 5.512\nheight_m = 0.792\n[drop]\nheight_m = 9\nangle_deg = \
+             15\n"
         ))
     };
     assert!(anf_18("4466").is_ok() && told(&anf_18("4.466").unwrap_err()).contains("4.466 t are 4466"));
@@ -225,7 +226,8 @@ fn more_channels_than_any_test_has_are_refused() {
     let many = |count: usize| {
         let channel = |i| {
             format!(
-                "[[channel]]\nname = \"A{i}\"\nend = \"first\"\naxis = \"axial\"\nsource = \"/a{i}\"\nposition_m = 0\n"
+                "[[channel]]\nname = \"A{i}\"\nend = \"first\"\naxis = \"axial\"\nsource = \
+                 \"/a{i}\"\nposition_m = 0\n"
             )
         };
         of(&(0..count).map(channel).fold(SHORT.to_owned(), |text, channel| text + &channel))

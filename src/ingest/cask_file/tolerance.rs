@@ -40,7 +40,8 @@ pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError>
                 value.span(),
                 format!("{key} is neither true nor false"),
                 "true or false".into(),
-                "without quotes; false leaves the samples as they are in this respect, and the report says so",
+                "without quotes; false leaves the samples as they are in this respect, and the report says \
+                 so",
             )
         })?;
     }

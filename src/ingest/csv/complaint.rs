@@ -72,8 +72,10 @@ pub(super) fn row_error(
         }
         RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
             line,
-            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),
-            "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock times (12:34:56.789); \
+            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones \
+                     before", headed(slot)),
+            "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock \
+             times (12:34:56.789); \
              correct the cell in a copy, or name another column of times"
                 .to_owned(),
         ),
@@ -86,14 +88,16 @@ pub(super) fn row_error(
             line,
             format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
             format!(
-                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an empty cell counts as missing",
+                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an \
+                 empty cell counts as missing",
                 char::from(layout.dialect.decimal)
             ),
         ),
         RowError::NoTime { line, slot } => (
             line,
             format!("column {:?} holds no time for this row", headed(slot)),
-            "fill the time in, or empty the cells of the channels that it times in that row of a copy; or name another column of times"
+            "fill the time in, or empty the cells of the channels that it times in that row of a copy; or \
+             name another column of times"
                 .to_owned(),
         ),
     };

@@ -98,7 +98,8 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
             } else {
                 let unfit = layout.unfit.as_ref().map_or(String::new(), |unfit| format!(" ({unfit})"));
                 format!(
-                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have{unfit}; its columns count 1, 2, …",
+                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows \
+                     have{unfit}; its columns count 1, 2, …",
                     layout.columns.len()
                 )
             },

@@ -83,7 +83,8 @@ impl Table<'_> {
         let fall = begins_anew(column.each()).filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
         fall.map_or(Ok(()), |row| {
             let problem = format!(
-                "the times in column {header:?} fall back to where they began at line {}, as below rows of extremes (minimum, maximum) or at \
+                "the times in column {header:?} fall back to where they began at line {}, as below rows of \
+                 extremes (minimum, maximum) or at \
                  the beginning of another record",
                 self.layout.data_line + row as u64
             );
@@ -147,7 +148,8 @@ impl Table<'_> {
         if blank > rows / 3 {
             return Err(Refusal::new(
                 format!(
-                    "of its {rows} lines {blank} are empty, and no times tell whether samples are missing there"
+                    "of its {rows} lines {blank} are empty, and no times tell whether samples are missing \
+                     there"
                 ),
                 "delete the empty lines in a copy, or name a column of times",
             ));

@@ -46,7 +46,8 @@ fn every_dialect_gives_the_same_numbers() {
         b"  time_s   A1   A2\n  0.0  1.5  -2\n  0.1  2.5  -3\n  0.2  3.5  -4\n",
         b"time_s;A1;A2;\n0,0;1,5;-2;\n0,1;2,5;-3;\n0,2;3,5;-4;\n",
         b"# time_s, A1, A2\n0.0, 15e-1, -2.0E0\n1e-1, 2.5, -3\n.2, 3.5, -4.\n",
-        b"when,note,A1,A2\n2026-11-20T12:00:00.0Z,\"a,b\",1.5,-2\n2026-11-20T12:00:00.1Z,c,2.5,-3\n2026-11-20T12:00:00.2Z,,3.5,-4\n",
+        b"when,note,A1,A2\n2026-11-20T12:00:00.0Z,\"a,b\",1.5,-2\n\
+        2026-11-20T12:00:00.1Z,c,2.5,-3\n2026-11-20T12:00:00.2Z,,3.5,-4\n",
         b"Beh\xE4lter \xB5\nZeit [\xB5s];A1;A2\n0;1,5;-2\n100000;2,5;-3\n200000;3,5;-4\n",
     ];
     for text in texts {
@@ -314,7 +315,8 @@ fn the_stamp_of_the_sensor_goes_before_the_time_of_receipt() {
 #[test]
 fn facts_of_oscilloscopes_stand_above_the_rows() {
     let texts = [
-        "\"Model Name\",\"S1\"\n\"TraceName\",\"A1\",\"A2\"\n\"BlockSize\",60,60\n\"VUnit\",\"g\",\"g\"\n\"HResolution\",1.25E-04,1.25E-04\n\n",
+        "\"Model Name\",\"S1\"\n\"TraceName\",\"A1\",\"A2\"\n\"BlockSize\",60,60\n\
+         \"VUnit\",\"g\",\"g\"\n\"HResolution\",1.25E-04,1.25E-04\n\n",
         "X,A1,A2,Start,Increment,\nSequence,g,g,-5.0e-02,1.25e-04\n",
         "Zeit,A1,A2\nEngineering Unit,g,g\nISO Channel Code,11,12\n",
     ];

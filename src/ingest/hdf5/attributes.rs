@@ -58,7 +58,8 @@ impl Attributes {
             let what = if are_counts { "whole numbers are counts of the recorder," } else { "numbers are" };
             return Err(Refusal::new(
                 format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
-                "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + offset; scale = 1 where the numbers \
+                "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + \
+                 offset; scale = 1 where the numbers \
                  are converted already",
             ));
         }
@@ -281,7 +282,8 @@ impl Said {
         let count = column.columns;
         Err(Refusal::new(
             format!(
-                "the attribute {}, by which its numbers are to be read, is no number for each of {count} channel(s)",
+                "the attribute {}, by which its numbers are to be read, is no number for each of {count} \
+                 channel(s)",
                 self.shown()
             ),
             "correct the attribute in a copy, or write the channel with its scale as a dataset of numbers",

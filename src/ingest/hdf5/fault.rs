@@ -35,7 +35,8 @@ const MEANINGS: [(&str, &str, &str); 8] = [
     ("required filter", "the data are compressed by a filter that is not built in", REPACK),
     ("checksum", BAD_SUM, AGAIN),
     ("data error detected by fletcher32", BAD_SUM, AGAIN),
-    ("filter returned failure", "a block of it cannot be unpacked: the data are damaged or their filter is not built in",
+    ("filter returned failure", "a block of it cannot be unpacked: the data are damaged or their filter is \
+                                 not built in",
      "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"),
 ];
 

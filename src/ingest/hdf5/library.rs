@@ -39,7 +39,8 @@ const ELSEWHERE: &str = "a link into another file, which is not followed";
 const UNNAMED: &str =
     "its name is not UTF-8, and the HDF5 library is asked by names in UTF-8: rename it in a copy";
 
-const SOFT: &str = "a soft link, which is followed only where the system keeps the library from other files: name what it leads to";
+const SOFT: &str = "a soft link, which is followed only where the system keeps the library from other files: \
+                    name what it leads to";
 
 /// The names in a group, and what bears each.
 type Members = BTreeMap<String, LinkType>;

@@ -26,7 +26,8 @@ const MOST_SAMPLES: usize = 20_000_000;
 /// So many values are read in all: names may stand for one large dataset many times over.
 const MOST_VALUES: u64 = 1 << 30;
 
-const UNGUARDED: &str = ", which this system keeps from no other file or call: read files of strangers elsewhere (docs/dependencies.md)";
+const UNGUARDED: &str = ", which this system keeps from no other file or call: read files of strangers \
+                         elsewhere (docs/dependencies.md)";
 
 /// A list as it grows, and what it may still cost.
 struct Lister {

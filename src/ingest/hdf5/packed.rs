@@ -26,7 +26,8 @@ macro_rules! stored {
     ($($name:ident = $number:ty as $sample:ident in $samples:ident),*) => {
         $(impl Stored for $number {
             type Sample = $sample;
-            #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
+            #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose \
+                what no sensor resolves")]
             fn sample(byte: impl Fn(usize) -> u8) -> $sample {
                 Self::from_le_bytes(std::array::from_fn(byte)) as $sample
             }

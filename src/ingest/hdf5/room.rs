@@ -294,7 +294,8 @@ fn unstarted(refusal: &io::Error) -> Fault {
     };
     Fault::new(
         format!("HDF5 is read by a process of its own, and {what}"),
-        "a program that uses this library names it: dropcheck::read_hdf5_with(program), in Python dropcheck.read_hdf5_with(python)",
+        "a program that uses this library names it: dropcheck::read_hdf5_with(program), in Python \
+         dropcheck.read_hdf5_with(python)",
     )
 }
 

@@ -49,7 +49,8 @@ impl RecordSensors {
         let (Some(first), ids) = (self.all.first(), self.all.iter().map(|one| one.is.as_str())) else {
             return Err(Fault::new(
                 format!(
-                    "what is to pick its samples holds no whole number for each, or more than {MOST_SENSORS} different ones"
+                    "what is to pick its samples holds no whole number for each, or more than {MOST_SENSORS} \
+                     different ones"
                 ),
                 "pick them by another field or dataset, or take `where` out",
             ));
@@ -58,7 +59,8 @@ impl RecordSensors {
         let column = &first.column;
         Err(Fault::new(
             format!(
-                "its samples are those of {count} sensors by turns, by {column} = {ids}, and none of these is picked"
+                "its samples are those of {count} sensors by turns, by {column} = {ids}, and none of these \
+                 is picked"
             ),
             format!("write into each [[channel]] of the cask file whose they are, as {first}"),
         ))

@@ -66,7 +66,8 @@ pub(super) fn require_common(starts: &[(String, Start)]) -> Result<(), Fault> {
         return Err(Fault::of(
             lost,
             problem,
-            "write into a copy, to each of the two, the attribute start_time_s: when its first sample was taken, in s from one zero",
+            "write into a copy, to each of the two, the attribute start_time_s: when its first sample was \
+             taken, in s from one zero",
         ));
     }
     Ok(())

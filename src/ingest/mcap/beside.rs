@@ -78,7 +78,8 @@ impl<'a> SaidBeside<'a> {
         if let (Some(turns), Value::Array(_)) = (self.turns.filter(|turns| *turns > 1.0), &value) {
             return Err(Refusal::new(
                 format!("by its layout each message holds {} signals by turns in one array", short(turns)),
-                "name one number of the array, as in `data[0]`, where a message holds one sample of each; else have the recorder write an \
+                "name one number of the array, as in `data[0]`, where a message holds one sample of each; \
+                 else have the recorder write an \
                  array for each signal",
             ));
         }
@@ -89,11 +90,13 @@ impl<'a> SaidBeside<'a> {
         if let (None, Some((number, beside))) = (self.scale, conversion.or(offset)) {
             return Err(Refusal::new(
                 format!(
-                    "its messages state {} = {} beside the samples, and nothing says whether these are converted by it already",
+                    "its messages state {} = {} beside the samples, and nothing says whether these are \
+                     converted by it already",
                     beside.field,
                     short(number)
                 ),
-                "have the recorder write `scale` and `offset` beside them: value = raw · scale + offset; scale = 1 where they are converted",
+                "have the recorder write `scale` and `offset` beside them: value = raw · scale + offset; \
+                 scale = 1 where they are converted",
             ));
         }
         if let (Some(count), Value::Array(samples)) = (self.count, &mut value) {

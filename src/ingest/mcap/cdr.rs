@@ -67,7 +67,8 @@ impl Cdr {
             let fitting: Vec<(usize, usize)> = WIDE_BYTES.into_iter().filter_map(end).collect();
             let (first, is_one) = (fitting.first(), fitting.windows(2).all(|pair| pair[0].1 == pair[1].1));
             (wide_bytes, _) = *first.filter(|_| is_one).ok_or(
-                "a wstring stands before the numbers, and the message does not tell whether its letters take 2 or 4 bytes",
+                "a wstring stands before the numbers, and the message does not tell whether its letters take \
+                 2 or 4 bytes",
             )?;
         }
         let needed = self.fields.get(..self.needed).unwrap_or_default();
@@ -287,7 +288,8 @@ fn descend(fields: &[RosField], path: &str, found: &mut Vec<Leaf>) {
 
 fn is_time(fields: &[RosField]) -> bool {
     matches!(fields, [seconds, nanoseconds]
-        if SECONDS_NAMES.contains(&seconds.name.as_str()) && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str()))
+        if SECONDS_NAMES.contains(&seconds.name.as_str())
+            && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str()))
 }
 
 #[cfg(test)]

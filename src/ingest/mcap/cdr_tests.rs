@@ -30,7 +30,8 @@ fn an_imu_of_either_byte_order_gives_its_acceleration_and_stamp() {
 
 #[test]
 fn sequences_strings_and_narrow_integers_are_walked_through() {
-    const TEXT: &str = "string[] names\nP[] points\nint16[] raw\nfloat32[<=4] fine\nuint8 flag\nfloat64 last\n===\nMSG: my/P\nfloat32 x\nuint8 y\n";
+    const TEXT: &str = "string[] names\nP[] points\nint16[] raw\nfloat32[<=4] fine\nuint8 flag\nfloat64 \
+                        last\n===\nMSG: my/P\nfloat32 x\nuint8 y\n";
     let mut body = Vec::new();
     let mut writer = CdrWriter::<LittleEndian, _>::new(&mut body);
     writer.write_sequence_length(2);

@@ -65,7 +65,8 @@ pub(super) fn several(
             &spec.name,
             format!("{asked}: {} MCAP channels write on the topic {topic}", numbers.len()),
             format!(
-                "name one: source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of {channels}"
+                "name one: source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of \
+                 {channels}"
             ),
         );
     }
@@ -85,7 +86,8 @@ pub(super) fn no_named_time(path: &Path, spec: &ChannelSpec, time: &str) -> Inge
         path,
         &spec.name,
         format!("no message of {} holds a time that rises in the field {time:?}", spec.source),
-        "name the field of its messages that holds their time, `time = \"log_time\"` for the time of logging, or take `time` out",
+        "name the field of its messages that holds their time, `time = \"log_time\"` for the time of \
+         logging, or take `time` out",
     )
 }
 
@@ -114,7 +116,8 @@ pub(super) fn no_samples(
     if let (true, Some(problem)) = (malformed == messages, first_problem) {
         return fault(
             format!("none of the {messages} messages of {name} decodes; the first: {problem}"),
-            "check that the source names the samples, and that the topic's schema is the one its messages were written with",
+            "check that the source names the samples, and that the topic's schema is the one its messages \
+             were written with",
         );
     }
     let signals = leaves.iter().chain(seen).filter(|leaf| leaf.is_signal);
@@ -137,7 +140,8 @@ pub(super) fn no_samples(
 /// The samples are there, and find no time base.
 pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: TimeBaseError) -> IngestError {
     let refusal = problem.refusal(
-        "check the stamps of this topic; `sample_rate_hz` in this channel of the cask file overrides the recording's rate",
+        "check the stamps of this topic; `sample_rate_hz` in this channel of the cask file overrides the \
+         recording's rate",
     );
     error::source(path, &spec.name, format!("{}: {}", spec.source, refusal.problem), refusal.remedy)
 }
@@ -156,7 +160,8 @@ pub(super) fn unit_change(
         path,
         &spec.name,
         format!("{}: {}", spec.source, two_units(first, other)),
-        "cut the recording where it changes, or where only the word is wrong write `unit` in this channel of the cask file",
+        "cut the recording where it changes, or where only the word is wrong write `unit` in this channel of \
+         the cask file",
     ))
 }
 

@@ -156,7 +156,11 @@ fn listed(
             ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
         };
         let untimed = if is_without_times {
-            Some("its times take more memory than is allowed, and tell no rate here: allow more with --max-memory".into())
+            Some(
+                "its times take more memory than is allowed, and tell no rate here: allow more with \
+                  --max-memory"
+                    .into(),
+            )
         } else {
             timed(&mut channel, column, zero_ns).err().map(|problem| problem.to_string())
         };

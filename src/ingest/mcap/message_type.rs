@@ -77,7 +77,8 @@ impl MessageTypes {
         let text_bytes = schema.map_or(0, |schema| schema.data.len() as u64);
         if LEAST_BYTES + text_bytes > self.left_bytes.min(self.largest_bytes) {
             return Err(format!(
-                "its schema of {text_bytes} bytes is more than is read of the schemas of such a file; allow more with --max-memory"
+                "its schema of {text_bytes} bytes is more than is read of the schemas of such a file; allow \
+                 more with --max-memory"
             ));
         }
         let mut left = ros_type::MOST_FIELDS;

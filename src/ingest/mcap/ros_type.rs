@@ -184,7 +184,9 @@ mod tests {
 
     #[test]
     fn named_types_are_put_in_place_and_a_missing_time_is_known() {
-        let text = "std_msgs/Header header\nVec v\nfloat64[9] c\nint16[<=4] d\n================\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n================\nMSG: my/Vec\nfloat32 x # comment\nuint8 OFF=0\n";
+        let text = "std_msgs/Header header\nVec v\nfloat64[9] c\nint16[<=4] d\n================\nMSG: \
+                    std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n================\nMSG: \
+                    my/Vec\nfloat32 x # comment\nuint8 OFF=0\n";
         let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));

@@ -208,7 +208,8 @@ impl Gathered {
 }
 
 /// Why messages do not decode that are packed one by one.
-const PACKED_ALONE: &str = "each message is packed by itself with zstd, as `ros2 bag record --compression-mode message` does, which is not read: \
+const PACKED_ALONE: &str = "each message is packed by itself with zstd, as `ros2 bag record \
+                            --compression-mode message` does, which is not read: \
      unpack them with `ros2 bag convert`";
 
 /// What some of the messages of a file gave, as those of a chunk.

@@ -48,8 +48,11 @@ pub(super) fn message(writer: &mut MemoryWriter, channel_id: u16, log_time_ns: i
 /// A JSON block of the contract.
 pub(super) fn json_block(stamp_ns: i64, rate_hz: f64, samples: &[f64]) -> Vec<u8> {
     let (sec, nsec) = (stamp_ns / 1_000_000_000, stamp_ns % 1_000_000_000);
-    format!(r#"{{"timestamp":{{"sec":{sec},"nsec":{nsec}}},"sample_rate_hz":{rate_hz},"unit":"g","samples":{samples:?}}}"#)
-        .into_bytes()
+    format!(
+        r#"{{"timestamp":{{"sec":{sec},"nsec":{nsec}}},"sample_rate_hz":{rate_hz},{}:{samples:?}}}"#,
+        r#""unit":"g","samples""#
+    )
+    .into_bytes()
 }
 
 /// Ten JSON blocks of 10 samples 0, 1, 2 … at 1 kHz on `/daq/a1`.

@@ -131,7 +131,8 @@ fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refu
         return Ok(());
     }
     let problem = format!(
-        "{count} of {} messages carry the same stamp as the one before though their samples differ: the stamps are coarser than a block is \
+        "{count} of {} messages carry the same stamp as the one before though their samples differ: the \
+         stamps are coarser than a block is \
          long, and do not tell whether one is lost",
         blocks.len()
     );

@@ -104,11 +104,13 @@ fn no_rows_of_sensors(changes: &[usize], step_s: f64, count: usize, claims: &Cla
     }
     Err(Refusal::new(
         format!(
-            "each of its times stands exactly {rows} times: on rows of {rows} sensors, or by a clock that is cut to {} s",
+            "each of its times stands exactly {rows} times: on rows of {rows} sensors, or by a clock that is \
+             cut to {} s",
             digits(step_s, 3)
         ),
         format!(
-            "where the rows are of several sensors name the one that is meant: where = {{ column = …, is = … }}; where they are samples \
+            "where the rows are of several sensors name the one that is meant: where = {{ column = …, is = … \
+             }}; where they are samples \
              one after another write sample_rate_hz = {}",
             digits(rate_hz, 6)
         ),
@@ -291,7 +293,8 @@ mod tests {
         let uniform = placed(&cut(20_000.0, 0.1, 0.03, 9000), None).unwrap();
         assert_eq!(
             only(&uniform).1,
-            "the times are cut to 0.1 s, about 2000 samples each; the samples were taken as evenly spaced at 20000 Hz, \
+            "the times are cut to 0.1 s, about 2000 samples each; the samples were taken as evenly spaced at \
+             20000 Hz, \
              a rate that is uncertain by 0.017 %, and the channel's start is known to 0.1 s only"
         );
     }

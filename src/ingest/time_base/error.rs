@@ -39,7 +39,8 @@ pub enum TimeBaseError {
     /// Times repeat so often, and change so seldom or unevenly, that they do not tell when a sample was
     /// taken.
     #[error(
-        "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell their rate; \
+        "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell \
+         their rate; \
          give sample_rate_hz for this channel",
         digits(*step_s, 3),
         changes + 1
@@ -54,7 +55,8 @@ pub enum TimeBaseError {
     },
     /// Times jump so far that filling the gap would not fit in memory.
     #[error(
-        "times jump from {} s to {} s, which would be {lost:.3e} samples at {} Hz: no gap of one record; check the clock, \
+        "times jump from {} s to {} s, which would be {lost:.3e} samples at {} Hz: no gap of one record; \
+         check the clock, \
          or cut the recording there",
         short(*from_s), short(*to_s), short(*sample_rate_hz)
     )]

@@ -73,7 +73,8 @@ fn wrapped(times_s: &[f64]) -> Option<Refusal> {
     let whole_s = WHOLE_S.into_iter().find(is_it)?;
     Some(Refusal::new(
         format!(
-            "time number {} falls back by {whole_s} s: the times count within each, and something else holds what has gone by",
+            "time number {} falls back by {whole_s} s: the times count within each, and something else holds \
+             what has gone by",
             at + 1
         ),
         "write one column of times that goes on, in s, in a copy: whole seconds and fraction together",
@@ -115,13 +116,15 @@ pub(super) fn no_mixture(
                 "{count} of its {} times fall back, first {place}: those of several sensors, or none",
                 times_s.len()
             ),
-            "name another source of times (`time`), or the rows of one sensor (`where`); or write sample_rate_hz and take the times out",
+            "name another source of times (`time`), or the rows of one sensor (`where`); or write \
+             sample_rate_hz and take the times out",
         ));
     }
     if changes > CHANGES * count {
         return Err(Refusal::new(
             format!(
-                "its times begin anew {count} time(s), first {place}: {} recordings follow one another, or the clock was set back, and \
+                "its times begin anew {count} time(s), first {place}: {} recordings follow one another, or \
+                 the clock was set back, and \
                  samples of all would lie on the same times",
                 count + 1
             ),

@@ -15,16 +15,20 @@ use std::path::{Path, PathBuf};
 const NAME: &str = "reference.toml";
 
 /// What stands in it.
-const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", findings = [\"clipped\"], \
-                    k = 0.51 or k = { value = 0.51, within = 0.02 }, slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, \
+const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", \
+                    findings = [\"clipped\"], \
+                    k = 0.51 or k = { value = 0.51, within = 0.02 }, slap_down_speed_m_s, \
+                    angular_velocity_rad_s, flight_time_s, \
                     impact_velocity_m_s, predicted_speed_m_s";
 
 /// Recordings of `fixtures/examples` and their cask files by their names.
 macro_rules! fixtures {
     ($($stem:literal $ending:literal),*) => {
         [$(
-            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/examples/", $stem, $ending)).as_slice()),
-            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/examples/", $stem, ".toml")).as_slice()),
+            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/examples/", $stem,
+                $ending)).as_slice()),
+            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/examples/", $stem,
+                ".toml")).as_slice()),
         )*]
     };
 }

@@ -192,7 +192,8 @@ fn every_slip_is_one_message_with_its_key() {
     let missing = of("[cask]\nmass_kg = 1\nlength_m = 1\n").unwrap_err().to_string();
     assert!(missing.contains("the scene file has no [drop]"), "{missing}");
     let long = format!(
-        "{SHORT}[recording]\nbefore_s = 60\n[[channel]]\nname = \"A\"\nend = \"first\"\nsample_rate_hz = 5e6\n"
+        "{SHORT}[recording]\nbefore_s = 60\n[[channel]]\nname = \"A\"\nend = \"first\"\nsample_rate_hz = \
+         5e6\n"
     );
     assert!(of(&long).unwrap_err().to_string().contains("more than 20000000 samples"));
 }

@@ -13,9 +13,12 @@ use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::{Style, verdict_word};
 use std::collections::{BTreeSet, HashMap};
 
-const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1/u². Its interval is that of one drop: repeats share what is \
-                       stated of cask, angle and sensors, and no mean makes that smaller. Scatter: the standard deviation. χ² of the \
-                       stated intervals says whether it is as large as they say; where repeats share most of what is uncertain it is smaller.";
+const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1/u². Its interval is that of \
+                       one drop: repeats share what is \
+                       stated of cask, angle and sensors, and no mean makes that smaller. Scatter: the \
+                       standard deviation. χ² of the \
+                       stated intervals says whether it is as large as they say; where repeats share most of \
+                       what is uncertain it is smaller.";
 
 /// The page.
 pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
@@ -48,7 +51,8 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
             version: Program::this().version.to_owned(),
             heading: batch.source.clone(),
             about: format!("{} recordings · {} casks · {angles} angles", batch.rows.len(), series.len()),
-            footer: "campaign.csv and campaign.json hold every input and result of every recording as numbers; each recording has its own report.",
+            footer: "campaign.csv and campaign.json hold every input and result of every recording as \
+                     numbers; each recording has its own report.",
             style: include_str!("../live/campaign.css"),
             script: include_str!("../live/campaign.js"),
             data: data(batch),
@@ -206,11 +210,9 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")));
     let more = (shown.len() < batch.rows.len())
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
-    Chapter::new("Recordings")
-        .with_all(more)
-        .with(table)
-        .with(ChapterPart::note(
-            "E_n against the other repeats at the angle; within ±1 they agree. Peaks: largest deceleration of the struck end of the rigid \
+    Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(
+        "E_n against the other repeats at the angle; within ±1 they agree. Peaks: largest deceleration \
+             of the struck end of the rigid \
              body, and energies absorbed, in the first and the second impact.",
-        ))
+    ))
 }

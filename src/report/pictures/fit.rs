@@ -30,7 +30,8 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
         panel(analysis, "Fit of the flight", "velocity, m/s", lines),
         panel(analysis, "What the fit leaves", "residual, m/s", left),
     ];
-    let caption = "The window of the flight that k and speed rest on. Above: each velocity as measured, the plateau with its modes \
+    let caption = "The window of the flight that k and speed rest on. Above: each velocity as measured, the \
+                   plateau with its modes \
                    fitted to it, and the plateau alone (with its drift). Below: measured minus fitted.";
     Plate::new("fit", "Fit of the flight", caption).live().picture(&panels)
 }

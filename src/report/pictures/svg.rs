@@ -50,7 +50,8 @@ impl Svg {
         let (colour, stroke, points) = (line.colour, line.stroke, places(&line.points));
         let opacity = opacity("stroke", line.opacity);
         self.put(format_args!(
-            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{stroke}\"{opacity}{pieces} points=\"{points}\"/>"
+            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{stroke}\"{opacity}{pieces} \
+             points=\"{points}\"/>"
         ));
     }
 
@@ -83,7 +84,8 @@ impl Svg {
         };
         let text = escaped(text);
         self.put(format_args!(
-            "<text x=\"{x:.0}\" y=\"{y:.0}\" dy=\".35em\" text-anchor=\"{anchor}\" fill=\"{INK}\" {attributes}>{text}</text>"
+            "<text x=\"{x:.0}\" y=\"{y:.0}\" dy=\".35em\" text-anchor=\"{anchor}\" fill=\"{INK}\" \
+             {attributes}>{text}</text>"
         ));
     }
 
@@ -91,7 +93,8 @@ impl Svg {
     pub(super) fn finished(self, (width, height): (f64, f64), title: &str) -> String {
         let size = format!("width=\"{:.0}\" height=\"{:.0}\"", width / 2.0, height / 2.0);
         format!(
-            "<svg {size} role=\"img\" viewBox=\"0 0 {width:.0} {height:.0}\" xmlns=\"http://www.w3.org/2000/svg\" \
+            "<svg {size} role=\"img\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+             xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"Helvetica, Arial, sans-serif\">\n<title>{}</title>\n\
              <rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n{}</svg>\n",
             escaped(title),

@@ -80,7 +80,8 @@ fn larger_sentence(study: &Study) -> Option<String> {
     let words: Vec<String> = [BodyModel::Rod, BodyModel::Body].into_iter().filter_map(most).collect();
     (!words.is_empty()).then(|| {
         format!(
-            "While the first end strikes once. Where it strikes again the speed jumps from angle to angle and can be larger: {}.",
+            "While the first end strikes once. Where it strikes again the speed jumps from angle to angle \
+             and can be larger: {}.",
             words.join(", ")
         )
     })

@@ -19,14 +19,20 @@ const MOST_ROWS_AHEAD: usize = 40;
 
 /// What the models leave out.
 const LIMITS: [&str; 5] = [
-    "One plane, a rigid cask and a rigid target; an impact takes no time. A real first impact of some milliseconds lets the cask turn and fall \
+    "One plane, a rigid cask and a rigid target; an impact takes no time. A real first impact of some \
+     milliseconds lets the cask turn and fall \
      while it lasts.",
-    "k is given, not predicted. That of a real cask varies with the angle: do not carry it from one angle to another.",
-    "\"Rough\" assumes that the first end does not slide; the friction that this needs stands with the predictions. Where the target gives \
+    "k is given, not predicted. That of a real cask varies with the angle: do not carry it from one angle to \
+     another.",
+    "\"Rough\" assumes that the first end does not slide; the friction that this needs stands with the \
+     predictions. Where the target gives \
      less, the Coulomb coefficient is the better input.",
-    "For k = 0 the closed form of [P] Table 2 holds the first end on the target whatever the contact force. Where the force would have to \
-     pull, the first end lifts off and the speeds here are those of the flight; the closed form stands beside them.",
-    "A critical band is counted from the largest value of its own curve. It says nothing about what the cask withstands.",
+    "For k = 0 the closed form of [P] Table 2 holds the first end on the target whatever the contact force. \
+     Where the force would have to \
+     pull, the first end lifts off and the speeds here are those of the flight; the closed form stands \
+     beside them.",
+    "A critical band is counted from the largest value of its own curve. It says nothing about what the cask \
+     withstands.",
 ];
 
 /// The whole document.
@@ -49,8 +55,10 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             heading: format!("{name}: slap-down prediction"),
             about: file.path.display().to_string(),
-            footer: "The drop angle is the inclination of the cask's axis above the horizontal at first contact. The first end is the low one, \
-                     the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on slap-down impacts of packagings \
+            footer: "The drop angle is the inclination of the cask's axis above the horizontal at first \
+                     contact. The first end is the low one, \
+                     the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on \
+                     slap-down impacts of packagings \
                      (PATRAM).",
             style: include_str!("../prediction.css"),
             ..Frame::default()

@@ -28,7 +28,8 @@ impl Column {
                     rate.name,
                     format!("{value} {unit}").trim()
                 ),
-                "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording",
+                "write the true `sample_rate_hz` in this channel of the cask file: it overrides the \
+                 recording",
             ));
         }
         let nearest = self.rates.iter().map(|rate| rate.level).min().unwrap_or(0);

@@ -49,15 +49,21 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
 
 const HEADING: &str = "Acceptance of dropcheck on this machine";
 
-const RUNGS: &str = "The rungs of the reconstruction read single channels, planar motion, the flight with its modes, or fit all inputs jointly. Random \
-                     sound drops whose stated values are off within their tolerances (in the picture they are exact): what each scene, of which a \
-                     drop may be several, takes; then, for each rung taken, what every rung says of the same drops.";
+const RUNGS: &str = "The rungs of the reconstruction read single channels, planar motion, the flight with \
+                     its modes, or fit all inputs jointly. Random \
+                     sound drops whose stated values are off within their tolerances (in the picture they \
+                     are exact): what each scene, of which a \
+                     drop may be several, takes; then, for each rung taken, what every rung says of the same \
+                     drops.";
 
-const LIMITS: &str = "Recordings: of another program. Campaign: random sound drops, the 95th percentile of each error in half-widths of its interval. \
-                      Map: the damages. Held: the share of intervals that hold the truth. All else: the 95th percentile of the error of what the \
+const LIMITS: &str = "Recordings: of another program. Campaign: random sound drops, the 95th percentile of \
+                      each error in half-widths of its interval. \
+                      Map: the damages. Held: the share of intervals that hold the truth. All else: the 95th \
+                      percentile of the error of what the \
                       program takes.";
 
-const ACCEPTANCE_FOOT: &str = "Errors are against truths from outside the methods: drops that another program simulated, simulated drops that share no formula with \
+const ACCEPTANCE_FOOT: &str = "Errors are against truths from outside the methods: drops that another \
+                               program simulated, simulated drops that share no formula with \
      the analysis, closed forms. Accepted: every limit holds. A limit that cannot be measured does not hold.";
 
 /// What a terminal shows: the limits, then the outcome.
@@ -73,7 +79,8 @@ fn banner(trial: &Trial) -> Chapter {
     let (style, word, words) = if trial.is_accepted() {
         let silent = hidden(trial).len();
         let words = format!(
-            "All {all} limits hold, on simulated drops; {silent} damages can stay silent and are for the site."
+            "All {all} limits hold, on simulated drops; {silent} damages can stay silent and are for the \
+             site."
         );
         (Style::Green, "ACCEPTED", words)
     } else {
@@ -149,7 +156,8 @@ fn choice(trial: &Trial) -> String {
         }
     };
     format!(
-        "Use what the program takes: 95 of 100 drops are within {} % of the speed and {} of k, {} ms after the file is opened ({reading} of them \
+        "Use what the program takes: 95 of 100 drops are within {} % of the speed and {} of k, {} ms after \
+         the file is opened ({reading} of them \
          reading).{beyond} {others} as near in both. The fastest, {}, saves {} ms and is {} % off.",
         significant(speed.p95_error, 2),
         significant(k.p95_error, 2),
@@ -167,7 +175,8 @@ fn by_class(trial: &Trial) -> ReportTable {
     let mut table = ReportTable::of(&rows)
         .class("many")
         .caption(
-            "95th percentile of the error, % of the slap-down speed, and of k as it is; the median half-width that is promised, % of the \
+            "95th percentile of the error, % of the slap-down speed, and of k as it is; the median \
+             half-width that is promised, % of the \
              intervals that hold the truth; no answer in so many drops.",
         )
         .chosen(|row| row.class == ALL_CLASSES)

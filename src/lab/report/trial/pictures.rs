@@ -149,8 +149,10 @@ const FATES: [(TrialFate, Colour, &str); 4] = [
 pub(super) fn failures(trial: &Trial) -> Picture {
     let drops = trial.maps.first().and_then(|map| map.sizes.first()).map_or(0, |size| size.drops.len());
     let caption = format!(
-        "A row a damage with its least and greatest size, from harmless at the left to gross at the right, in each size {drops} stripes, a drop each: \
-         whether speed and k lie inside their intervals. At the right the size from which on some drop is silent, warned of or refused; then the \
+        "A row a damage with its least and greatest size, from harmless at the left to gross at the right, \
+         in each size {drops} stripes, a drop each: \
+         whether speed and k lie inside their intervals. At the right the size from which on some drop is \
+         silent, warned of or refused; then the \
          largest error, in half-widths of the interval."
     );
     let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
