@@ -10,9 +10,9 @@ use crate::{lab, report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = r#"Without --campaign and --scene: whether the program is accepted on this machine (exit 1: not):
-speed against accuracy, what becomes of damages, and every limit beside what was found.
---quick takes a minute. reference.toml has a table a recording:
+const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not
+(exit status 1): speed against accuracy, what becomes of damages, and every limit beside what
+was found. --quick takes a minute. reference.toml has a table a recording:
 
   ["drop7.mcap"]               # beside it drop7.toml, or cask = "anf18.toml"
   verdict = "pass"
