@@ -45,6 +45,8 @@ def test_the_fields_of_a_result() -> None:
 
 
 def test_curves_are_arrays() -> None:
+    pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
     result = dropcheck.analyze(EXAMPLES / "anf18-json.mcap", EXAMPLES / "anf18-json.toml")
     curves, table = result.curves, result.curves_frame()
     assert {"A1", "A1.time_s", "A1.filtered_m_s2", "A1.velocity_m_s"} <= curves.keys()

@@ -4,8 +4,10 @@
 //! The parser, the form that `init` writes, and the table in docs/formats.md are made from these rows.
 
 use super::SAMPLE_RATES_HZ;
+#[cfg(feature = "lab")]
+pub(crate) use super::key::flag;
 pub use super::key::{Allowed, FILL_IN, Key, KeyTable, REQUIRED, Takes};
-pub(crate) use super::key::{flag, number, text};
+pub(crate) use super::key::{number, text};
 pub use super::tolerances::{CORRECTIONS, TOLERANCE};
 
 /// Tables that stand as the value of a key: no line of a file begins them.

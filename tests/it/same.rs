@@ -194,10 +194,14 @@ fn is_alike(old: &str, new: &str, tolerance: f64) -> bool {
         })
 }
 
+/// Where whole answers are kept.
+fn kept_answers() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("same")
+}
+
 /// The whole answer of that name as it was when a run last found it in the table.
 fn kept(name: &str, what: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("same");
-    folder.join(format!("{}.{what}", name.replace('/', "_")))
+    kept_answers().join(format!("{}.{what}", name.replace('/', "_")))
 }
 
 /// Where an answer differs from the kept one, if that is the one of the table.
@@ -213,7 +217,7 @@ fn hold(table: &str, said: &[Said]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/same").join(format!("{table}.tsv"));
     let stored = Table::read(&fs::read_to_string(&path).unwrap_or_default());
     let differences: Vec<Option<String>> = said.iter().map(|said| stored.difference(said)).collect();
-    fs::create_dir_all(kept("", "").parent().expect("a folder")).expect("the target folder");
+    fs::create_dir_all(kept_answers()).expect("the target folder");
     for (said, difference) in said.iter().zip(&differences) {
         if difference.is_none() || is_renewed() {
             fs::write(kept(&said.name, "result"), &said.result).expect("the target folder");

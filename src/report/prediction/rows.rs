@@ -83,13 +83,13 @@ impl Varying {
 pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterPart> {
     let varying = Varying::of(all);
     // The row in between stands for those left out.
-    let rows: Vec<Option<&PredictionRow>> = match medium {
-        Medium::Terminal if all.len() > MOST_ROWS => {
-            let [first, last] = [&all[..ENDS], &all[all.len() - ENDS..]].map(|end| end.iter().map(Some));
-            first.chain([None]).chain(last).collect()
-        }
-        Medium::Terminal => all.iter().map(Some).collect(),
-        _ => all.iter().take(MOST_ON_PAGE).map(Some).collect(),
+    let rows: Vec<Option<&PredictionRow>> = if medium != Medium::Terminal {
+        all.iter().take(MOST_ON_PAGE).map(Some).collect()
+    } else if all.len() > MOST_ROWS {
+        let [first, last] = [&all[..ENDS], &all[all.len() - ENDS..]].map(|end| end.iter().map(Some));
+        first.chain([None]).chain(last).collect()
+    } else {
+        all.iter().map(Some).collect()
     };
     let cell =
         |words: fn(&PredictionRow) -> Words| move |row: &Option<_>| row.map_or_else(|| "…".into(), words);
