@@ -79,7 +79,7 @@ impl Analysed {
     /// Of each channel its name and its arrays by their names.
     fn curves<'py>(&self, py: Python<'py>) -> Vec<(String, BTreeMap<&'static str, Array<'py>>)> {
         let array = |values: &Vec<f64>| PyArray1::from_slice(py, values);
-        let of = |curve: &dropcheck::data::ChannelCurve| {
+        let curve_arrays = |curve: &dropcheck::data::ChannelCurve| {
             let arrays = BTreeMap::from([
                 ("time_s", array(&curve.time_s)),
                 ("raw_m_s2", array(&curve.raw_m_s2)),
@@ -88,7 +88,7 @@ impl Analysed {
             ]);
             (curve.channel.clone(), arrays)
         };
-        self.0.curves.channels.iter().map(of).collect()
+        self.0.curves.channels.iter().map(curve_arrays).collect()
     }
 
     /// The motion of the rigid body, array by array as in `curves.csv`.

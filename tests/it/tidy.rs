@@ -119,8 +119,8 @@ fn files_say_what_they_do_and_fit_a_window() {
 }
 
 #[test]
-fn no_closure_of_tests_is_called_of() {
-    for file in files_below(&root().join("tests"), "rs") {
+fn no_closure_is_called_of() {
+    for file in ["src", "tests", "python/src"].map(|name| files_below(&root().join(name), "rs")).concat() {
         let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));
         assert!(!code.contains("let of ="), "{}: name what the closure gives", file.display());
     }

@@ -86,9 +86,9 @@ fn a_force_that_turns_its_direction_at_first_is_no_clock() {
     let held = driven(rate_hz, 0.020_03, (-0.5, 0.9), 2, &holds);
     let slid = driven(rate_hz, 0.020_03, (0.3, 0.0), 3, &|t| 1.0 - holds(t));
     let second = held.iter().zip(&slid).map(|(a, b)| a + b).collect();
-    let of =
+    let at_rate =
         |name, end, force| Signal { sample_rate_hz: rate_hz, noise_m_s2: 0.7, ..signal(name, end, force) };
-    let both = [of("A1", End::First, first), of("A2", End::Second, second)];
+    let both = [at_rate("A1", End::First, first), at_rate("A2", End::Second, second)];
     let onset = answers(&both, 0.020_14).pop().expect("an answer");
     assert!(onset.delay_s.abs() <= 2.0 * onset.u_s + 3e-5, "{onset:?}");
 }

@@ -224,7 +224,7 @@ fn samples_of_several_sensors_are_refused_or_picked() {
             file.new_dataset_builder().with_data(&samples).create("x").map(drop)
         })
     };
-    let of = |made: &Made, is: Option<&str>| {
+    let rows_of = |made: &Made, is: Option<&str>| {
         let mut cask = cask_file(&["/x"]);
         cask.channels[0].rows = is.map(|is| RowsOf { column: "sensor_id".into(), is: is.into() });
         read(&made.path, &cask, Limits::default(), &|_| {}).map(|mut read| read.channels.remove(0))
@@ -234,10 +234,10 @@ fn samples_of_several_sensors_are_refused_or_picked() {
     for part in ["by sensor_id = 3, 7", "where = { column = \"sensor_id\", is = \"3\" }"] {
         assert!(message.contains(part), "{message}");
     }
-    assert!(of(&two, Some("5")).is_err());
-    assert!(of(&by(&|i| i), Some("5")).unwrap_err().to_string().contains("more than 64"));
+    assert!(rows_of(&two, Some("5")).is_err());
+    assert!(rows_of(&by(&|i| i), Some("5")).unwrap_err().to_string().contains("more than 64"));
     for (is, expected) in [("3", 0.0), ("7", 1.0)] {
-        let read = of(&two, Some(is)).unwrap();
+        let read = rows_of(&two, Some(is)).unwrap();
         assert_eq!(values(&read), vec![expected; 50]);
         assert!((read.uniform.sample_rate_hz - 1000.0).abs() < 1e-6);
     }
@@ -246,7 +246,7 @@ fn samples_of_several_sensors_are_refused_or_picked() {
     assert_eq!((listed.len(), listed[1].samples, listed[1].range), (2, Some(50), Some((1.0, 1.0))));
     // One sensor, two that follow one another, and as many as samples.
     for ids in [&(|_| 1) as &dyn Fn(i32) -> i32, &|i| i / 50, &|i| i] {
-        let told = of(&by(ids), None).map_or_else(|error| error.to_string(), |_| String::new());
+        let told = rows_of(&by(ids), None).map_or_else(|error| error.to_string(), |_| String::new());
         assert!(!told.contains("by turns"), "{told}");
     }
 }

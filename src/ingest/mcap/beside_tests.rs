@@ -175,10 +175,10 @@ fn more_sensors_than_are_told_apart_give_none() {
             }
         });
         let mut cask = cask_file(&["/x.a"]);
-        let of = |cask: &CaskFile| told(&bytes, cask).map(|told| told.1);
-        let asked = of(&cask).unwrap_err();
+        let samples_by = |cask: &CaskFile| told(&bytes, cask).map(|told| told.1);
+        let asked = samples_by(&cask).unwrap_err();
         cask.channels[0].rows = Some(RowsOf { column: "sensor".into(), is: "3".into() });
-        (asked, of(&cask))
+        (asked, samples_by(&cask))
     };
     let (asked, picked) = sensors(64);
     assert!(asked.contains("where") && picked == Ok(vec![3.0, 67.0, 131.0]), "{asked}");

@@ -68,8 +68,11 @@ fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
 
 #[test]
 fn a_zero_stamp_falls_back_to_the_log_time() {
-    let of = |stamp: Value| MessageTime::of(Some(&stamp), 7);
-    assert_eq!(of(Value::Stamp(0)), MessageTime { ns: 7, origin: TimeOrigin::LogTimeForBadStamp, log_ns: 7 });
-    assert_eq!(of(Value::Stamp(3)), MessageTime { log_ns: 7, ..stamp(3) });
-    assert_eq!(of(Value::Missing), MessageTime { ns: 7, origin: TimeOrigin::LogTime, log_ns: 7 });
+    let time = |stamp: Value| MessageTime::of(Some(&stamp), 7);
+    assert_eq!(
+        time(Value::Stamp(0)),
+        MessageTime { ns: 7, origin: TimeOrigin::LogTimeForBadStamp, log_ns: 7 }
+    );
+    assert_eq!(time(Value::Stamp(3)), MessageTime { log_ns: 7, ..stamp(3) });
+    assert_eq!(time(Value::Missing), MessageTime { ns: 7, origin: TimeOrigin::LogTime, log_ns: 7 });
 }

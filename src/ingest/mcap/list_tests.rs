@@ -46,15 +46,15 @@ fn every_signal_of_an_imu_and_of_a_protobuf_block_is_listed() {
         message(writer, id, ZERO_NS, b"\0\0\0\0");
     });
     let listing = listing(&bytes);
-    let of = |source: &str| listing.channels.iter().find(|channel| channel.source == source).unwrap();
-    let z = of("/imu.linear_acceleration.z");
+    let listed = |source: &str| listing.channels.iter().find(|channel| channel.source == source).unwrap();
+    let z = listed("/imu.linear_acceleration.z");
     assert_eq!((z.kind.as_str(), z.samples, z.unit.as_deref()), ("number", Some(20), Some("m/s^2")));
     assert_eq!((z.range, z.start_s), (Some((0.0, 19.0)), Some(0.0)));
     assert!((z.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6);
     assert!(listing.channels.iter().all(|channel| !channel.source.ends_with("covariance")));
-    let samples = of("/daq.samples");
+    let samples = listed("/daq.samples");
     assert_eq!((samples.samples, samples.start_s), (Some(2), Some(0.001)));
-    assert!(of("/log").unreadable.as_deref().is_some_and(|reason| reason.contains("ros1")));
+    assert!(listed("/log").unreadable.as_deref().is_some_and(|reason| reason.contains("ros1")));
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn a_mark_of_an_overrange_is_no_value_of_the_range() {
 
 #[test]
 fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
-    let of = |stamps_ns: &[i64]| {
+    let listed = |stamps_ns: &[i64]| {
         let bytes = closed(WriteOptions::new(), |writer| {
             let id = channel(writer, "/imu", "cdr", ("sensor_msgs/msg/Imu", "ros2msg", IMU_TEXT.as_bytes()));
             for (log_ns, stamp_ns) in (ZERO_NS..).step_by(1_000_000).zip(stamps_ns) {
@@ -82,10 +82,10 @@ fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
         let listing = listing(&bytes);
         (listing.channels[0].samples, listing.channels[0].duration_s, listing.facts.contains_key("start"))
     };
-    assert_eq!(of(&[0, 2_000_000, 4_000_000]), (Some(3), Some(0.004), false));
-    assert_eq!(of(&[0, 0, 0]), (Some(3), Some(0.002), true));
-    assert_eq!(of(&[0]), (Some(1), None, true));
-    assert_eq!(of(&[ZERO_NS, ZERO_NS + 5_000_000]), (Some(2), Some(0.005), true));
+    assert_eq!(listed(&[0, 2_000_000, 4_000_000]), (Some(3), Some(0.004), false));
+    assert_eq!(listed(&[0, 0, 0]), (Some(3), Some(0.002), true));
+    assert_eq!(listed(&[0]), (Some(1), None, true));
+    assert_eq!(listed(&[ZERO_NS, ZERO_NS + 5_000_000]), (Some(2), Some(0.005), true));
 }
 
 #[test]

@@ -192,13 +192,13 @@ impl StatedRate {
     pub(super) fn statement(&self, told_hz: f64) -> Option<Statement> {
         /// Units are a thousandfold apart.
         const ALIKE: f64 = 0.1;
-        let of =
+        let statement =
             |unit: &str| Statement::of(&self.name, format!("{} {unit}", self.value).trim(), self.meaning);
         let is_bare = self.unit.is_none() && self.meaning == Meaning::Interval(1.0);
         let is_told = |stated: &Statement| (stated.rate_hz / told_hz - 1.0).abs() < ALIKE;
-        let as_told = || ["s", "ms", "us", "ns"].into_iter().filter_map(of).find(is_told);
+        let as_told = || ["s", "ms", "us", "ns"].into_iter().filter_map(statement).find(is_told);
         let told = if is_bare { as_told() } else { None };
-        told.or_else(|| of(self.unit.as_deref().unwrap_or_default()))
+        told.or_else(|| statement(self.unit.as_deref().unwrap_or_default()))
     }
 }
 

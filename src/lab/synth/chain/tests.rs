@@ -141,16 +141,16 @@ fn the_anti_alias_filter_takes_away_what_would_fold() {
 #[test]
 fn the_same_seed_gives_the_same_bits_and_no_source_moves_another() {
     let noisy = || with(|c| (c.white_noise_m_s2, c.pink_noise_m_s2) = (1.0, 1.0));
-    let of = |seed, seat: SceneChannel| {
+    let samples_of = |seed, seat: SceneChannel| {
         let mut scene = example::anf18();
         (scene.seed, scene.channels) = (seed, vec![seat]);
         through(&scene, &|_, _| 0.0).samples
     };
-    assert_eq!(of(1, noisy()), of(1, noisy()));
-    assert_ne!(of(1, noisy()), of(2, noisy()));
+    assert_eq!(samples_of(1, noisy()), samples_of(1, noisy()));
+    assert_ne!(samples_of(1, noisy()), samples_of(2, noisy()));
     let mut hum = noisy();
     hum.chain.hum = Some((1.0, 50.0));
-    for (with_hum, without) in of(1, hum).iter().zip(of(1, noisy())) {
+    for (with_hum, without) in samples_of(1, hum).iter().zip(samples_of(1, noisy())) {
         assert!((with_hum - without).abs() <= 1.0 + 1e-6);
     }
 }
