@@ -58,7 +58,7 @@ mod tests {
         assert_eq!(said("tolerance of drop angle").origin, "cask file");
         assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
         assert_eq!(said("tolerance of inertia").origin, "default");
-        assert_eq!(settings.len(), 13);
+        assert_eq!(settings.len(), TOLERANCES.len());
     }
 
     #[test]
