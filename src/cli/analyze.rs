@@ -78,16 +78,21 @@ impl SwitchedOff {
         Self { without: record.switched_off().map(str::to_owned).collect() }
     }
 
+    /// Whether the correction of this key is among them.
+    fn names(&self, key: &str) -> bool {
+        self.without.iter().any(|without| without == key)
+    }
+
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
         for (key, made) in cask_file.corrections.by_key() {
-            *made &= !self.without.iter().any(|without| without == key);
+            *made &= !self.names(key);
         }
     }
 
     /// Says so in the result, for the cask file and its SHA-256 do not.
     pub fn in_settings(&self, result: &mut DropResult) {
-        for key in CORRECTIONS.iter().filter(|key| self.without.iter().any(|without| without == key.name)) {
+        for key in CORRECTIONS.iter().filter(|key| self.names(key.name)) {
             result.settings.push(Setting {
                 name: format!("correction {}", key.name),
                 value: "switched off".into(),

@@ -1,10 +1,8 @@
 //! The nouns that pass between stages as tests need them: plain ones, of which a test names what it is about
 //! and leaves the rest (`Signal { noise_m_s2: 1.0, ..example::signal(1e4, force) }`).
 
-use super::{At, Mode};
 use super::{
-    Axis, Body, BodyModel, Cask, Channel, Coupling, End, Events, FlightFit, Plateau, Samples, Signal,
-    block_inertia_kg_m2,
+    At, Axis, Body, BodyModel, Cask, Channel, Coupling, End, Events, FlightFit, Plateau, Samples, Signal,
 };
 
 /// A transverse signal of the first end from 0 s on, without noise, spans or a free fall before it.
@@ -67,8 +65,7 @@ pub(crate) fn plateau(channel: &str, velocity_step_m_s: f64) -> Plateau {
 
 /// A flight between two times without modes or drift.
 pub(crate) fn flight(from_s: f64, to_s: f64, plateaus: Vec<Plateau>) -> FlightFit {
-    let modes = Vec::<Mode>::new();
-    FlightFit { from_s, to_s, plateaus, modes, drift: false, candidates: vec![], strike: None }
+    FlightFit { from_s, to_s, plateaus, modes: vec![], drift: false, candidates: vec![], strike: None }
 }
 
 /// First contact and slap-down known exactly.
@@ -82,16 +79,7 @@ pub(crate) fn events(first_contact_s: f64, slap_down_s: f64) -> Events {
 
 /// A uniform cask; a section of 0 makes it the thin rod.
 pub(crate) fn cask(mass_kg: f64, length_m: f64, height_m: f64) -> Cask {
-    Cask {
-        name: "C".into(),
-        mass_kg,
-        length_m,
-        height_m,
-        width_m: None,
-        cog_m: length_m / 2.0,
-        inertia_kg_m2: block_inertia_kg_m2(mass_kg, length_m, height_m),
-        is_body: height_m > 0.0,
-    }
+    Cask::block("C", mass_kg, length_m, height_m)
 }
 
 /// The body of that cask.
