@@ -1,28 +1,40 @@
-//! Long work to a bar on standard error, where that is a terminal.
+//! Long work to a bar on standard error where that is a terminal, else to a line now and then.
 
 use crate::ingest::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Parts of the bar; finer than a terminal shows.
 const PARTS: u32 = 1000;
 
-/// Does `work`, which tells its progress from 0 to 1, beside a bar that hides itself where standard error is
-/// no terminal.
+/// Work that is done within this time needs no word in a log.
+const SOON: Duration = Duration::from_secs(3);
+
+/// Does `work`, which tells its progress from 0 to 1, beside a bar; where standard error is no terminal long
+/// work has a line each tenth.
 pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     let bar = ProgressBar::new(u64::from(PARTS));
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} %") {
         bar.set_style(style);
     }
     bar.set_message(crate::report::printable(what));
+    let in_log = !std::io::stderr().is_terminal();
+    let told = AtomicU64::new(0);
     let done = work(&|fraction: f64| {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "cut to 0 to 1000 before the cast"
         )]
-        bar.set_position((fraction.clamp(0.0, 1.0) * f64::from(PARTS)) as u64);
+        let parts = (fraction.clamp(0.0, 1.0) * f64::from(PARTS)) as u64;
+        bar.set_position(parts);
+        let tenth = 10 * parts / u64::from(PARTS);
+        if in_log && bar.elapsed() > SOON && told.fetch_max(tenth, Ordering::Relaxed) < tenth {
+            // There is no one left to tell where standard error is closed.
+            let _ = writeln!(anstream::stderr(), "{what}: {} %", 10 * tenth);
+        }
     });
     bar.finish_and_clear();
     done
