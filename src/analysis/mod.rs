@@ -15,7 +15,7 @@ mod slips;
 
 pub use setup::sticking;
 
-use crate::data::{Analysis, CaskFile, Events, Finding, IssueCode, Recording};
+use crate::data::{Analysis, CaskFile, Events, Finding, Recording};
 use crate::{ingest, judge};
 use comparison::Measured;
 use flight::Flown;
@@ -67,9 +67,7 @@ fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>
 fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
     let (mut findings, mut found) = flown(recording, file, false);
     // From steep angles a cask may strike later than its angle has it.
-    if findings.iter().any(|f| f.code == IssueCode::NoSlapDown)
-        && found.as_ref().is_some_and(|f| f.impact.goes_on)
-    {
+    if found.as_ref().is_some_and(|f| f.events.slap_down.is_none() && f.impact.goes_on) {
         let farther = flown(recording, file, true);
         if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
             (findings, found) = farther;
