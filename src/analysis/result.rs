@@ -8,7 +8,7 @@ use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
     Finding, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice, Prediction, Quantities, Recording,
-    Rung, Setting, Signal, SlapDown,
+    Rung, Setting, Severity, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -65,13 +65,20 @@ pub(super) fn of(
     result.settings.splice(0..0, of_curves(file, &events, effect));
     match reached {
         Reached::Impact => {}
-        Reached::Flown(flown) => result.flight = Some(flown.flight),
+        Reached::Flown(flown) => {
+            result.flight = Some(flown.flight);
+            // A warning took the numbers away: what the motion misses is the reason.
+            if result.quality.iter().all(|f| f.severity < Severity::Error) {
+                result.reconstruction = Some(flown.reconstruction.without_numbers());
+            }
+        }
         Reached::Measured(flown, measured) => {
             result.reconstruction = Some(flown.reconstruction);
             result.predictions = predictions(file, Some((&flown.quantities, measured.model.as_ref())));
             result.model = measured.model;
             result.comparison = measured.comparison;
             result.budget = flown.budget;
+            result.untested = flown.untested;
             result.flight = Some(flown.flight);
             motion = Some(flown.motion.curve);
         }
@@ -136,6 +143,7 @@ fn result(
         channels,
         flight: None,
         budget: Vec::new(),
+        untested: Vec::new(),
         settings: of_cask_file(file, &events),
         keys: serde_json::Value::Null,
         cask_text: file.text.clone(),

@@ -124,3 +124,14 @@ pub struct ReconstructionChoice {
     /// What the joint fit moved, largest first.
     pub adjustments: Vec<Adjustment>,
 }
+
+impl ReconstructionChoice {
+    /// The choice without the speed and the k of its rungs, where they are not to be stated.
+    #[must_use]
+    pub fn without_numbers(mut self) -> Self {
+        for candidate in &mut self.candidates {
+            (candidate.speed, candidate.k) = (None, None);
+        }
+        self
+    }
+}

@@ -93,8 +93,8 @@ pub enum ChannelFinding {
     Aliasing { share: f64, sample_rate_hz: f64 },
     /// The other transverse channels and the closures speak against it, and it is left out: speed and k with
     /// it and without.
-    #[error("disagrees with the other channels and is left out: without it everything closes at {}; with it \
-             there is {}; check its sensitivity, polarity, position and \
+    #[error("disagrees with the other channels and is left out: without it everything is consistent, at {}; \
+             with it there is {}; check its sensitivity, polarity, position and \
              cable", numbers(.without.0, .without.1), numbers(.with.0, .with.1))]
     LeftOut { with: Numbers, without: Numbers },
     /// The samples of another channel.
@@ -187,15 +187,15 @@ pub enum ChannelFinding {
     OffLine { off_m_s: f64, u_m_s: f64 },
     /// No force from one time to another after first contact, and then again.
     #[error("feels no force from {:.1} to {:.1} ms after first contact, and then again: the first end left \
-             the target and was struck once more, or something strikes the cask; k, rotation and flight are \
-             those after it", 1e3 * .from_s, 1e3 * .to_s)]
+             the target and was struck once more, or something strikes the cask; k and the slap-down speed \
+             are not determined", 1e3 * .from_s, 1e3 * .to_s)]
     ForceRests { from_s: f64, to_s: f64 },
     /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in
     /// spreads of what ringing leaves.
     #[error("shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what \
              ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity \
-             steps mix what was before with what came after, and k and the slap-down speed may be off by \
-             more than their intervals; fasten the contents, or read the speed from the \
+             steps mix what was before with what came after, so k and the slap-down speed are not \
+             determined; fasten the contents, or read the speed from the \
              film", times_ms(.after_s))]
     Struck { after_s: Vec<f64>, far: f64 },
     /// The channel answers before the first end is struck.
@@ -216,7 +216,7 @@ pub enum ChannelFinding {
 }
 
 impl ChannelFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         use Severity::{Error, Note, Warning};
         match *self {

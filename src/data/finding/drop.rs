@@ -16,7 +16,7 @@ pub enum DropFinding {
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
     #[error(
         "{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: \
-         whether the recording shows one cannot be told; record with {least_hz:.0} Hz and more, or check \
+         too few to tell whether the recording shows one; record with {least_hz:.0} Hz and more, or check \
          `sample_rate_hz`"
     )]
     TooSlow { rate_hz: f64, samples: f64, least_hz: f64 },
@@ -32,7 +32,7 @@ pub enum DropFinding {
              impact", 1e3 * .after_s)]
     NoSlapDown { after_s: f64 },
     /// The flight is too short to be fitted.
-    #[error("the free flight between the impacts is too short to be told from them and from ringing")]
+    #[error("the free flight between the impacts is too short to be separated from them and from ringing")]
     ShortFlight,
     /// Another drop, so long after the one that was analysed.
     #[error(
@@ -81,7 +81,7 @@ pub enum DropFinding {
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
-             slap-down speed may be off by more than their intervals", .step_m_s.abs(), 1e3 * .after_s)]
+             slap-down speed are not determined", .step_m_s.abs(), 1e3 * .after_s)]
     Blow { step_m_s: f64, after_s: f64 },
     /// The target pushes L through the flight.
     #[error(
@@ -96,13 +96,13 @@ pub enum DropFinding {
     NoFlight { flight_time: Estimate },
     /// The flight is too short to tell its modes from one another.
     #[error("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to \
-             it ({} Hz): they may stand for a contact that was not over, and the velocity steps, k and the \
-             slap-down speed be off by more than their intervals; look at the curves, and state only what \
-             they show", 1e3 * .flight_s, .modes_hz.len(), joined(.modes_hz, |f| format!("{f:.0}"), ", "))]
+             it ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are \
+             not determined; look at the curves, and state only what they \
+             show", 1e3 * .flight_s, .modes_hz.len(), joined(.modes_hz, |f| format!("{f:.0}"), ", "))]
     Unresolved { flight_s: f64, modes_hz: Vec<f64> },
     /// The second impact is not told by what is recorded after the slap-down.
-    #[error("the {:.0} ms that are recorded after the slap-down do not tell what the second end's impact \
-             came to: it may not have left the target by then, or something else strikes meanwhile; record \
+    #[error("the {:.0} ms that are recorded after the slap-down do not show the end of the second end's \
+             impact: it may not have left the target by then, or something else strikes meanwhile; record \
              until the cask lies still", 1e3 * .recorded_s)]
     SecondUntold { recorded_s: f64 },
     /// Measured and predicted lie apart.
@@ -142,23 +142,16 @@ pub enum DropFinding {
              file", joined(.closures, |c| format!("{} by {} ({:.1} \
                                                    u)", c.name, c.miss, c.miss_in_u.abs()), ", "))]
     AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
-    /// With a usual slip put right everything closes; with either of two where nothing tells which.
-    #[error("{}: check that first; it was not taken by itself", joined(.cures, Cure::words, "; "))]
+    /// With a usual slip put right everything is consistent; with either of two where nothing tells which.
+    #[error("{}: check this first; it has not been applied", joined(.cures, Cure::words, "; "))]
     UsualSlip { cures: Vec<Cure>, severity: Severity },
     /// A closure is missed that this angle would meet with all others.
     #[error("if all else is as stated, a drop angle of {angle_deg:.1}° would close it")]
     AngleCloses { angle_deg: f64, severity: Severity },
-    /// No rest before the release: nothing tests what all channels share.
-    #[error(
-        "the recording shows no rest before the release: nothing in it tests the drop height, the clock's \
-         rate or a scale error that all channels share, and little tests one of the first end alone, which k \
-         follows; they are taken as stated; record from before the release with DC-coupled sensors"
-    )]
-    Untested,
 }
 
 impl DropFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         use Severity::{Error, Note, Warning};
         match self {
@@ -193,7 +186,6 @@ impl DropFinding {
             Self::SlowedFall { severity, .. } | Self::AngleCloses { severity, .. } => {
                 (Code::Geometry, *severity)
             }
-            Self::Untested => (Code::Scale, Note),
         }
     }
 }
@@ -257,8 +249,8 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
              scale, the clock or a sensor position is not as stated"
         ),
         ClosureKind::Turning => format!(
-            "the cask turns by {how_far} otherwise than the first impact turns a rigid body of this section, \
-             centre of gravity and inertia: check each channel's scale and position, and state \
+            "the measured rotation differs by {how_far} from what the first impact would give a rigid body \
+             of this section, centre of gravity and inertia: check each channel's scale and position, and state \
              `inertia_kg_m2` and `cog_m`"
         ),
         ClosureKind::Rest => format!(

@@ -19,7 +19,7 @@ pub struct Slip {
     pub by: f64,
 }
 
-/// Slips with which, put right at once, everything closes, and what the result then is.
+/// Slips with which, put right at once, everything is consistent, and what the result then is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cure {
     /// One slip, or two.
@@ -38,6 +38,6 @@ impl Cure {
             names => format!("`{key}` of {} {right}", names.join(" and ")),
         };
         let all = self.slips.iter().map(words).collect::<Vec<_>>().join(" and ");
-        format!("with {all} everything closes, at {}", numbers(self.speed, self.k))
+        format!("with {all} everything is consistent, at {}", numbers(self.speed, self.k))
     }
 }

@@ -90,13 +90,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_drop_is_inside_warned_refused_or_silent() {
+    fn a_drop_is_inside_refused_or_silent() {
         let plan = &plans(&TrialRequest { quick: true, seed: 1 })[0];
         let fate = |name, size| drop_of(damage::named(name).expect("a damage"), plan, size);
         assert_eq!(fate("offset", 10.0).fate, TrialFate::Inside);
         assert_eq!(fate("stated_length", 8.0).fate, TrialFate::Silent);
         let refused = fate("ends_exchanged", 0.0);
         assert!(refused.fate == TrialFate::Refused && refused.is_named);
-        assert_eq!(fate("contents", 50.0).fate, TrialFate::Warned);
+        assert_eq!(fate("contents", 50.0).fate, TrialFate::Refused);
     }
 }
