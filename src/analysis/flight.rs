@@ -7,7 +7,7 @@ use super::second_impact::SecondImpact;
 use super::setup::{MIDDLE, U_UNKNOWN, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Events,
-    Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal,
+    Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
 };
 use crate::motion::{self, Integrated};
 use crate::{events, fit, judge};
@@ -24,6 +24,7 @@ pub(super) struct Flown {
     pub quantities: Quantities,
     pub budget: Vec<Contribution>,
     pub reconstruction: ReconstructionChoice,
+    pub untested: Vec<Untested>,
     pub tabulated: Option<Tabulated>,
 }
 
@@ -144,8 +145,11 @@ fn moved(
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
+    let untested = taken.untested(&|flight| {
+        judge::judge_rigid(&impact.signals, flight, &file.tolerances, &file.drop).is_some()
+    });
     let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
-    Some(Flown { flight, setup, motion, quantities, budget, reconstruction, tabulated })
+    Some(Flown { flight, setup, motion, quantities, budget, reconstruction, untested, tabulated })
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.

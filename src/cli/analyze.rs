@@ -46,6 +46,13 @@ pub struct Arguments {
     /// Separators of curves.csv: en (comma, decimal point) or de (semicolon, decimal comma)
     #[arg(long, value_name = "LOCALE", default_value = "en", requires = "out")]
     csv_locale: CsvLocale,
+    /// Print all tables below the first screen
+    #[arg(long)]
+    full: bool,
+    /// For a formal report: exit with 1 also where something is untested or a default carries over a tenth
+    /// of the variance
+    #[arg(long)]
+    strict: bool,
     #[command(flatten)]
     switched_off: SwitchedOff,
     #[command(flatten)]
@@ -198,14 +205,19 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     json.write(|| report::result_json(&analysis.result))?;
     if !json.is_standard_output() {
-        print(&report::table(&analysis, columns()))?;
-        if let Some(folder) = &folder {
-            print(&format!("\nReport: {}\n", report::printable(&folder.file("report.html"))))?;
+        let page = folder.as_ref().map(|folder| folder.file("report.html"));
+        print(&report::first_screen(&analysis, page.as_deref(), columns()))?;
+        if arguments.full {
+            print(&report::table(&analysis, columns()))?;
         }
         print(&compared)?;
     } else if !compared.is_empty() {
         // Standard output holds the JSON alone.
         let _ = anstream::stderr().write_all(compared.as_bytes());
     }
-    Ok(analysis.result.verdict.into())
+    let not_strict = report::not_strict(&analysis).filter(|_| arguments.strict);
+    if let Some(why) = &not_strict {
+        complain_softly(&format!("--strict: {why}"));
+    }
+    Ok(if not_strict.is_some() { Ending::NeedsALook } else { analysis.result.verdict.into() })
 }

@@ -10,7 +10,7 @@ use super::flight::FlightFit;
 use super::impacts::ImpactTable;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
-use super::quantities::{Contribution, FirstImpact, SlapDown};
+use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
@@ -20,11 +20,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Nothing speaks against it.
+    /// No check found a problem.
     Pass,
-    /// A warning asks for a person's look.
+    /// A warning is to be read before the numbers are used.
     Review,
-    /// A quantity could not be had.
+    /// An error: a quantity is not determined.
     Fail,
 }
 
@@ -260,6 +260,8 @@ pub struct DropResult {
     pub flight: Option<FlightFit>,
     /// What each input contributes to the uncertainty, largest first.
     pub budget: Vec<Contribution>,
+    /// What nothing in the recording tests, largest effect first; empty where no number is stated.
+    pub untested: Vec<Untested>,
     /// What was done with the samples and how, in words.
     #[serde(rename = "processing")]
     pub settings: Vec<Setting>,

@@ -62,7 +62,7 @@ pub use motion::{
 };
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
-pub use quantities::{Contribution, FirstImpact, Quantities, SlapDown};
+pub use quantities::{Contribution, FirstImpact, Quantities, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel, U_RELEASE_S,

@@ -179,3 +179,27 @@ pub struct Contribution {
     /// Change of k by it.
     pub k: Option<f64>,
 }
+
+/// A stated input in which nothing in the recording tests a mistake.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Untested {
+    /// The input, as a person says it: "drop height".
+    pub what: String,
+    /// Its key among the settings: "drop.height_m", "channel.A1.position_m".
+    pub key: String,
+    /// A mistake in it: "1 %".
+    pub by: &'static str,
+    /// By how much that mistake moves the result.
+    pub moves: UntestedMoves,
+    /// What would test it.
+    pub remedy: &'static str,
+}
+
+/// By how much a mistake moves the two numbers that a drop is made for; `None` where one is not stated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct UntestedMoves {
+    /// k.
+    pub k: Option<f64>,
+    /// The slap-down speed, m/s.
+    pub slap_down_speed_m_s: Option<f64>,
+}

@@ -54,7 +54,7 @@ pub struct UncertainInput {
     /// Its standard uncertainty, as a person reads it.
     pub(super) size: String,
     /// More than one where channels share it.
-    changes: Vec<InputShift>,
+    pub(super) changes: Vec<InputShift>,
 }
 
 impl UncertainInput {
@@ -67,7 +67,7 @@ impl UncertainInput {
 
 /// An event whose time is uncertain.
 #[derive(Debug, Clone, Copy)]
-enum Event {
+pub(super) enum Event {
     FirstContact,
     Separation,
     SlapDown,
@@ -86,7 +86,7 @@ impl Event {
 
 /// What a positive standard uncertainty does.
 #[derive(Debug, Clone, Copy)]
-enum InputShift {
+pub(super) enum InputShift {
     Step { channel: usize, add_m_s: f64 },
     Scale { channel: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },

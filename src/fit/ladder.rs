@@ -2,10 +2,11 @@
 
 use super::inputs::{Inputs, UncertainInput, has_lost_step};
 use super::propagate::{Model, Propagated};
+use super::untested::{self, SilentMistake};
 use super::{COVERAGE, FitData, Reconstruct};
 use crate::data::{
     Axis, ChannelReading, Closure, Contribution, End, Estimate, FlightFit, MET_U, Quantities,
-    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
+    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung, Untested,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -43,9 +44,17 @@ pub struct RungTaken {
     inputs: Vec<UncertainInput>,
     fit: PriorFit,
     widened: f64,
+    silent: Vec<SilentMistake>,
 }
 
 impl RungTaken {
+    /// What nothing in the recording tests, largest effect first; `finds` says whether a check of the
+    /// velocity steps would find a mistake.
+    #[must_use]
+    pub fn untested(&self, finds: &dyn Fn(&FlightFit) -> bool) -> Vec<Untested> {
+        untested::untested(&self.silent, &self.base, &self.inputs, finds)
+    }
+
     /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved
     /// inputs and for as many further ones, independent of all others, in their standard uncertainties, as
     /// are asked for. `None` where it fails near the inputs taken.
@@ -112,6 +121,8 @@ pub fn ladder(
     let Propagated { quantities, budget } = steps.swap_remove(taken).propagated;
     let fit = joint.filter(|_| is_joint).unwrap_or_else(|| PriorFit::of_priors(model.inputs.len()));
     let widened = if is_joint { widened } else { 1.0 };
+    let influences = model.influences(&fit)?;
+    let silent = untested::silent(measured, &model.inputs, &influences, &quantities);
     let Model { base, inputs, .. } = model;
     Some(RungTaken {
         quantities,
@@ -122,6 +133,7 @@ pub fn ladder(
         inputs,
         fit,
         widened,
+        silent,
     })
 }
 

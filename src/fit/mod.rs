@@ -5,6 +5,7 @@ mod closures;
 mod inputs;
 mod ladder;
 mod propagate;
+mod untested;
 
 use crate::data::{
     AssumedFriction, ChannelSpec, Events, FlightFit, Motion, RestLevel, Setup, Signal, StoodIn, Tolerances,

@@ -3,6 +3,7 @@
 
 use super::closures::{Observable, observables};
 use super::inputs::{Inputs, UncertainInput, inputs};
+use super::untested::Influence;
 use super::{COVERAGE, FitData, Reconstruct};
 use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
@@ -206,6 +207,24 @@ impl<'a> Model<'a> {
                 left_in_u: left(i).unwrap_or(miss),
             })
             .collect()
+    }
+
+    /// What each input, were it stated wrong by a standard uncertainty, does to the quantities at a fit, and
+    /// to the closures of the inputs as they are stated.
+    pub fn influences(&self, fit: &PriorFit) -> Option<Vec<Influence>> {
+        let count = self.inputs.len();
+        let misses = self.slopes_of_residuals(&vec![0.0; count])?;
+        let quantities = self.slopes_of_quantities(&fit.unknowns)? * fit.response.columns(0, count);
+        let in_u = |row: usize, input: usize| misses[(row, input)].abs() / misses.row(row).norm().hypot(1.0);
+        let strikes = self.motion.slap_down.is_some();
+        let influence = |input: usize| {
+            let by = Quantities::from_fn(|row| quantities[(row, input)]);
+            Influence {
+                quantities: Quantities { speed: by.speed.filter(|_| strikes), ..by },
+                miss_in_u: (0..self.observables.len()).map(|row| in_u(row, input)).fold(0.0, f64::max),
+            }
+        };
+        Some((0..count).map(influence).collect())
     }
 
     /// What a fit moved, largest first.

@@ -24,7 +24,6 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
     if findings.is_empty() {
         findings.extend(together(choice));
     }
-    findings.extend(on_trust(choice));
     findings
 }
 
@@ -72,13 +71,6 @@ fn most_chi_square(degrees: usize) -> f64 {
     n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
-/// A recording without rest or fall: no closure tests drop height, clock or a scale error common to all
-/// channels.
-fn on_trust(choice: &ReconstructionChoice) -> Option<Finding> {
-    let shows_rest = choice.closures.iter().any(|c| matches!(c.kind, ClosureKind::Rest | ClosureKind::Fall));
-    (!shows_rest).then(|| DropFinding::Untested.into())
-}
-
 /// A closure that is missed, as a finding.
 pub(super) fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
@@ -123,11 +115,7 @@ mod tests {
         let severities =
             |kind| -> Vec<Severity> { judged(&choice(kind, -3.4)).iter().map(|i| i.severity).collect() };
         assert!(severities(ClosureKind::Rest).is_empty());
-        assert_eq!(
-            severities(ClosureKind::Height),
-            [Severity::Note],
-            "nothing tests what all channels share"
-        );
+        assert!(severities(ClosureKind::Height).is_empty());
         for (kind, code) in [
             (ClosureKind::Height, IssueCode::Geometry),
             (ClosureKind::Turning, IssueCode::NotRigid),

@@ -1,6 +1,7 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
 use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
+use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
@@ -11,13 +12,13 @@ use super::settings;
 use super::table::{ReportTable, TableCell, TableShape};
 use super::tested::tested;
 use super::text::{
-    Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
-    verdict_word, yes,
+    Style, capital, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
+    verdict_style, verdict_word, yes,
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
     Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction,
-    STANDARD_GRAVITY_M_S2, Severity, TestRecord, Verdict,
+    STANDARD_GRAVITY_M_S2, Severity, TestRecord,
 };
 
 /// Findings that take away what the first impact would give.
@@ -97,7 +98,8 @@ fn signed(test: &TestRecord) -> Chapter {
     if test.signatures.is_empty() { chapter } else { chapter.with(record::signatures(&test.signatures)) }
 }
 
-/// What was dropped, the verdict, and the four numbers that a reader looks for first.
+/// What was dropped, the verdict and its cause, the four numbers that a reader looks for first, and what they
+/// rest on.
 fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let (cask, drop) = (&file.cask, &file.drop);
     let section =
@@ -117,23 +119,24 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         json_word(result.input.format),
         tail(&result.input.cask, 24)
     );
-    let style = match result.verdict {
-        Verdict::Pass => Style::Green,
-        Verdict::Review => Style::Yellow,
-        Verdict::Fail => Style::Red,
-    };
-    let why = result.slap_down.speed.is_none().then(|| reason(result, &SLAP_DOWN_CODES));
+    let cause = cause(result).map(|finding| ChapterPart::text(sentence(&finding.message)));
+    let limits = defaults_that_weigh(result, file).map(|words| ChapterPart::text(sentence(&words)));
+    let untested = untested(result).map(|[named, remedies]| {
+        ChapterPart::text(format!("Nothing in this recording tests {named}. {} would.", capital(&remedies)))
+    });
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
         .with(ChapterPart::line(files).only(Medium::Terminal))
         .with_all(record::line(&result.test))
-        .with(PartContent::Banner(
-            Tone(style, verdict_word(result.verdict).to_owned()),
-            verdict_sentence(result),
-        ))
+        .with(
+            ChapterPart::from(PartContent::Banner(
+                Tone(verdict_style(result.verdict), verdict_word(result.verdict).to_owned()),
+                verdict_sentence(result),
+            ))
+            .only(Medium::Page),
+        )
         .with(PartContent::Figures(figures(result)))
-        .with_all(why.map(|why| ChapterPart::text(sentence(why)).only(Medium::Page)))
-        .with_all(defaults_that_weigh(result, file).map(ChapterPart::text))
+        .with_all([cause, limits, untested].into_iter().flatten().map(|part| part.only(Medium::Page)))
         .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
 }
 
@@ -149,7 +152,7 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
         figure(
             "Slap-down speed, predicted",
             compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s")),
-            compared.map_or_else(String::new, |_| format!("{model}, measured k")),
+            compared.map_or_else(String::new, |_| format!("{model}; takes the measured k")),
         ),
         figure(
             "Measured against predicted",
@@ -158,10 +161,6 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
         ),
         figure("Coefficient of restitution k", Some(interval(result.k.as_ref())), String::new()),
     ]
-}
-
-fn agreement(agrees: bool) -> &'static str {
-    if agrees { "within both intervals" } else { "beyond both intervals" }
 }
 
 /// First impact, slap-down and k, each with its interval or with the reason why it is missing.
@@ -195,7 +194,7 @@ fn quantities(result: &DropResult) -> Chapter {
 /// Estimates; the reason for the missing ones stands once below them.
 fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[IssueCode]) -> Vec<ChapterPart> {
     let is_missing = facts.iter().any(|fact| fact.value == MISSING);
-    let why = || ChapterPart::note(format!("{MISSING} could not be had: {}", reason(result, codes)));
+    let why = || ChapterPart::note(format!("{MISSING} not determined: {}", reason(result, codes)));
     [ChapterPart::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
 }
 
@@ -204,14 +203,9 @@ fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[Issu
 fn comparison(result: &DropResult) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(
-        || {
-            ChapterPart::text(format!(
-                "{MISSING} could not be compared: {}",
-                reason(result, &SLAP_DOWN_CODES)
-            ))
-        },
+        || ChapterPart::text(format!("{MISSING} not compared: {}", reason(result, &SLAP_DOWN_CODES))),
         |c| {
-            let by = taken.map_or_else(String::new, |m| format!("{}, measured k", m.rung.words()));
+            let by = taken.map_or_else(String::new, |m| format!("{}; takes the measured k", m.rung.words()));
             let style = if c.agrees { Style::Green } else { Style::Yellow };
             let facts = vec![
                 Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),

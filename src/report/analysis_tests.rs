@@ -1,12 +1,13 @@
 //! What an analysis says on a terminal and on its page.
 
 use super::analysis::document;
+use super::first_screen::first_screen;
 use super::text::WIDTH;
 use super::{as_html, as_text, pictures, sample};
-use crate::data::Analysis;
+use crate::data::{Analysis, Untested};
 
 fn text_of(analysis: &Analysis) -> String {
-    as_text::text(&document(analysis), WIDTH)
+    first_screen(analysis, None, WIDTH) + &as_text::text(&document(analysis), WIDTH)
 }
 
 fn bare(text: &str) -> String {
@@ -23,10 +24,28 @@ fn eighty_columns_hold_it() {
 }
 
 #[test]
+fn the_first_screen_holds_the_most_that_can_be_said() {
+    let mut analysis = sample::analysis();
+    let mut finding = analysis.result.quality[0].clone();
+    finding.message = "a long cause ".repeat(40);
+    analysis.result.quality.insert(0, finding);
+    let input = analysis.result.untested[0].clone();
+    let many = (1..40).map(|n| Untested { what: format!("calibration of A{n}"), ..input.clone() });
+    analysis.result.untested = many.collect();
+    for (width, most) in [(60, 20), (80, 16), (200, 16)] {
+        let text = bare(&first_screen(&analysis, Some("a/folder/report.html"), width));
+        assert!(text.lines().count() <= most, "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+        let last = text.lines().last().expect("a line");
+        assert!(text.contains("Nothing tests") && last.ends_with("report.html"), "{text}");
+    }
+}
+
+#[test]
 fn the_figures_are_there() {
     let text = bare(&text_of(&sample::analysis()));
     for words in
-        ["LOOK AT", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "+0.3 %", "within both intervals", "clipped · A1"]
+        ["REVIEW", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "+0.3 %", "within both intervals", "clipped · A1"]
     {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
@@ -39,7 +58,7 @@ fn the_figures_are_there() {
 fn a_missing_quantity_says_why() {
     let text = bare(&text_of(&sample::without_anything()));
     assert!(text.contains("NOT TO BE USED"));
-    assert!(text.contains("– could not be had: no impact was found"), "{text}");
+    assert!(text.contains("– not determined: no impact was found"), "{text}");
 }
 
 #[test]
@@ -81,7 +100,7 @@ fn it_stands_alone() {
 fn it_says_what_the_result_says() {
     let page = made(&sample::analysis());
     for words in [
-        "LOOK AT",
+        "REVIEW",
         "20.56 ± 0.11 m/s",
         "0.559 ± 0.010",
         "clipped",

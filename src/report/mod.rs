@@ -13,6 +13,7 @@ mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
 pub(crate) mod document;
+mod first_screen;
 mod grid;
 mod impacts;
 pub(crate) mod json;
@@ -42,6 +43,7 @@ mod words;
 pub use acceleration_sources::NoChannels;
 pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve, folder_name, impossible};
 pub use curves_csv::in_german;
+pub use first_screen::{first_screen, not_strict};
 pub use json::{in_a_line, listing as listing_json, result as result_json};
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
@@ -88,7 +90,7 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
-/// The table of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
+/// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
 /// where no terminal shows it.
 #[must_use]
 pub fn table(analysis: &Analysis, width: usize) -> String {

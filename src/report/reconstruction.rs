@@ -2,10 +2,10 @@
 
 use super::document::{Chapter, ChapterPart, PartContent};
 use super::medium::Medium;
-use super::rounding::{MISSING, fixed, interval, optional_fixed, significant};
+use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::settings::{to_state, tolerance_of};
 use super::table::{ReportTable, TableCell};
-use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
+use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
 /// Moves of the joint fit that are listed; the smaller ones say nothing.
@@ -188,26 +188,66 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     let is_planar = result.reconstruction.as_ref().is_none_or(|r| r.rung != ReconstructionRung::Channels);
     let single = "Speed and k were read off single channels, with the intervals given there: this table is \
                   that of the planar motion.";
+    let untested = ReportTable::of(&result.untested)
+        .class("")
+        .caption(
+            "What nothing in this recording tests: a mistake that moves k or the speed by two half-widths misses \
+             no closure by 3.5 u and leaves no channel off the line of the others. The largest effect first",
+        )
+        .head("Input", |i| &i.what[..])
+        .code("Key", |i| &i.key[..])
+        .number("A mistake of", |i| i.by)
+        .number("moves the slap-down speed by, m/s", |i| optional(i.moves.slap_down_speed_m_s, 2))
+        .number("and k by", |i| optional(i.moves.k, 2))
+        .text("What would test it", |i| i.remedy);
+    let untested = (!result.untested.is_empty()).then(|| ChapterPart::from(untested));
     chapter
         .with(ChapterPart::lead(lead))
         .with(table)
         .with_all((!is_planar).then(|| ChapterPart::note(single)))
+        .with_all(untested)
 }
 
-/// Which defaults carry more than a tenth of the variance of the speed, or of k where there is no speed, and
-/// what to state in their place.
-pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
+/// A default that carries more than a tenth of the variance of the speed, or of k where there is no speed.
+struct WeightyDefault<'a> {
+    share: VarianceShare<'a>,
+    /// What to state in its place.
+    key: String,
+}
+
+fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyDefault<'a>> {
     const WEIGHS_PERCENT: f64 = 10.0;
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
-    let weighty = shares(&result.budget, change).into_iter().filter(|share| share.percent > WEIGHS_PERCENT);
-    let named: Vec<String> = weighty
-        .filter_map(|VarianceShare { input, percent }| {
-            let key = to_state(file, input)?;
-            Some(format!("{input} ({percent:.0} % of the variance; state `{key}`)"))
-        })
-        .collect();
-    (!named.is_empty())
-        .then(|| format!("The interval rests on defaults that nobody stated: {}.", named.join(", ")))
+    let mut all = shares(&result.budget, change);
+    all.retain(|share| share.percent > WEIGHS_PERCENT);
+    all.sort_by(|a, b| b.percent.total_cmp(&a.percent));
+    all.into_iter()
+        .filter_map(|share| Some(WeightyDefault { key: to_state(file, share.input)?, share }))
+        .collect()
+}
+
+/// Those defaults, and what to state in their place; `None` where there is none.
+pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
+    let all = weighty_defaults(result, file);
+    let named: Vec<String> =
+        all.iter().map(|d| format!("{} {:.0} %", d.share.input, d.share.percent)).collect();
+    let of_what = if result.slap_down.speed.is_some() { "the speed's" } else { "k's" };
+    // Keys of one table stand behind its name once.
+    let mut keys = String::new();
+    let mut before = "";
+    for key in distinct(all.iter().map(|d| d.key.as_str())) {
+        let (table, name) = key.split_once(' ').unwrap_or(("", key));
+        let separator = if keys.is_empty() { "" } else { ", " };
+        keys += &if table == before { format!("{separator}{name}") } else { format!("{separator}{key}") };
+        before = table;
+    }
+    let verb = if all.len() == 1 { "is a default" } else { "are defaults" };
+    (!named.is_empty()).then(|| format!("{} of {of_what} variance {verb}: state {keys}", named.join(", ")))
+}
+
+/// How many inputs a formal report must not leave to defaults.
+pub(super) fn weighty_default_count(result: &DropResult, file: &CaskFile) -> usize {
+    weighty_defaults(result, file).len()
 }
 
 /// An input, and how much of the variance of a quantity it carries.
@@ -225,7 +265,7 @@ fn shares(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>
 }
 
 /// Which input weighs most, in the speed and in k.
-fn largest(budget: &[Contribution]) -> String {
+pub(super) fn largest(budget: &[Contribution]) -> String {
     let words = |change: fn(&Contribution) -> Option<f64>| {
         let largest = shares(budget, change).into_iter().max_by(|a, b| a.percent.total_cmp(&b.percent))?;
         Some(format!("{} ({:.0} % of the variance)", largest.input, largest.percent))

@@ -127,6 +127,7 @@ fn result() -> DropResult {
         ],
         flight: Some(flight()),
         budget: sample_reconstruction::budget(),
+        untested: vec![sample_reconstruction::untested()],
         settings: settings(),
     }
 }

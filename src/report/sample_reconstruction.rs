@@ -2,7 +2,7 @@
 
 use crate::data::{
     Adjustment, Closure, ClosureKind, Contribution, Estimate, ReconstructionCandidate, ReconstructionChoice,
-    ReconstructionRung,
+    ReconstructionRung, Untested, UntestedMoves,
 };
 
 /// The flight fit taken, the joint fit beside it.
@@ -103,4 +103,15 @@ pub(super) fn budget() -> Vec<Contribution> {
         contribution("drop angle", "0.20°", 0.017, 0.0030),
         contribution("position of A1", "5 mm", 0.003, 0.0010),
     ]
+}
+
+/// An input that nothing tests.
+pub(super) fn untested() -> Untested {
+    Untested {
+        what: "calibration of A1".into(),
+        key: "channel.A1.calibration_percent".into(),
+        by: "1 %",
+        moves: UntestedMoves { k: Some(0.0156), slap_down_speed_m_s: Some(0.052) },
+        remedy: "record the rest before the release",
+    }
 }

@@ -79,13 +79,14 @@ pub(super) fn is_hidden(c: char) -> bool {
 }
 
 /// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays
-/// whole.
+/// whole, and so does what a no-break space joins.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
     let mut broken: Vec<String> = Vec::new();
     let mut line = String::new();
     let mut used = 0;
-    for word in printable(text).split_whitespace() {
+    for word in printable(text).split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|w| !w.is_empty())
+    {
         let length = word.chars().count();
         if used > 0 && used + 1 + length > room {
             broken.push(std::mem::take(&mut line));
@@ -100,7 +101,7 @@ pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     }
     broken.push(line);
     let pad = " ".repeat(indent);
-    lines(broken.into_iter().map(|line| format!("{pad}{line}")))
+    lines(broken.into_iter().map(|line| format!("{pad}{}", line.replace('\u{a0}', " "))))
 }
 
 /// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells
@@ -115,38 +116,65 @@ pub(super) fn tail(text: &str, width: usize) -> String {
     format!("…{kept}")
 }
 
-/// The verdict as one capital word.
+/// [`wrap`] in at most so many lines; what is left out has an ellipsis in its place.
+pub(super) fn clamped(text: &str, width: usize, indent: usize, most: usize) -> String {
+    let all = wrap(text, width, indent);
+    if all.lines().count() <= most {
+        return all;
+    }
+    let kept: String = all.split_inclusive('\n').take(most).collect();
+    let mut kept = kept.trim_end();
+    while kept.lines().last().is_some_and(|line| line.chars().count() + 2 > width) {
+        kept = kept.rsplit_once(' ').map_or("", |(before, _)| before);
+    }
+    format!("{kept} …\n")
+}
+
+/// "1 note", "3 notes".
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The verdict as capital words.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "DATA SOUND",
-        Verdict::Review => "LOOK AT",
+        Verdict::Review => "REVIEW",
         Verdict::Fail => "NOT TO BE USED",
+    }
+}
+
+/// The verdict's colour.
+pub(super) fn verdict_style(verdict: Verdict) -> Style {
+    match verdict {
+        Verdict::Pass => Style::Green,
+        Verdict::Review => Style::Yellow,
+        Verdict::Fail => Style::Red,
     }
 }
 
 /// What the verdict means for the reader.
 pub(super) fn verdict_sentence(result: &DropResult) -> String {
-    let count = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
-    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-    match result.verdict {
-        Verdict::Pass => "Nothing speaks against this recording and its result.".into(),
-        Verdict::Review if warnings == 0 => "The data need a person's look.".into(),
-        Verdict::Review if warnings == 1 => "One warning needs a person's look.".into(),
-        Verdict::Review => format!("{warnings} warnings need a person's look."),
-        Verdict::Fail if errors == 0 => "A quantity could not be had from this recording.".into(),
-        Verdict::Fail if result.k.is_some() && result.slap_down.speed.is_some() => {
-            if result.quality.iter().any(|i| i.code == IssueCode::MissingChannel) {
-                "One end has no channel; the mass properties stand in for it.".into()
-            } else {
-                "A velocity step was lost; the rest of the motion tells the numbers.".into()
-            }
+    let of_severity = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
+    let (errors, warnings) = (of_severity(Severity::Error), of_severity(Severity::Warning));
+    let missing = match (result.k.is_none(), result.slap_down.speed.is_none()) {
+        (true, true) => Some("k and the slap-down speed are"),
+        (true, false) => Some("k is"),
+        (false, true) => Some("The slap-down speed is"),
+        (false, false) => None,
+    };
+    match (result.verdict, missing) {
+        (Verdict::Pass, _) => "No check found a problem.".into(),
+        (_, Some(missing)) => {
+            let why = if errors > 0 { counted(errors, "error") } else { counted(warnings, "warning") };
+            format!("{missing} not determined ({why}).")
         }
-        Verdict::Fail if errors == 1 => {
-            "A quantity could not be had from this recording: one error says why.".into()
+        (Verdict::Review, None) if warnings == 1 => "One warning: read it before using the numbers.".into(),
+        (Verdict::Review, None) => format!("{warnings} warnings: read them before using the numbers."),
+        (Verdict::Fail, None) if result.quality.iter().any(|i| i.code == IssueCode::MissingChannel) => {
+            "One end has no channel; the mass properties stand in for it.".into()
         }
-        Verdict::Fail => {
-            format!("Quantities could not be had from this recording: {errors} errors say why.")
-        }
+        (Verdict::Fail, None) => "A velocity step was lost; the rest of the motion tells the numbers.".into(),
     }
 }
 
@@ -215,14 +243,17 @@ pub(super) fn sentence(reason: &str) -> String {
     if words.is_empty() { words } else { words + "." }
 }
 
-/// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a
-/// quantity is missing.
+/// The message of the first error or warning that takes a quantity away, one among `codes` before others.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
-    let first = |wanted: &dyn Fn(&Finding) -> bool| result.quality.iter().find(|issue| wanted(issue));
-    first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Error)
-        .or_else(|| first(&|issue| issue.severity == Severity::Error))
-        .or_else(|| first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Warning))
-        .map_or("no finding names the reason", |issue| issue.message.as_str())
+    let first = |severity, among: bool| {
+        let is_wanted = |f: &&Finding| f.severity == severity && (!among || codes.contains(&f.code));
+        result.quality.iter().find(is_wanted)
+    };
+    first(Severity::Error, true)
+        .or_else(|| first(Severity::Error, false))
+        .or_else(|| first(Severity::Warning, true))
+        .or_else(|| first(Severity::Warning, false))
+        .map_or("", |finding| finding.message.as_str())
 }
 
 #[cfg(test)]

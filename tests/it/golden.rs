@@ -31,17 +31,17 @@ fn hold(name: &str, found: &str) {
 
 #[test]
 fn the_table_of_a_sound_drop() {
-    hold("anf18-json.txt", &analyze("anf18-json", "mcap", &[]));
+    hold("anf18-json.txt", &analyze("anf18-json", "mcap", &["--full"]));
 }
 
 #[test]
 fn the_table_of_a_drop_with_rest_and_an_axial_channel() {
-    hold("vhlw-rest.txt", &analyze("vhlw-rest", "h5", &[]));
+    hold("vhlw-rest.txt", &analyze("vhlw-rest", "h5", &["--full"]));
 }
 
 #[test]
 fn the_table_of_a_clipped_drop() {
-    hold("damaged-clipped.txt", &analyze("damaged-clipped", "h5", &[]));
+    hold("damaged-clipped.txt", &analyze("damaged-clipped", "h5", &["--full"]));
 }
 
 #[test]

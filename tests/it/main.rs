@@ -10,6 +10,7 @@ mod damage;
 mod documents;
 mod filter;
 mod first_minutes;
+mod first_screen;
 mod fixtures;
 mod golden;
 mod hdf5_room;

@@ -20,7 +20,7 @@ pub enum AttributeFinding {
 }
 
 impl AttributeFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         match self {
             Self::GroupDiffers { is_harmless: true, .. } => (Code::Scale, Severity::Note),

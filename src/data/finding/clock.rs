@@ -58,7 +58,7 @@ pub enum HowApart {
 }
 
 impl ClockFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     #[allow(clippy::unused_self, reason = "as those of the other kinds")]
     pub(super) fn code(&self) -> (Code, Severity) {
         (Code::Clock, Severity::Warning)

@@ -1,9 +1,9 @@
-//! The names of the checks with what they mean, and how much a finding weighs.
+//! The names of the checks with what they mean, and the severity of a finding.
 
 use serde::Serialize;
 
-/// How severe an issue is: a note informs, a warning asks for a person's look, an error takes a quantity
-/// away.
+/// How severe a finding is: a note informs, a warning is to be read before the numbers are used, an error
+/// takes a quantity away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -11,7 +11,7 @@ pub enum Severity {
     Note,
     /// The result may be off; the verdict is at least "review".
     Warning,
-    /// A quantity cannot be had; the verdict is "fail".
+    /// A quantity is not determined; the verdict is "fail".
     Error,
 }
 
@@ -59,8 +59,7 @@ issue_codes! {
     Aliasing, "Channel": "the signal has content up to half the sample rate, so higher frequencies are \
                           aliased";
     AcCoupled, "Channel": "a channel is AC-coupled: stated and undone, or found by its droop";
-    Scale, "Channels together": "units, sensitivities or rest levels contradict each other, or nothing tests \
-                                 them";
+    Scale, "Channels together": "units, sensitivities or rest levels contradict each other";
     NotRigid, "Channels together": "channels cannot belong to one rigid body, or the rotation does not \
                                     follow from the impact";
     Skew, "Channels together": "a channel responds to the first impact too early or too late";

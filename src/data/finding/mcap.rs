@@ -89,7 +89,7 @@ pub enum FileEnd {
 }
 
 impl McapFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         use Severity::{Error, Note, Warning};
         match self {

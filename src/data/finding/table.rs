@@ -34,7 +34,7 @@ pub enum TableFinding {
 }
 
 impl TableFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         match self {
             Self::CounterJumps { .. } => (Code::Gap, Severity::Warning),

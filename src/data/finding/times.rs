@@ -124,7 +124,7 @@ impl Jitter {
 }
 
 impl TimesFinding {
-    /// The check that speaks, and how much it weighs.
+    /// The check that speaks, and its severity.
     pub(super) fn code(&self) -> (Code, Severity) {
         use Severity::{Note, Warning};
         match *self {

@@ -1,0 +1,170 @@
+//! What stands first, on the terminal and at the head of the page: the verdict and its cause, the numbers,
+//! what limits them, and what nothing in the recording tests.
+
+use super::reconstruction::{defaults_that_weigh, largest, weighty_default_count};
+use super::rounding::{MISSING, interval, pair, percent, plain, significant};
+use super::text::{
+    Style, clamped, counted, distinct, json_word, sentence, styled, styled_lines, tail, verdict_sentence,
+    verdict_style, verdict_word,
+};
+use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, Severity, Untested};
+
+/// Columns that the name of a row takes.
+const NAME_WIDTH: usize = 16;
+
+/// Lines of the first screen.
+const MOST_LINES: usize = 16;
+
+/// So many untested inputs are named with what a mistake in them does; the others by their names alone.
+const MOST_WITH_EFFECT: usize = 3;
+
+/// A move below this share of the half-width is not worth a number.
+const WORTH_A_NUMBER: f64 = 0.1;
+
+/// The finding that a reader meets first: a usual slip explains the others, else the first error or warning.
+pub(super) fn cause(result: &DropResult) -> Option<&Finding> {
+    let doubts = || result.quality.iter().filter(|f| f.severity > Severity::Note);
+    doubts().find(|f| f.code == IssueCode::UsualSlip).or_else(|| doubts().next())
+}
+
+/// What nothing in the recording tests, by how much a mistake in it moves k and the speed, and what tests it;
+/// `None` where all is tested.
+pub(super) fn untested(result: &DropResult) -> Option<[String; 2]> {
+    let effect = |input: &Untested| {
+        let is_worth =
+            |by: f64, stated: Option<Estimate>| stated.is_some_and(|e| by > WORTH_A_NUMBER * e.u95);
+        let k = input.moves.k.filter(|k| is_worth(*k, result.k));
+        let speed = input.moves.slap_down_speed_m_s.filter(|v| is_worth(*v, result.slap_down.speed));
+        let moves = [
+            k.map(|k| format!("k\u{a0}{}", significant(k, 1))),
+            speed.map(|m_s| format!("{}\u{a0}m/s", significant(m_s, 1))),
+        ];
+        let moves: Vec<String> = moves.into_iter().flatten().collect();
+        // No line ends between a number and its unit.
+        format!("{} ({}: {})", input.what, input.by.replace(' ', "\u{a0}"), moves.join(", "))
+    };
+    let all = &result.untested;
+    let (first, others) = all.split_at(all.len().min(MOST_WITH_EFFECT));
+    let others = by_channels(others.iter().map(|input| &input.what[..]));
+    let named: Vec<String> = first.iter().map(effect).chain(others).collect();
+    let remedies = distinct(all.iter().map(|input| input.remedy));
+    (!named.is_empty()).then(|| [named.join(", "), remedies.join("; ")])
+}
+
+/// "tilt of A1", "tilt of A2" and "section" to "tilt of A1, A2" and "section".
+fn by_channels<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut kinds: Vec<(&str, Vec<&str>)> = Vec::new();
+    for name in names {
+        let (kind, channel) = name.rsplit_once(" of ").unwrap_or((name, ""));
+        match kinds.iter_mut().find(|(known, channels)| *known == kind && !channels[0].is_empty()) {
+            Some((_, channels)) => channels.push(channel),
+            None => kinds.push((kind, vec![channel])),
+        }
+    }
+    let words = |(kind, channels): (&str, Vec<&str>)| match channels[..] {
+        [""] => kind.to_owned(),
+        _ => format!("{kind} of {}", channels.join(", ")),
+    };
+    kinds.into_iter().map(words).collect()
+}
+
+/// Measured beside predicted, in one sentence; the prediction is no second witness of k.
+pub(super) fn compared(result: &DropResult) -> Option<String> {
+    let c = result.comparison.as_ref()?;
+    let predicted = pair(c.predicted, c.predicted_u95, "m/s");
+    let agrees = if c.agrees { "agrees" } else { "disagrees" };
+    Some(format!("{predicted} by the measured k; {}: {agrees}", percent(c.difference_percent)))
+}
+
+/// Whether measured and predicted speed agree.
+pub(super) fn agreement(agrees: bool) -> &'static str {
+    if agrees { "within both intervals" } else { "beyond both intervals" }
+}
+
+/// "2 warnings (`zero_shift` A1, gap A2), 3 notes".
+fn findings(result: &DropResult) -> String {
+    let of_severity = |severity: Severity| {
+        let all: Vec<&Finding> = result.quality.iter().filter(|f| f.severity == severity).collect();
+        let place = |f: &&Finding| match &f.channel {
+            Some(channel) => format!("{} {channel}", json_word(f.code)),
+            None => json_word(f.code),
+        };
+        let places = distinct(all.iter().map(place)).join(", ");
+        let counted = counted(all.len(), &json_word(severity));
+        match severity {
+            _ if all.is_empty() => None,
+            Severity::Note => Some(counted),
+            Severity::Warning | Severity::Error => Some(format!("{counted} ({places})")),
+        }
+    };
+    let all: Vec<String> =
+        [Severity::Error, Severity::Warning, Severity::Note].into_iter().filter_map(of_severity).collect();
+    if all.is_empty() { "none".into() } else { all.join(", ") }
+}
+
+/// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
+#[must_use]
+pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
+    let (result, file) = (&analysis.result, &analysis.cask_file);
+    let drop = &file.drop;
+    let title = format!(
+        "{} · {} m at {}° · {}",
+        file.cask.name,
+        plain(drop.height_m, 5),
+        plain(drop.angle_rad.to_degrees(), 5),
+        tail(&result.input.recording, 40),
+    );
+    let word = verdict_word(result.verdict);
+    let cause = cause(result).map(|f| sentence(&f.message)).unwrap_or_default();
+    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, 3);
+    let head = styled_lines(Style::Bold, &clamped(&title, width, 0, 1))
+        + &format!("{}{}", styled(verdict_style(result.verdict), word), &said[word.len()..]);
+    let row = |name: &str, words: &str, most: usize| {
+        let words = clamped(words, width, NAME_WIDTH, most);
+        format!("{name:<NAME_WIDTH$}{}", &words[NAME_WIDTH..])
+    };
+    let number = |estimate| match interval(estimate) {
+        text if text == MISSING => "not determined".to_owned(),
+        text => text,
+    };
+    let limits = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
+    let is_limited = !limits.is_empty() && (result.k.is_some() || result.slap_down.speed.is_some());
+    let numbers = [
+        row("Slap-down speed", &number(result.slap_down.speed.as_ref()), 1),
+        row("Restitution k", &number(result.k.as_ref()), 1),
+        compared(result).map_or_else(String::new, |words| row("Predicted speed", &words, 1)),
+        if is_limited { row("Interval", &limits, 2) } else { String::new() },
+    ];
+    let foot = row("Findings", &findings(result), 1)
+        + &report.map_or_else(String::new, |page| row("Report", page, 1));
+    let before = head + &numbers.concat();
+    let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
+        let remedies = row("To test them", &remedies, 2);
+        let taken = [&before, &remedies, &foot].map(|text| text.lines().count()).iter().sum();
+        row("Nothing tests", &named, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
+    });
+    before + &tested + &foot
+}
+
+/// Why a formal report cannot rest on this result, beside its verdict; `None` where it can.
+#[must_use]
+pub fn not_strict(analysis: &Analysis) -> Option<String> {
+    let result = &analysis.result;
+    let untested = result.untested.len();
+    let defaults = weighty_default_count(result, &analysis.cask_file);
+    let reasons = [
+        (untested > 0).then(|| format!("nothing tests {}", counted(untested, "input"))),
+        (defaults > 0).then(|| {
+            format!(
+                "{} over a tenth of the variance",
+                if defaults == 1 {
+                    "1 default carries".to_owned()
+                } else {
+                    format!("{defaults} defaults carry")
+                }
+            )
+        }),
+    ];
+    let reasons: Vec<String> = reasons.into_iter().flatten().collect();
+    (!reasons.is_empty()).then(|| reasons.join("; "))
+}
