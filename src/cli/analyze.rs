@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace the report of another recording in --out
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Write the result as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -135,6 +138,9 @@ pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    // While the recording is read: the result names it.
+    #[cfg(not(debug_assertions))]
+    std::thread::spawn(rerun::program_sha256);
     let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let names = [&report::FILE_NAMES[..], &[pdf::NAME]].concat();
@@ -163,15 +169,17 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }
     })?;
+    if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
+        folder.spares_others(&recording.sha256)?;
+    }
     keep_freed_memory();
     let mut analysis = keep_threads_awake(|| crate::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
     rerun::stamp(&mut analysis.result, rerun::words())?;
-    let mut compared = String::new();
-    if let Some(earlier) = &earlier {
-        earlier.repeat(&recording, &mut analysis.result);
-        compared = earlier.differences(&analysis.result)?;
-    }
+    let ([same, otherwise], repeated) = match &earlier {
+        Some(earlier) => earlier.repeat(&mut analysis.result)?,
+        None => (Default::default(), Ending::Clear),
+    };
 
     if let Some(folder) = &folder {
         let mut files = report::files(&analysis)?;
@@ -197,15 +205,16 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         }
     }
     json.write(|| report::result_json(&analysis.result))?;
-    if !json.is_standard_output() {
+    if json.is_standard_output() {
+        // It holds the JSON alone.
+        let _ = write!(anstream::stderr(), "{same}{otherwise}");
+    } else {
+        print(&same)?;
         print(&report::table(&analysis, columns()))?;
         if let Some(folder) = &folder {
             print(&format!("\nReport: {}\n", report::printable(&folder.file("report.html"))))?;
         }
-        print(&compared)?;
-    } else if !compared.is_empty() {
-        // Standard output holds the JSON alone.
-        let _ = anstream::stderr().write_all(compared.as_bytes());
+        print(&otherwise)?;
     }
-    Ok(analysis.result.verdict.into())
+    Ok(repeated.max(analysis.result.verdict.into()))
 }

@@ -195,6 +195,8 @@ pub struct Program {
     pub commit: Option<&'static str>,
     /// What it was built for, such as "x86_64-linux".
     pub target: String,
+    /// SHA-256 of its file, where a release ran as a program of its own.
+    pub sha256: Option<String>,
 }
 
 impl Program {
@@ -206,7 +208,15 @@ impl Program {
             version: env!("CARGO_PKG_VERSION"),
             commit: option_env!("DROPCHECK_COMMIT"),
             target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            sha256: None,
         }
+    }
+
+    /// "dropcheck 0.1.0 (0123abc)".
+    #[must_use]
+    pub fn words(&self) -> String {
+        let commit = self.commit.map_or_else(String::new, |commit| format!(" ({commit})"));
+        format!("{} {}{commit}", self.name, self.version)
     }
 }
 

@@ -1,7 +1,7 @@
 //! From a result alone to the same result again, and to what differs.
 
-use crate::command_line::at_fault;
-use crate::run::{analyze, dropcheck, fixture, words};
+use crate::command_line::{Bench, at_fault};
+use crate::run::{analyze, dropcheck, fixture, number, words};
 use std::fs;
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn a_result_alone_gives_the_same_result_again() {
     };
     with(words!["--cask", cask, "--without", "hum"], &first);
     let answer = with(words!["--from", first, "", ""], &second);
-    assert!(answer.stdout.contains("The same as"), "{}", answer.stdout);
+    assert!(answer.stdout.starts_with("The same recording; every number within 1e-9."), "{}", answer.stdout);
     let [before, after] = [&first, &second].map(|path| fs::read(path).expect("a result"));
     assert!(before == after, "not to the byte");
     let result: serde_json::Value = serde_json::from_slice(&before).expect("JSON");
@@ -44,6 +44,59 @@ fn a_result_alone_gives_the_same_result_again() {
         answer.stdout
     );
     at_fault(&with(words!["--from", cask, "", ""], &second), &["not JSON"]);
+}
+
+#[test]
+fn a_repetition_says_first_whether_recording_and_numbers_are_the_same() {
+    let bench = Bench::new();
+    let (recording, cask) = (fixture("anf18-german.csv"), fixture("anf18-german.toml"));
+    let first = analyze(&recording, &cask).stdout;
+    let another = bench.put("other.csv", fs::read_to_string(&recording).expect("a recording") + "\n");
+    let k =
+        first.split("\"k\": {\n    \"value\": ").nth(1).expect("a k").split(',').next().expect("a number");
+    let moved = |by: f64| first.replace(k, &(k.parse::<f64>().expect("a number") * by).to_string());
+    for (record, analysed, begins, status) in [
+        (first.clone(), &recording, "The same recording; every number within 1e-9.", 0),
+        (moved(1.0 + 1e-11), &recording, "The same recording; every number within 1e-9.", 0),
+        (moved(1.0 + 1e-6), &recording, "The same recording; ", 1),
+        (
+            first.replace("\"limits\": []", "\"limits\": [0]"),
+            &recording,
+            "The same recording; 1 of its values",
+            1,
+        ),
+        (first.clone(), &another, "Another recording: SHA-256 \"", 1),
+    ] {
+        let record = bench.put("result.json", record);
+        let answer = dropcheck(words!["analyze", analysed, "--from", record]);
+        let line = answer.stdout.lines().next().unwrap_or_default();
+        assert!(line.starts_with(begins), "{begins}: {line}");
+        assert_eq!(answer.status, status, "{line}");
+        assert_eq!(
+            line.contains("most of all impacts[0].restitution.value: 0."),
+            begins.ends_with("; "),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn the_report_of_another_recording_is_not_replaced_unasked() {
+    let bench = Bench::new();
+    let (out, cask) = (bench.0.path().join("report"), fixture("anf18-german.toml"));
+    let text = fs::read_to_string(fixture("anf18-german.csv")).expect("a recording");
+    let with = |recording: &Path, more: &[&str]| {
+        let words = words!["analyze", recording, "--cask", cask, "--out", out];
+        dropcheck(words.into_iter().chain(more.iter().map(std::ffi::OsStr::new)))
+    };
+    let own = bench.put("drop7.csv", &text);
+    assert_eq!(with(&own, &[]).status, 0);
+    let before = fs::read(out.join("result.json")).expect("a result");
+    let other = bench.put("drop8.csv", text + "\n");
+    at_fault(&with(&other, &[]), &["holds the report of another recording", "drop7.csv", "add --force"]);
+    assert!(fs::read(out.join("result.json")).is_ok_and(|kept| kept == before), "nothing is lost");
+    assert_eq!(with(&own, &[]).status, 0, "the same recording anew");
+    assert_eq!(with(&other, &["--force"]).status, 0);
 }
 
 #[test]
