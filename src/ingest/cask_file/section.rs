@@ -9,7 +9,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A kind of file: what a person calls it, what stands in the file itself, and its tables with their keys.
+/// A kind of file: what a person calls it, its keys that stand in no table, and its tables with their keys.
 pub(crate) struct Kind {
     /// "the cask file".
     pub name: &'static str,
@@ -18,22 +18,7 @@ pub(crate) struct Kind {
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind {
-    name: THE_CASK_FILE,
-    root: &[
-        "cask",
-        "drop",
-        "contact",
-        "tolerance",
-        "corrections",
-        "filter",
-        "recording",
-        "channel",
-        "test",
-        "observed",
-    ],
-    tables: &keys::TABLES,
-};
+pub(crate) const CASK_FILE: Kind = Kind { name: THE_CASK_FILE, root: &[], tables: &keys::TABLES };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
@@ -157,12 +142,14 @@ impl<'a> Document<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// The names of its keys.
+    /// The names of its keys, and those of the tables in the file itself.
     fn keys(&self) -> Vec<&'static str> {
-        match self.document.kind.tables.iter().find(|table| table.name == self.name) {
-            Some(table) => table.keys.iter().map(|key| key.name).collect(),
-            None => self.document.kind.root.to_vec(),
+        let Kind { root, tables, .. } = self.document.kind;
+        if let Some(table) = tables.iter().find(|table| table.name == self.name) {
+            return table.keys.iter().map(|key| key.name).collect();
         }
+        let names = tables.iter().map(|table| table.name);
+        root.iter().copied().chain(names.filter(|name| !keys::INNER_TABLES.contains(name))).collect()
     }
 
     /// The row of a key.
