@@ -13,7 +13,7 @@ use super::prediction::{BodyModel, Prediction};
 use super::quantities::{Contribution, FirstImpact, SlapDown};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
-use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
+use super::test_record::{Limit, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The overall word on a result, in the order of their gravity.
@@ -258,6 +258,8 @@ pub struct DropResult {
     pub test: TestRecord,
     /// What was seen otherwise, beside the result.
     pub observed: Vec<ObservedBeside>,
+    /// The limits of the cask file, beside the result.
+    pub limits: Vec<Limit>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
     /// The overall word.

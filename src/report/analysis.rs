@@ -58,7 +58,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
                      the target.",
-            style: "",
+            letterhead: file.letterhead.clone(),
             ..Frame::default()
         },
         chapters: vec![
@@ -71,6 +71,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             impacts(result),
             comparison(result),
             record::observed(&result.observed),
+            record::limits(&result.limits),
             quality(&result.quality).only(Medium::Page),
             Chapter::new("Curves").only(Medium::Page).with_all(curves),
             reconstruction(result),

@@ -75,6 +75,7 @@ fn result() -> DropResult {
         impacts: impacts(),
         test: crate::data::TestRecord::default(),
         observed: Vec::new(),
+        limits: Vec::new(),
         keys: serde_json::Value::Null,
         cask_text: "[cask]".into(),
         input: Input {

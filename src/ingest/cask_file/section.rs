@@ -33,6 +33,7 @@ fn titled(name: &str) -> String {
         name if LISTS.contains(&name) => format!("[[{name}]]"),
         name @ ("source" | "where") => format!("{name} = {{ … }}"),
         "observation" => "{ value = …, u95 = … }".into(),
+        "limit" => "{ least = …, most = … }".into(),
         "more" => "[test.more]".into(),
         name => format!("[{name}]"),
     }
@@ -236,9 +237,9 @@ impl<'a> Section<'a> {
             DeValue::Table(table) => self.document.section(name, table.clone(), value.span()),
             _ if name != key => Err(self.wrong(
                 value.span(),
-                format!("{key} is {}, not a value with its interval", described(value.get_ref())),
-                "{ value = …, u95 = … }".into(),
-                &format!("add the half-width of its 95 % interval: {}", self.example(key)),
+                format!("{key} is {}, not a table {}", described(value.get_ref()), titled(name)),
+                titled(name),
+                &format!("write it as in {}", self.example(key)),
             )),
             _ => Err(self.wrong(
                 value.span(),
