@@ -35,6 +35,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
+    result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
     result.verdict = judge::verdict(&mut result.quality);
     found

@@ -137,6 +137,7 @@ fn result(
         comparison: None,
         test: file.test.clone(),
         observed: Vec::new(),
+        limits: Vec::new(),
         quality: findings,
         verdict,
         events,

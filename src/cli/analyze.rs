@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace the report of another recording in --out
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Write the result as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -142,6 +145,9 @@ pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    // While the recording is read: the result names it.
+    #[cfg(not(debug_assertions))]
+    std::thread::spawn(rerun::program_sha256);
     let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let names = [&report::FILE_NAMES[..], &[pdf::NAME]].concat();
@@ -170,15 +176,17 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }
     })?;
+    if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
+        folder.spares_others(&recording.sha256)?;
+    }
     keep_freed_memory();
     let mut analysis = keep_threads_awake(|| crate::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
     rerun::stamp(&mut analysis.result, rerun::words())?;
-    let mut compared = String::new();
-    if let Some(earlier) = &earlier {
-        earlier.repeat(&recording, &mut analysis.result);
-        compared = earlier.differences(&analysis.result)?;
-    }
+    let ([same, otherwise], repeated) = match &earlier {
+        Some(earlier) => earlier.repeat(&mut analysis.result)?,
+        None => (Default::default(), Ending::Clear),
+    };
 
     if let Some(folder) = &folder {
         let mut files = report::files(&analysis)?;
@@ -204,20 +212,22 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         }
     }
     json.write(|| report::result_json(&analysis.result))?;
-    if !json.is_standard_output() {
+    if json.is_standard_output() {
+        // It holds the JSON alone.
+        let _ = write!(anstream::stderr(), "{same}{otherwise}");
+    } else {
+        print(&same)?;
         let page = folder.as_ref().map(|folder| folder.file("report.html"));
         print(&report::first_screen(&analysis, page.as_deref(), columns()))?;
         if arguments.full {
             print(&report::table(&analysis, columns()))?;
         }
-        print(&compared)?;
-    } else if !compared.is_empty() {
-        // Standard output holds the JSON alone.
-        let _ = anstream::stderr().write_all(compared.as_bytes());
+        print(&otherwise)?;
     }
     let not_strict = report::not_strict(&analysis).filter(|_| arguments.strict);
     if let Some(why) = &not_strict {
         complain_softly(&format!("--strict: {why}"));
     }
-    Ok(if not_strict.is_some() { Ending::NeedsALook } else { analysis.result.verdict.into() })
+    let strict = if not_strict.is_some() { Ending::NeedsALook } else { Ending::Clear };
+    Ok(repeated.max(strict).max(analysis.result.verdict.into()))
 }

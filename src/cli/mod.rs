@@ -47,8 +47,8 @@ look at the data's quality or the comparison; 2 not done, one message says why."
 
 /// "0.2.0 (0123abc)": the commit as far as the build was told.
 fn version() -> &'static str {
-    let Program { version, commit, .. } = Program::this();
-    commit.map_or(version, |commit| format!("{version} ({commit})").leak())
+    let words: &'static str = Program::this().words().leak();
+    words.split_once(' ').map_or(words, |(_, version)| version)
 }
 
 /// What accelerometers on both ends of a dropped cask say about its slap-down.

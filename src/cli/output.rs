@@ -4,7 +4,7 @@ use super::protected_folders::is_protected;
 use super::replace::{
     OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
 };
-use crate::ingest::opened;
+use crate::ingest::{bytes_of, opened};
 use crate::report::ReportError;
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
@@ -35,6 +35,9 @@ pub enum CannotWrite {
     #[error("{path} exists and was not written by dropcheck")]
     #[diagnostic(help("choose another place, or remove it yourself"))]
     Foreign { path: String },
+    #[error("{folder} holds the report of another recording, {recording}")]
+    #[diagnostic(help("name another folder; or add --force, which replaces that report"))]
+    OtherReport { folder: String, recording: String },
     #[error("{path} is a symbolic link")]
     #[diagnostic(help("name what it points to"))]
     Link { path: String },
@@ -107,6 +110,17 @@ impl Folder {
             Some(first) if !own => Err(CannotWrite::Foreign { path: shown(first) }),
             _ => Ok(Self { path: path.to_path_buf() }),
         }
+    }
+
+    /// Refuses to replace the report of another recording than that of this SHA-256.
+    pub fn spares_others(&self, sha256: &str) -> Result<(), CannotWrite> {
+        let there = bytes_of(&self.path.join("result.json"), 16).unwrap_or_default();
+        let there: serde_json::Value = serde_json::from_slice(&there).unwrap_or_default();
+        let [other, recording] = ["recording_sha256", "recording"].map(|key| &there["input"][key]);
+        if other.is_null() || other == sha256 {
+            return Ok(());
+        }
+        Err(CannotWrite::OtherReport { folder: shown(&self.path), recording: recording.to_string() })
     }
 
     /// Makes the folder, and those it lies in.

@@ -1,13 +1,17 @@
 //! A result to the record of the run that made it, and such a record to the same run again and what differs.
 
-use crate::data::{CaskFile, DropResult, Program, Recording, shortened};
+use super::Ending;
+use crate::data::{CaskFile, DropResult, Program, shortened};
 use crate::ingest::bytes_of;
 use crate::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Numbers nearer to one another than this share of their magnitude are the same: machines round otherwise.
+const SAME_WITHIN: f64 = 1e-9;
 
 /// Lines on what differs, at most.
 const MOST_LINES: usize = 20;
@@ -32,10 +36,20 @@ pub fn words() -> Vec<String> {
     WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
+/// SHA-256 of the program's file; `None` where it cannot be read, or where an interpreter runs this.
+pub fn program_sha256() -> Option<String> {
+    static OWN: OnceLock<Option<String>> = OnceLock::new();
+    let file =
+        std::env::current_exe().ok().filter(|file| file.file_stem().is_some_and(|own| own == "dropcheck"));
+    OWN.get_or_init(|| ingest::sha256(&file?).ok()).clone()
+}
+
 /// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is
 /// set.
 pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()> {
-    result.program = Some(Program::this());
+    // As the commit, for a release alone.
+    let sha256 = if cfg!(debug_assertions) { None } else { program_sha256() };
+    result.program = Some(Program { sha256, ..Program::this() });
     result.command = command;
     let now = match std::env::var("SOURCE_DATE_EPOCH") {
         Ok(seconds) => {
@@ -79,56 +93,80 @@ impl EarlierResult {
         made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.as_str())
     }
 
-    /// Gives a result that was made again the words of the first, where it is of the same recording.
-    pub fn repeat(&self, recording: &Recording, result: &mut DropResult) {
+    /// Gives a result that was made again the words of the first, where it is of the same recording. Says
+    /// whether recording and numbers are those of the record, what is otherwise but for the date, and whether
+    /// a person should look.
+    pub fn repeat(&self, result: &mut DropResult) -> miette::Result<([String; 2], Ending)> {
         let input = &self.result["input"];
-        if input["recording_sha256"] == recording.sha256.as_str() {
+        let (before, here) = (&input["recording_sha256"], Value::from(&result.input.recording_sha256[..]));
+        let mut recording = format!("Another recording: SHA-256 {here} here, {before} in {}", self.name);
+        if *before == here {
+            "The same recording".clone_into(&mut recording);
             let name = input["recording"].as_str().unwrap_or(&result.input.recording);
             result.input.recording = name.to_owned();
         }
         let words = self.result["command"].as_array().into_iter().flatten();
         result.command = words.filter_map(|word| word.as_str().map(str::to_owned)).collect();
-    }
-
-    /// What is otherwise than in the record, but for the date, one line each.
-    pub fn differences(&self, result: &DropResult) -> miette::Result<String> {
         let now: Value = serde_json::from_slice(&report::result_json(result)?).into_diagnostic()?;
-        let mut lines = Vec::new();
-        compare("", &self.result, &now, &mut lines);
-        lines.retain(|line| !line.starts_with("analysed:"));
+        let mut found = Vec::new();
+        compare("", [&self.result, &now], 0.0, &mut found);
+        found.retain(|(_, line)| !line.starts_with("analysed:"));
         // What was stated otherwise is why the rest is otherwise.
-        lines.sort_by_key(|line| !line.starts_with("settings."));
-        let name = &self.name;
-        if lines.is_empty() {
-            return Ok(format!("The same as {name}.\n"));
-        }
-        let more = lines.len().saturating_sub(MOST_LINES);
-        lines.truncate(MOST_LINES);
-        let end = if more > 0 { format!("\n  … and {more} more") } else { String::new() };
-        let lines: Vec<String> = lines.iter().map(|line| report::printable(&shortened(line))).collect();
-        Ok(format!("Otherwise than {}:\n  {}{end}\n", report::printable(name), lines.join("\n  ")))
+        let is_stated = |line: &str| line.starts_with("settings.");
+        found.sort_by(|a, b| is_stated(&b.1).cmp(&is_stated(&a.1)).then(b.0.total_cmp(&a.0)));
+        let values = found.iter().filter(|(share, _)| *share > 0.0).count();
+        let numbers = match found.first().filter(|_| values > 0) {
+            None => "every number within 1e-9".to_owned(),
+            Some((_, line)) => format!("{values} of its values differ, most of all {line}"),
+        };
+        let shown = |line: &str| report::printable(&shortened(line));
+        let head = format!("{}.\n\n", shown(&format!("{recording}; {numbers}")));
+        let title = (!found.is_empty()).then(|| format!("Otherwise than {}:\n", shown(&self.name)));
+        let lines = found.iter().take(MOST_LINES).map(|(_, line)| format!("  {}\n", shown(line)));
+        let more = found.len().checked_sub(MOST_LINES).filter(|more| *more > 0);
+        let more = more.map(|more| format!("  … and {more} more\n"));
+        let list = title.into_iter().chain(lines).chain(more).collect();
+        let is_same = values == 0 && *before == here;
+        Ok(([head, list], if is_same { Ending::Clear } else { Ending::NeedsALook }))
     }
 }
 
-/// Adds a line for each value that differs, by its place.
-fn compare(place: &str, before: &Value, now: &Value, lines: &mut Vec<String>) {
+/// Adds a line for each value that differs, by its place, behind the share of its magnitude by which a number
+/// does: infinite for what has no magnitude and yet counts, 0 for words. Numbers are held against their own
+/// magnitude and this one.
+fn compare(place: &str, [before, now]: [&Value; 2], magnitude: f64, found: &mut Vec<(f64, String)>) {
     let under = |key: &str| if place.is_empty() { key.to_owned() } else { format!("{place}.{key}") };
     match (before, now) {
-        (Value::Object(a), Value::Object(b)) => {
-            let added = b.keys().filter(|key| !a.contains_key(*key));
-            for key in a.keys().chain(added) {
-                compare(&under(key), &before[key], &now[key], lines);
+        (Value::Object(a), Value::Object(_)) => {
+            // A value is as near as its half-width lets it be.
+            let magnitude = if a.contains_key("u95") { largest(a.values()) } else { 0.0 };
+            for (key, before) in a {
+                compare(&under(key), [before, &now[key]], magnitude, found);
             }
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
-            for (i, (a, b)) in a.iter().zip(b).enumerate() {
-                compare(&format!("{place}[{i}]"), a, b, lines);
+            for (i, pair) in a.iter().zip(b).enumerate() {
+                compare(&format!("{place}[{i}]"), pair.into(), largest(a.iter()), found);
             }
         }
-        (a, b) if a == b => {}
         (Value::Array(a), Value::Array(b)) => {
-            lines.push(format!("{place}: {} entries before, {} now", a.len(), b.len()));
+            found.push((f64::INFINITY, format!("{place}: {} entries before, {} now", a.len(), b.len())));
         }
-        (a, b) => lines.push(format!("{place}: {a} before, {b} now")),
+        (a, b) if a == b => {}
+        (a, b) => {
+            let share = match (a.as_f64(), b.as_f64()) {
+                (Some(a), Some(b)) => (a - b).abs() / magnitude.max(a.abs()).max(b.abs()),
+                _ if a.is_string() && b.is_string() => 0.0,
+                _ => f64::INFINITY,
+            };
+            if share == 0.0 || share > SAME_WITHIN {
+                found.push((share, format!("{place}: {a} before, {b} now")));
+            }
+        }
     }
+}
+
+/// The largest magnitude of the numbers among these.
+fn largest<'a>(values: impl Iterator<Item = &'a Value>) -> f64 {
+    values.filter_map(Value::as_f64).map(f64::abs).fold(0.0, f64::max)
 }

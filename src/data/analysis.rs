@@ -13,7 +13,7 @@ use super::prediction::{BodyModel, Prediction};
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
-use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
+use super::test_record::{Limit, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The overall word on a result, in the order of their gravity.
@@ -195,6 +195,8 @@ pub struct Program {
     pub commit: Option<&'static str>,
     /// What it was built for, such as "x86_64-linux".
     pub target: String,
+    /// SHA-256 of its file, where a release ran as a program of its own.
+    pub sha256: Option<String>,
 }
 
 impl Program {
@@ -206,7 +208,15 @@ impl Program {
             version: env!("CARGO_PKG_VERSION"),
             commit: option_env!("DROPCHECK_COMMIT"),
             target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            sha256: None,
         }
+    }
+
+    /// "dropcheck 0.1.0 (0123abc)".
+    #[must_use]
+    pub fn words(&self) -> String {
+        let commit = self.commit.map_or_else(String::new, |commit| format!(" ({commit})"));
+        format!("{} {}{commit}", self.name, self.version)
     }
 }
 
@@ -248,6 +258,8 @@ pub struct DropResult {
     pub test: TestRecord,
     /// What was seen otherwise, beside the result.
     pub observed: Vec<ObservedBeside>,
+    /// The limits of the cask file, beside the result.
+    pub limits: Vec<Limit>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
     /// The overall word.

@@ -1,7 +1,7 @@
 //! A cask file, checked.
 
 use super::cask::{Cask, ChannelSpec, Contact, Drop, FilterChoice};
-use super::test_record::{Observed, TestRecord};
+use super::test_record::{Letterhead, Limit, Observed, TestRecord};
 use super::tolerances::{Corrections, Tolerances};
 use std::path::PathBuf;
 
@@ -34,6 +34,10 @@ pub struct CaskFile {
     pub test: TestRecord,
     /// `[observed]`.
     pub observed: Vec<Observed>,
+    /// `[limits]`.
+    pub limits: Vec<Limit>,
+    /// `[report]`.
+    pub letterhead: Letterhead,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
 }
@@ -62,6 +66,8 @@ impl CaskFile {
             channels: Vec::new(),
             test: TestRecord::default(),
             observed: Vec::new(),
+            limits: Vec::new(),
+            letterhead: Letterhead::default(),
             defaults: Vec::new(),
         }
     }

@@ -18,7 +18,7 @@ pub enum Takes {
     Texts,
     /// A table of the user's own names.
     Table,
-    /// A value with its interval: { value = …, u95 = …, by = "…" }.
+    /// A value with its interval, or limits: { value = …, u95 = …, by = "…" }, { least = …, most = … }.
     Observation,
     /// A number.
     Number(Allowed),

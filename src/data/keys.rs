@@ -11,10 +11,10 @@ pub(crate) use super::key::{number, text};
 pub use super::tolerances::{CORRECTIONS, TOLERANCE};
 
 /// Tables that stand as the value of a key: no line of a file begins them.
-pub const INNER_TABLES: [&str; 3] = ["source", "where", "observation"];
+pub const INNER_TABLES: [&str; 4] = ["source", "where", "observation", "limit"];
 
 /// The tables of a cask file, in the order of the form.
-pub static TABLES: [KeyTable; 13] = [
+pub static TABLES: [KeyTable; 16] = [
     KeyTable { name: "test", remark: "for the head of the report; changes no number", keys: &TEST },
     KeyTable { name: "cask", remark: "", keys: &CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
@@ -36,10 +36,13 @@ pub static TABLES: [KeyTable; 13] = [
         remark: "what was seen otherwise, held against the result",
         keys: &OBSERVED,
     },
+    KeyTable { name: "limits", remark: "the customer's, held against the result", keys: &LIMITS },
+    KeyTable { name: "report", remark: "around the page report.html", keys: &REPORT },
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
     KeyTable { name: "source", remark: "", keys: &SOURCE },
     KeyTable { name: "where", remark: "", keys: &WHERE },
     KeyTable { name: "observation", remark: "", keys: &OBSERVATION },
+    KeyTable { name: "limit", remark: "one of the two or both", keys: &LIMIT },
 ];
 
 /// Keys of `[test]`.
@@ -66,12 +69,12 @@ pub const TEST: [Key; 13] = [
 
 /// Keys of `[observed]`.
 pub const OBSERVED: [Key; 6] = [
-    observation("slap_down_speed_m_s", "{ value = 20.4, u95 = 0.3, by = \"video\" }"),
-    observation("k", "{ value = 0.55, u95 = 0.05 }"),
-    observation("angular_velocity_rad_s", "{ value = 4.6, u95 = 0.1 }"),
-    observation("angle_deg", "{ value = 1.0, u95 = 0.5 }"),
-    observation("flight_time_s", "{ value = 0.056, u95 = 0.001 }"),
-    observation("impact_velocity_m_s", "{ value = 13.25, u95 = 0.05 }"),
+    observation("slap_down_speed_m_s", "{ value = 20.4, u95 = 0.3, by = \"video\" }", "slap-down speed"),
+    observation("k", "{ value = 0.55, u95 = 0.05 }", "coefficient of restitution"),
+    observation("angular_velocity_rad_s", "{ value = 4.6, u95 = 0.1 }", "angular velocity"),
+    observation("angle_deg", "{ value = 1.0, u95 = 0.5 }", "angle at slap-down"),
+    observation("flight_time_s", "{ value = 0.056, u95 = 0.001 }", "flight time"),
+    observation("impact_velocity_m_s", "{ value = 13.25, u95 = 0.05 }", "impact velocity"),
 ];
 
 /// Keys of an observation.
@@ -79,6 +82,26 @@ pub const OBSERVATION: [Key; 3] = [
     number("value", REQUIRED).shown("20.4", ""),
     number("u95", REQUIRED).above_zero().shown("0.3", "half-width of its 95 % interval"),
     text("by", "–").shown(r#""video, 5000 frames/s""#, ""),
+];
+
+/// Keys of `[limits]`.
+pub const LIMITS: [Key; 6] = [
+    observation("slap_down_speed_m_s", "{ most = 25.0 }", "slap-down speed"),
+    observation("k", "{ least = 0.2, most = 0.8 }", "coefficient of restitution"),
+    observation("rigid_body_deceleration_g", "{ most = 300.0 }", "rigid-body deceleration"),
+    observation("force_mn", "{ most = 12.0 }", "vertical force"),
+    observation("crush_mm", "{ most = 150.0 }", "crush"),
+    observation("energy_kj", "{ most = 250.0 }", "energy absorbed"),
+];
+
+/// Keys of a limit.
+pub const LIMIT: [Key; 2] = [number("least", "–").shown("0.2", ""), number("most", "–").shown("25.0", "")];
+
+/// Keys of `[report]`.
+pub const REPORT: [Key; 3] = [
+    text("header", "–").shown(r#""Drop Test Centre""#, "above the title"),
+    text("footer", "–").shown(r#""Not to be copied in parts""#, "below each page"),
+    text("logo", "–").shown(r#""logo.svg""#, "PNG, JPEG or SVG in the folder of this file"),
 ];
 
 /// Keys of `[cask]`.
@@ -216,6 +239,6 @@ pub const WHERE: [Key; 2] = [
     Key { takes: Takes::TextOrNumber, ..text("is", REQUIRED) }.shown(r#""left""#, ""),
 ];
 
-const fn observation(name: &'static str, example: &'static str) -> Key {
-    Key { takes: Takes::Observation, ..text(name, "–") }.shown(example, "")
+const fn observation(name: &'static str, example: &'static str, remark: &'static str) -> Key {
+    Key { takes: Takes::Observation, ..text(name, "–") }.shown(example, remark)
 }

@@ -73,6 +73,8 @@ pub use study::{
     AngleCurve, BodyPath, Criterion, CriticalAngle, MonteCarlo, Pose, PredictionRow, QuantileCurves, Study,
     StudyRequest, Sweep, SweepVariable, Uncertain,
 };
-pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
+pub use test_record::{
+    Letterhead, Limit, LimitState, Observed, ObservedBeside, Photo, SensorRecord, TestRecord,
+};
 pub use tolerances::{Corrections, TOLERANCES, Tolerance, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

@@ -40,6 +40,8 @@ pub struct PredictionRow {
     pub length_m: f64,
     /// Height of the drop, m.
     pub drop_height_m: f64,
+    /// Whether the cask turns over before R strikes, [`Prediction::turns_over`].
+    pub turns_over: bool,
     /// What the model says.
     #[serde(flatten)]
     pub prediction: Prediction,

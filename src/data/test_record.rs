@@ -51,12 +51,12 @@ pub struct SensorRecord {
     pub calibrated: Option<String>,
 }
 
-/// A photograph of the test; a JSON holds the name of its file.
+/// A photograph of the test, or a logo; a JSON holds the name of its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Photo {
     /// The file, as the cask file names it.
     pub name: String,
-    /// "image/png" or "image/jpeg".
+    /// "image/png", "image/jpeg" or, of a logo, "image/svg+xml".
     pub media_type: &'static str,
     /// The file's bytes; empty where only the name is known.
     pub bytes: Arc<[u8]>,
@@ -79,6 +79,44 @@ pub struct Observed {
     pub u95: f64,
     /// By what it was seen.
     pub by: Option<String>,
+}
+
+/// A limit of `[limits]`, in the unit of its key, beside what was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Limit {
+    /// Its key.
+    pub name: &'static str,
+    /// The least that is allowed.
+    pub least: Option<f64>,
+    /// The most.
+    pub most: Option<f64>,
+    /// What was measured; `None` in a cask file.
+    pub measured: Option<Estimate>,
+    /// Whether it is kept.
+    pub state: LimitState,
+}
+
+/// How what was measured stands against a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitState {
+    /// The whole interval lies within.
+    Kept,
+    /// The whole interval lies beyond.
+    Exceeded,
+    /// The interval holds the limit, or the quantity is not determined.
+    Undecided,
+}
+
+/// `[report]`: what a site puts around its reports.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Letterhead {
+    /// Above the title.
+    pub header: Option<String>,
+    /// Below each page.
+    pub footer: Option<String>,
+    /// A picture beside the header.
+    pub logo: Option<Photo>,
 }
 
 /// An observed quantity beside the same of the result.

@@ -35,14 +35,15 @@ pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
     of_bytes(path, &read(path, &CASK_FILE)?, Some(path.parent().unwrap_or(Path::new(""))))
 }
 
-/// The cask file with its photographs, for a page.
+/// The cask file with its photographs and its logo, for a page.
 ///
 /// # Errors
 /// [`CaskFileError`] where one is no longer as it was.
 pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
     let folder = file.path.parent().unwrap_or(Path::new("")).to_owned();
     // One whose kind is not known was never looked for.
-    for photo in file.test.photos.iter_mut().filter(|photo| !photo.media_type.is_empty()) {
+    let pictures = file.test.photos.iter_mut().chain(&mut file.letterhead.logo);
+    for photo in pictures.filter(|photo| !photo.media_type.is_empty()) {
         let path = folder.join(&photo.name);
         let bytes = bytes_of(&path, record::LARGEST_PHOTO_MIB);
         let io =
@@ -155,6 +156,8 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let channels = channel::channels(&root, &cask)?;
     let test = record::test(&root.table("test")?, photos)?;
     let observed = record::observed(&root.table("observed")?)?;
+    let limits = record::limits(&root.table("limits")?)?;
+    let letterhead = record::letterhead(&root.table("report")?, photos)?;
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
     }
@@ -172,6 +175,8 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         channels,
         test,
         observed,
+        limits,
+        letterhead,
         defaults,
     })
 }

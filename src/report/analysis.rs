@@ -17,7 +17,7 @@ use super::text::{
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction,
+    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Program,
     STANDARD_GRAVITY_M_S2, Severity, TestRecord,
 };
 
@@ -59,7 +59,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
                      the target.",
-            style: "",
+            letterhead: file.letterhead.clone(),
             ..Frame::default()
         },
         chapters: vec![
@@ -72,6 +72,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             impacts(result),
             comparison(result),
             record::observed(&result.observed),
+            record::limits(&result.limits),
             quality(&result.quality).only(Medium::Page),
             Chapter::new("Curves").only(Medium::Page).with_all(curves),
             reconstruction(result),
@@ -310,15 +311,15 @@ fn channels(result: &DropResult) -> Chapter {
 
 /// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
 fn program(result: &DropResult) -> String {
-    let commit = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
-    let when = result.analysed.as_ref().map(|when| format!(", {when}"));
-    format!("dropcheck {}{}{}", result.version, commit.unwrap_or_default(), when.unwrap_or_default())
+    let program = result.program.as_ref();
+    let words = program.map_or_else(|| format!("dropcheck {}", result.version), Program::words);
+    result.analysed.as_ref().map_or_else(|| words.clone(), |when| format!("{words}, {when}"))
 }
 
 /// Which files, which version, which settings.
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     let (input, speed) = (&result.input, interval(result.slap_down.speed.as_ref()));
-    let facts = vec![
+    let mut facts = vec![
         Fact::words("Recording", format!("{} ({})", input.recording, json_word(input.format))),
         Fact::code("its SHA-256", &input.recording_sha256[..]),
         Fact::words("Cask file", &input.cask[..]),
@@ -326,6 +327,8 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         Fact::words("Program", program(result)),
         Fact::words("Slap-down speed", format!("{speed} · result schema {}", result.schema)),
     ];
+    let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
+    facts.splice(5..5, own.map(|sha256| Fact::code("its SHA-256", sha256)));
     let stated = settings::of_cask_file(file, &result.settings);
     let all: Vec<_> = result.settings.iter().chain(&stated).collect();
     let settings = ReportTable::of(&all)

@@ -5,6 +5,7 @@ use super::medium::{Medium, Words};
 use super::pictures::draw::Picture;
 use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
 use super::text::{Style, capital, printable};
+use crate::data::Photo;
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
@@ -16,7 +17,8 @@ const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_st
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
-    let Frame { title, product, version, heading, about, footer, style, data, .. } = &document.page;
+    let Frame { title, product, version, heading, about, footer, letterhead, style, data, .. } =
+        &document.page;
     let scripts = scripts(document, pictures);
     let generator = format!("dropcheck {version}");
     html! {
@@ -30,10 +32,13 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
                 style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) {
-                    (PreEscaped(UPLOT_STYLE)) } }
+                    (PreEscaped(UPLOT_STYLE)) } @if let Some(words) = &letterhead.footer {
+                    (PreEscaped(below_each(words))) } }
             }
             body { main {
                 header {
+                    @if let Some(logo) = &letterhead.logo { (image(logo, "logo")) }
+                    @if let Some(words) = &letterhead.header { p { (printable(words)) } }
                     div class="product" { (product) " · " (generator) }
                     h1 { (printable(heading)) }
                     p class="soft" { (printable(about)) }
@@ -44,7 +49,10 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                     }
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
                 }
-                footer { (footer) }
+                footer {
+                    (footer)
+                    @if let Some(words) = &letterhead.footer { p { (printable(words)) } }
+                }
                 @if !data.is_empty() { script type="application/json" id="data" { (PreEscaped(data)) } }
                 @for script in &scripts { script { (PreEscaped(script)) } }
             } }
@@ -81,12 +89,7 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         },
         PartContent::Photographs(photos) => html! {
             @for photo in photos {
-                @let words = printable(&photo.name);
-                figure class="photo" {
-                    img alt=(words) src=(format!("data:{};base64,{}", photo.media_type,
-                        STANDARD.encode(&photo.bytes)));
-                    figcaption { (words) }
-                }
+                figure class="photo" { (image(photo, "")) figcaption { (printable(&photo.name)) } }
             }
         },
         PartContent::List(sentences) => {
@@ -99,6 +102,19 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
             } } } }
         },
     }
+}
+
+/// A picture whole in the page; as an image, an SVG runs and fetches nothing.
+fn image(Photo { name, media_type, bytes }: &Photo, class: &str) -> Markup {
+    let data = format!("data:{media_type};base64,{}", STANDARD.encode(bytes));
+    html! { @if !bytes.is_empty() { img class=[self::class(class)] alt=(printable(name)) src=(data); } }
+}
+
+/// Words below each page of paper, as a style.
+fn below_each(words: &str) -> String {
+    let escaped = |c| format!("\\{:x} ", u32::from(c));
+    let words: String = printable(words).chars().map(escaped).collect();
+    format!("@page {{ @bottom-center {{ content: \"{words}\"; font: 8px sans-serif; }} }}")
 }
 
 /// Whether any picture is to be zoomed.

@@ -5,7 +5,7 @@ use super::medium::{Medium, Words};
 use super::rounding::MISSING;
 use super::table::{CellKind, ReportTable, TableRows};
 use super::text::Style;
-use crate::data::Photo;
+use crate::data::{Letterhead, Photo};
 
 /// What is read from its first line to its last.
 #[derive(Default)]
@@ -31,6 +31,8 @@ pub(crate) struct Frame {
     pub(crate) about: String,
     /// Sentences at the foot.
     pub(crate) footer: &'static str,
+    /// What a site puts around it.
+    pub(crate) letterhead: Letterhead,
     /// Style besides that of all pages.
     pub(crate) style: &'static str,
     /// What runs in the page, and the JSON that it reads; nothing where they are empty.

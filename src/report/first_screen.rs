@@ -7,7 +7,7 @@ use super::text::{
     Style, clamped, counted, distinct, json_word, sentence, styled, styled_lines, tail, verdict_sentence,
     verdict_style, verdict_word,
 };
-use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, Severity, Untested};
+use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, LimitState, Severity, Untested};
 
 /// Columns that the name of a row takes.
 const NAME_WIDTH: usize = 16;
@@ -137,7 +137,10 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     ];
     let foot = row("Findings", &findings(result), 1)
         + &report.map_or_else(String::new, |page| row("Report", page, 1));
-    let before = head + &numbers.concat();
+    let limits: Vec<String> =
+        result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state))).collect();
+    let limits = if limits.is_empty() { String::new() } else { row("Limits", &limits.join(", "), 1) };
+    let before = head + &numbers.concat() + &limits;
     let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
         let remedies = row("To test them", &remedies, 2);
         let taken = [&before, &remedies, &foot].map(|text| text.lines().count()).iter().sum();
@@ -150,21 +153,18 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
 #[must_use]
 pub fn not_strict(analysis: &Analysis) -> Option<String> {
     let result = &analysis.result;
-    let untested = result.untested.len();
-    let defaults = weighty_default_count(result, &analysis.cask_file);
+    let open = result.limits.iter().filter(|limit| limit.state != LimitState::Kept).count();
     let reasons = [
-        (untested > 0).then(|| format!("nothing tests {}", counted(untested, "input"))),
-        (defaults > 0).then(|| {
-            format!(
-                "{} over a tenth of the variance",
-                if defaults == 1 {
-                    "1 default carries".to_owned()
-                } else {
-                    format!("{defaults} defaults carry")
-                }
-            )
-        }),
+        (result.untested.len(), "untested input"),
+        (weighty_default_count(result, &analysis.cask_file), "default"),
+        (open, "limit"),
     ];
-    let reasons: Vec<String> = reasons.into_iter().flatten().collect();
-    (!reasons.is_empty()).then(|| reasons.join("; "))
+    let what = ["", " with over a tenth of the variance", " exceeded or undecided"];
+    let reasons: Vec<String> = reasons
+        .iter()
+        .zip(what)
+        .filter(|((count, _), _)| *count > 0)
+        .map(|((count, noun), what)| counted(*count, noun) + what)
+        .collect();
+    (!reasons.is_empty()).then(|| reasons.join(", "))
 }

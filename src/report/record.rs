@@ -4,9 +4,10 @@
 use super::document::{Chapter, ChapterPart, Fact, PartContent};
 use super::medium::Medium;
 use super::rounding::{MISSING, interval, optional_fixed, plain};
-use super::table::{ReportTable, TableShape};
-use super::text::json_word;
-use crate::data::{CaskFile, ChannelSpec, ObservedBeside, TestRecord};
+use super::table::{ReportTable, TableCell, TableShape};
+use super::text::{Style, json_word};
+use crate::data::keys::{LIMITS, OBSERVED};
+use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, TestRecord};
 
 /// Who tested what, where and when; nothing where the cask file does not say.
 pub(super) fn head(test: &TestRecord) -> Chapter {
@@ -37,16 +38,9 @@ pub(super) fn line(test: &TestRecord) -> Option<ChapterPart> {
     (!words.is_empty()).then(|| ChapterPart::line(words.join(" · ")).only(Medium::Terminal))
 }
 
-/// What a key of `[observed]` is called.
-fn words(key: &str) -> &str {
-    match key {
-        "slap_down_speed_m_s" => "slap-down speed",
-        "angular_velocity_rad_s" => "angular velocity",
-        "angle_deg" => "angle at slap-down",
-        "flight_time_s" => "flight time",
-        "impact_velocity_m_s" => "impact velocity",
-        key => key,
-    }
+/// What a key of `[observed]` or `[limits]` is called.
+fn words(name: &str) -> &str {
+    OBSERVED.iter().chain(&LIMITS).find(|key| key.name == name).map_or(name, |key| key.remark)
 }
 
 /// What was seen otherwise beside the result.
@@ -71,6 +65,32 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
         .number("E_n", |seen| optional_fixed(seen.e_n, 2))
         .text("Agree", agrees);
     chapter.with(table)
+}
+
+const LIMITS_CAPTION: &str = "The customer's. Undecided: the interval holds the limit, or the quantity is \
+                              not determined. Deceleration (at the centre of gravity), force, crush, energy: \
+                              the larger of both impacts'.";
+
+/// What was measured beside the customer's limits.
+pub(super) fn limits(all: &[Limit]) -> Chapter {
+    let state = |row: &Limit| {
+        let style = match row.state {
+            LimitState::Kept => Style::Green,
+            LimitState::Exceeded => Style::Red,
+            LimitState::Undecided => Style::Yellow,
+        };
+        TableCell::toned(style, json_word(row.state))
+    };
+    let bound = |bound: Option<f64>| bound.map_or_else(|| MISSING.to_owned(), |bound| plain(bound, 6));
+    let table = ReportTable::of(all)
+        .class("")
+        .caption(LIMITS_CAPTION)
+        .head("Quantity", |row| words(row.name))
+        .number("Measured", |row| interval(row.measured.as_ref()))
+        .number("Least", |row| bound(row.least))
+        .number("Most", |row| bound(row.most))
+        .text("Limit", state);
+    Chapter::new("Limits").with_all((!all.is_empty()).then(|| table.into()))
 }
 
 /// Which sensor stands where, in which direction it reads, and by which papers.

@@ -68,13 +68,14 @@ fn result() -> DropResult {
     DropResult {
         schema: "dropcheck.result/1",
         version: "0.1.0",
-        program: Some(Program { commit: Some("0123abc"), ..Program::this() }),
+        program: Some(Program { commit: Some("0123abc"), sha256: Some("89ab".into()), ..Program::this() }),
         command: vec!["analyze".into()],
         analysed: Some("2026-11-24T02:00:00Z".into()),
         amplification: Some(Estimate::new(1.55, 0.03, "1")),
         impacts: impacts(),
         test: crate::data::TestRecord::default(),
         observed: Vec::new(),
+        limits: Vec::new(),
         keys: serde_json::Value::Null,
         cask_text: "[cask]".into(),
         input: Input {

@@ -107,7 +107,8 @@ fn of(request: StudyRequest) -> Study {
         for &length_m in &lengths {
             for &case in &cases {
                 let prediction = prediction(case, angle_deg, length_m);
-                rows.push(PredictionRow { angle_deg, length_m, drop_height_m: 9.0, prediction });
+                let turns_over = false;
+                rows.push(PredictionRow { angle_deg, length_m, drop_height_m: 9.0, turns_over, prediction });
             }
         }
     }

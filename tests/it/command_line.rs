@@ -284,7 +284,7 @@ fn the_recording_is_never_altered() {
         let stem = name.split('.').next().expect("a stem");
         let cask = fixture(&format!("{stem}.toml"));
         let out = bench.0.path().join("out");
-        dropcheck(words!["analyze", copy, "--cask", cask, "--out", out]);
+        dropcheck(words!["analyze", copy, "--cask", cask, "--out", out, "--force"]);
         dropcheck(words!["inspect", copy]);
         dropcheck(words!["init", copy]);
         assert!(fs::read(&copy).expect("the copy") == before, "{name} was altered");

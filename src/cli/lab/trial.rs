@@ -3,11 +3,13 @@
 use super::super::Ending;
 use super::super::output::{Folder, columns, print};
 use super::super::progress::with_progress;
+use super::super::rerun::program_sha256;
 use super::document::MarkedDocument;
+use crate::data::Program;
 use crate::lab::data::{TrialMachine, TrialRequest};
 use crate::lab::methods::{self, References};
 use crate::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
-use crate::{ingest, report};
+use crate::report;
 use std::path::Path;
 
 /// Writes the trial into the folder `out` and, by its extract, into the document `into`; ends with what is
@@ -38,9 +40,9 @@ pub fn run(
 
 /// What this program runs on.
 fn machine() -> TrialMachine {
-    let program = std::env::current_exe().ok().and_then(|program| ingest::sha256(&program).ok());
     TrialMachine {
-        program_sha256: program.unwrap_or_default(),
+        program_sha256: program_sha256().unwrap_or_default(),
+        program_commit: Program::this().commit,
         processor: processor().unwrap_or_else(|| "a processor that does not say its name".to_owned()),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         when: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string(),

@@ -1,10 +1,11 @@
-//! `[test]` and `[observed]` to what stands in the head of a report, and to what is held against the result.
+//! `[test]`, `[report]`, `[observed]` and `[limits]` to what stands around a report, and to what is held
+//! against the result.
 
 use super::CaskFileError;
 use super::section::{Placed, Section};
-use crate::data::keys::OBSERVED;
+use crate::data::keys::{LIMITS, OBSERVED};
 use crate::data::shown::bare;
-use crate::data::{Observed, Photo, TestRecord};
+use crate::data::{Letterhead, Limit, LimitState, Observed, Photo, TestRecord};
 use crate::ingest::opened;
 use std::ffi::OsStr;
 use std::io::Read;
@@ -18,11 +19,14 @@ const ALL_PHOTOS_MIB: u64 = 32;
 /// How the files begin that a page can show.
 const IMAGES: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "image/png"), (b"\xff\xd8\xff", "image/jpeg")];
 
+/// Within so many bytes an SVG says that it is one.
+const HEAD_OF_SVG: u64 = 4096;
+
 /// `[test]`; its photographs are looked for in `folder`, and known by name alone where there is none.
 pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord, CaskFileError> {
     let text = |key: &str| table.text(key).map(|text| text.map(|text| text.value));
     let mut left_bytes = ALL_PHOTOS_MIB << 20;
-    let photos = table.texts("photos")?.into_iter().map(|name| photo(table, name, folder, &mut left_bytes));
+    let photos = table.texts("photos")?.into_iter().map(|name| picture(table, name, folder, &mut left_bytes));
     Ok(TestRecord {
         id: text("id")?,
         title: text("title")?,
@@ -40,8 +44,15 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
     })
 }
 
-/// A photograph, of which only the beginning is looked at; it takes its share of `left_bytes`.
-fn photo(
+/// `[report]`; its logo is looked for in `folder`, as the photographs.
+pub(super) fn letterhead(table: &Section, folder: Option<&Path>) -> Result<Letterhead, CaskFileError> {
+    let text = |key: &str| table.text(key).map(|text| text.map(|text| text.value));
+    let logo = table.text("logo")?.map(|name| picture(table, name, folder, &mut (LARGEST_PHOTO_MIB << 20)));
+    Ok(Letterhead { header: text("header")?, footer: text("footer")?, logo: logo.transpose()? })
+}
+
+/// A photograph or a logo, of which only the beginning is looked at; it takes its share of `left_bytes`.
+fn picture(
     table: &Section,
     name: Placed<String>,
     folder: Option<&Path>,
@@ -49,8 +60,10 @@ fn photo(
 ) -> Result<Photo, CaskFileError> {
     let Placed { value: name, span } = name;
     let Some(folder) = folder else { return Ok(Photo { name, media_type: "", bytes: [].into() }) };
-    let wrong = |what: String, mend: &str| table.wrong(span.clone(), what, "PNG or JPEG".into(), mend);
-    let mend = "photographs stand in the folder of the cask file, by the names of their files";
+    let is_photo = table.row("photos").is_some();
+    let kinds = if is_photo { "PNG or JPEG" } else { "PNG, JPEG or SVG" };
+    let wrong = |what: String, mend: &str| table.wrong(span.clone(), what, kinds.into(), mend);
+    let mend = "pictures stand in the folder of the cask file, by the names of their files";
     // A cask file that was sent must not carry pictures from elsewhere into a report that goes back.
     if Path::new(&name).file_name() != Some(OsStr::new(&name)) {
         return Err(wrong(format!("{name} is not the name of a file in the folder of the cask file"), mend));
@@ -61,13 +74,15 @@ fn photo(
         if there.is_symlink() {
             return Err(std::io::Error::other("it is a link"));
         }
-        opened(&path)?.take(8).read_to_end(&mut begin).map(|_| there.len())
+        opened(&path)?.take(HEAD_OF_SVG).read_to_end(&mut begin).map(|_| there.len())
     });
     let length =
         looked.map_err(|refusal| wrong(format!("{name} cannot be read: {}", bare(&refusal)), mend))?;
-    let image = IMAGES.into_iter().find(|(kind, _)| begin.starts_with(kind));
-    let Some((_, media_type)) = image else {
-        return Err(wrong(format!("{name} is neither PNG nor JPEG"), "save it as PNG or JPEG"));
+    let is_svg = |begin: &[u8]| !is_photo && begin.windows(4).any(|word| word == b"<svg");
+    let image =
+        IMAGES.into_iter().find(|(kind, _)| begin.starts_with(kind)).map(|(_, media_type)| media_type);
+    let Some(media_type) = image.or(is_svg(&begin).then_some("image/svg+xml")) else {
+        return Err(wrong(format!("{name} is no {kinds}"), &format!("save it as {kinds}")));
     };
     for (most_mib, is_over, what) in [
         (LARGEST_PHOTO_MIB, length > LARGEST_PHOTO_MIB << 20, name.clone()),
@@ -98,4 +113,21 @@ pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> 
         Some(observation())
     };
     OBSERVED.iter().filter_map(|key| observed(key.name)).collect()
+}
+
+/// `[limits]`, in the order of its keys.
+pub(super) fn limits(table: &Section) -> Result<Vec<Limit>, CaskFileError> {
+    let limit = |name: &'static str| {
+        let bounds = table.table_as(name, "limit")?;
+        let bound = |key| bounds.number(key).map(|bound| bound.map(|bound| bound.value));
+        let (least, most) = (bound("least")?, bound("most")?);
+        if least.or(most).is_some_and(|least| least <= most.unwrap_or(f64::INFINITY)) {
+            return Ok(Limit { name, least, most, measured: None, state: LimitState::Undecided });
+        }
+        let message = format!("{name} has no least or most, or a least above its most");
+        let mend = format!("write it as in {}", table.example(name));
+        Err(bounds.wrong(bounds.span(), message, "least, most or both".into(), &mend))
+    };
+    let stated = LIMITS.iter().filter(|key| table.value(key.name).is_some());
+    stated.map(|key| limit(key.name)).collect()
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A kind of file: what a person calls it, what stands in the file itself, and its tables with their keys.
+/// A kind of file: what a person calls it, its keys that stand in no table, and its tables with their keys.
 pub(crate) struct Kind {
     /// "the cask file".
     pub name: &'static str,
@@ -18,22 +18,7 @@ pub(crate) struct Kind {
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind {
-    name: THE_CASK_FILE,
-    root: &[
-        "cask",
-        "drop",
-        "contact",
-        "tolerance",
-        "corrections",
-        "filter",
-        "recording",
-        "channel",
-        "test",
-        "observed",
-    ],
-    tables: &keys::TABLES,
-};
+pub(crate) const CASK_FILE: Kind = Kind { name: THE_CASK_FILE, root: &[], tables: &keys::TABLES };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
@@ -48,6 +33,7 @@ fn titled(name: &str) -> String {
         name if LISTS.contains(&name) => format!("[[{name}]]"),
         name @ ("source" | "where") => format!("{name} = {{ … }}"),
         "observation" => "{ value = …, u95 = … }".into(),
+        "limit" => "{ least = …, most = … }".into(),
         "more" => "[test.more]".into(),
         name => format!("[{name}]"),
     }
@@ -157,12 +143,14 @@ impl<'a> Document<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// The names of its keys.
+    /// The names of its keys, and those of the tables in the file itself.
     fn keys(&self) -> Vec<&'static str> {
-        match self.document.kind.tables.iter().find(|table| table.name == self.name) {
-            Some(table) => table.keys.iter().map(|key| key.name).collect(),
-            None => self.document.kind.root.to_vec(),
+        let Kind { root, tables, .. } = self.document.kind;
+        if let Some(table) = tables.iter().find(|table| table.name == self.name) {
+            return table.keys.iter().map(|key| key.name).collect();
         }
+        let names = tables.iter().map(|table| table.name);
+        root.iter().copied().chain(names.filter(|name| !keys::INNER_TABLES.contains(name))).collect()
     }
 
     /// The row of a key.
@@ -249,9 +237,9 @@ impl<'a> Section<'a> {
             DeValue::Table(table) => self.document.section(name, table.clone(), value.span()),
             _ if name != key => Err(self.wrong(
                 value.span(),
-                format!("{key} is {}, not a value with its interval", described(value.get_ref())),
-                "{ value = …, u95 = … }".into(),
-                &format!("add the half-width of its 95 % interval: {}", self.example(key)),
+                format!("{key} is {}, not a table {}", described(value.get_ref()), titled(name)),
+                titled(name),
+                &format!("write it as in {}", self.example(key)),
             )),
             _ => Err(self.wrong(
                 value.span(),

@@ -162,6 +162,8 @@ pub struct TrialMachine {
     pub system: String,
     /// SHA-256 of the program's file; empty where it cannot be read.
     pub program_sha256: String,
+    /// The commit that it was built of, where the build was told.
+    pub program_commit: Option<&'static str>,
     /// When the trial began, in universal time.
     pub when: String,
     /// Whether the program was built with optimisation; without it times say nothing.

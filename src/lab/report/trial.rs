@@ -93,6 +93,7 @@ mod tests {
             cores: 2,
             system: "linux".into(),
             program_sha256: "0123".into(),
+            program_commit: Some("4567abc"),
             when: "2026-11-24 12:00 UTC".into(),
             is_optimised: true,
         };

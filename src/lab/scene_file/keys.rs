@@ -2,20 +2,8 @@
 
 use crate::data::keys::{self, Key, KeyTable, flag, number, text};
 
-/// What stands in the file itself.
-pub(super) const ROOT: [&str; 11] = [
-    "name",
-    "seed",
-    "cask",
-    "drop",
-    "contact",
-    "first_end",
-    "second_end",
-    "contents",
-    "mode",
-    "recording",
-    "channel",
-];
+/// What stands in no table.
+pub(super) const ROOT: [&str; 2] = ["name", "seed"];
 
 pub(super) static TABLES: [KeyTable; 9] = [
     KeyTable { name: "cask", remark: "", keys: &keys::CASK },

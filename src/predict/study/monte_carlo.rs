@@ -30,7 +30,7 @@ pub(super) fn monte_carlo(cask_file: &CaskFile, request: &StudyRequest, angles_d
     let base = Fall { body: richest(cask_file), drop: cask_file.drop, contact, k: 0.0 };
     let draws: Vec<Traced> = (0..uncertain.draws)
         .into_par_iter()
-        .map(|index| trace(&draw(&base, &uncertain, index), angles_deg))
+        .map(|index| trace(&draw(&base, &uncertain, index), angles_deg, request.band_percent))
         .collect();
     let no_slap_down =
         share_of(angles_deg.len(), &draws, |traced, j| traced.samples[j].values[0] == f64::NEG_INFINITY);
@@ -51,7 +51,7 @@ pub(super) fn monte_carlo(cask_file: &CaskFile, request: &StudyRequest, angles_d
 ///
 /// The samples at true angles serve both: the vertex of the parabola through the highest and its neighbours
 /// is off by less than their spacing squared, far below the scatter of the draws.
-fn trace(draw: &Draw, angles_deg: &[f64]) -> Traced {
+fn trace(draw: &Draw, angles_deg: &[f64], band_percent: f64) -> Traced {
     let at = |angle_deg: f64| Sample::new(angle_deg, &draw.fall.at(angle_deg));
     let moved: Vec<Sample> =
         angles_deg.iter().map(|a| at((a + draw.angle_error_deg).clamp(0.0, 90.0))).collect();
@@ -62,23 +62,25 @@ fn trace(draw: &Draw, angles_deg: &[f64]) -> Traced {
     let mut inside = vec![at(low_deg)];
     inside.extend(within);
     inside.push(at(high_deg));
-    let largest = [0, 1, 2].map(|criterion| largest(&inside, criterion));
+    let largest = [0, 1, 2].map(|criterion| largest(&inside, criterion, band_percent));
     Traced { samples: moved, largest }
 }
 
 /// True angle and size of the largest of the samples with one impact of L, the angle by a parabola; NaN if
-/// there is none.
-fn largest(samples: &[Sample], criterion: usize) -> (f64, f64) {
+/// there is none. Its neighbours, as far off as the angle of a drop is known, lie within the band: a maximum
+/// that no rig hits is none, nor is its flank.
+fn largest(samples: &[Sample], criterion: usize, band_percent: f64) -> (f64, f64) {
     let value = |i: usize| samples[i].critical(criterion);
-    let mut top = 0;
-    for i in 1..samples.len() {
-        if value(i) > value(top) {
-            top = i;
-        }
-    }
-    if value(top) == f64::NEG_INFINITY {
+    let is_maximum = |i: &usize| {
+        let beside =
+            samples[i.saturating_sub(1)..samples.len().min(i + 2)].iter().filter(|s| s.course.is_some());
+        let in_band = |v: f64| v <= value(*i) && v >= value(*i) * (1.0 - band_percent / 100.0);
+        samples[*i].course.is_some() && beside.map(|s| s.critical(criterion)).all(in_band)
+    };
+    let maxima = (0..samples.len()).rev().filter(is_maximum);
+    let Some(top) = maxima.max_by(|a, b| value(*a).total_cmp(&value(*b))) else {
         return (f64::NAN, f64::NAN);
-    }
+    };
     let around = top.checked_sub(1).and_then(|before| samples.get(before..=top + 1));
     let angle_deg = match around {
         Some([a, b, c]) if a.course == b.course && b.course == c.course => {

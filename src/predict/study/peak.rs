@@ -105,7 +105,7 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
 /// The largest value of one criterion over samples that hold both sides of each jump, and the bands near it.
 ///
 /// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next
-/// one is taken.
+/// one is taken, which no flank of it is.
 pub(super) fn peak(
     samples: &[Sample],
     criterion: usize,
@@ -114,20 +114,30 @@ pub(super) fn peak(
 ) -> Option<Peak> {
     let mut left = samples.to_vec();
     loop {
-        let peak = highest(&left, criterion, at, bands.percent)?;
+        let mut peak = highest(&left, criterion, at, bands.percent)?;
         let own = peak.bands_deg.iter().find(|band| (band.0..=band.1).contains(&peak.angle_deg));
-        let Some(&(low_deg, high_deg)) = own.filter(|band| band.1 - band.0 < bands.least_deg) else {
+        let is_narrow = |band: &(f64, f64)| band.1 - band.0 < bands.least_deg;
+        let Some((low_deg, high_deg)) = own.copied().filter(is_narrow) else {
+            peak.bands_deg.retain(|band| !is_narrow(band));
             return Some(peak);
         };
         // A band may lie between two samples: then the nearest one goes.
         let off_deg = |s: &Sample| (s.angle_deg - peak.angle_deg).abs();
         let is_left = left.iter().filter(|s| s.course.is_some());
         let nearest_deg = is_left.map(off_deg).fold(f64::INFINITY, f64::min);
-        for sample in &mut left {
-            if (low_deg..=high_deg).contains(&sample.angle_deg) || off_deg(sample) <= nearest_deg {
-                sample.course = None;
-            }
+        let is_top = |s: &Sample| (low_deg..=high_deg).contains(&s.angle_deg) || off_deg(s) <= nearest_deg;
+        let (mut first, mut last) = (left.iter().position(is_top)?, left.iter().rposition(is_top)?);
+        let falls = |from: usize, to: usize| {
+            left.get(to).is_some_and(|s| s.course == left[from].course)
+                && left[to].critical(criterion) < left[from].critical(criterion)
+        };
+        while first > 0 && falls(first, first - 1) {
+            first -= 1;
         }
+        while falls(last, last + 1) {
+            last += 1;
+        }
+        left[first..=last].iter_mut().for_each(|sample| sample.course = None);
     }
 }
 

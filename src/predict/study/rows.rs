@@ -37,11 +37,10 @@ fn rows_at(
     };
     let bodies: Vec<Body> = bodies(&cask_file.cask).into_iter().map(sized).collect();
     let contacts = contacts.as_ref().unwrap_or(&request.contacts);
-    let row = |fall: Fall| PredictionRow {
-        angle_deg,
-        length_m: fall.body.length_m,
-        drop_height_m: drop.height_m,
-        prediction: fall.at(angle_deg),
+    let row = |fall: Fall| {
+        let prediction = fall.at(angle_deg);
+        let (length_m, drop_height_m) = (fall.body.length_m, drop.height_m);
+        PredictionRow { angle_deg, length_m, drop_height_m, turns_over: prediction.turns_over(), prediction }
     };
     falls(&bodies, drop, contacts, ks.as_ref().unwrap_or(&request.ks)).into_iter().map(row).collect()
 }

@@ -87,9 +87,38 @@ fn larger_sentence(study: &Study) -> Option<String> {
     })
 }
 
-/// Whether any draw had a slap-down; where none was asked for there is none.
-pub(super) fn has_quantiles(found: &MonteCarlo) -> bool {
-    found.quantiles.iter().any(|q| q.critical_angle_deg[2].is_finite())
+/// What the draws say of the slap-down speed; `None` where none was asked for or too few slap down.
+pub(super) fn speeds(found: &MonteCarlo) -> Option<&QuantileCurves> {
+    let has_any = |q: &&QuantileCurves| q.critical_angle_deg[2].is_finite();
+    found.quantiles.iter().find(|q| q.criterion == Criterion::Speed).filter(has_any)
+}
+
+/// The robust bands of the speed that a drop can be rigged for: within the tolerance of the angle, a drop is
+/// as good as flat.
+pub(super) fn bands_to_drop(found: &MonteCarlo, speeds: &QuantileCurves) -> Vec<(f64, f64)> {
+    let flat_deg = found.uncertain.angle_deg;
+    let steeper = speeds.robust_bands_deg.iter().map(|band| (band.0.max(flat_deg), band.1));
+    steeper.filter(|band| band.0 < band.1).collect()
+}
+
+/// Where to drop, and what the angle asked for gives.
+pub(super) fn advice(study: &Study) -> Option<String> {
+    let found = &study.monte_carlo;
+    let speeds = speeds(found)?;
+    let (band, largest) =
+        (plain(found.band_percent, 3), criterion_value(Criterion::Speed, speeds.largest[2]));
+    let near = format!("within {band} % of the largest, {largest}, in 95 % of the draws");
+    let (bands, flat_deg) = (bands_to_drop(found, speeds), found.uncertain.angle_deg);
+    let drop = match &bands[..] {
+        [] => format!("At no angle is the slap-down speed {near}: k or friction is too uncertain."),
+        bands => {
+            let between = bands_words(bands).replace('–', "° and ");
+            format!("Drop between {between}°: there the slap-down speed is {near}.")
+        }
+    };
+    let is_flat = bands.first().is_some_and(|band| band.0 <= flat_deg);
+    let flat = format!(" At {}° or flatter both ends may strike together.", degrees(flat_deg));
+    Some(drop + &at_the_angle(study).unwrap_or_default() + if is_flat { &flat } else { "" })
 }
 
 /// What was drawn from, and what came of it.
@@ -103,15 +132,11 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     }
     let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
     let drawn = ChapterPart::text(uncertain_words(u, found.contact));
-    let chapter = if has_quantiles(found) {
+    let chapter = if speeds(found).is_some() {
         let band = plain(found.band_percent, 3);
         let robust =
             format!("robust: there at least 95 % of the draws are within {band} % of their own largest.");
-        chapter
-            .with(drawn)
-            .with(quantiles(&found.quantiles))
-            .with(ChapterPart::note(robust))
-            .with_all(at_the_angle(study).map(ChapterPart::text))
+        chapter.with(drawn).with(quantiles(&found.quantiles)).with(ChapterPart::note(robust))
     } else {
         let none = ChapterPart::text("Too few draws have a slap-down.");
         chapter.with_all([drawn, none].map(|passage| passage.only(Medium::Page)))
@@ -147,7 +172,7 @@ fn quantiles(found: &[QuantileCurves]) -> ChapterPart {
 /// Median of the slap-down speed at the angle asked for, and the ends of 95 % of the draws, m/s.
 pub(super) fn speeds_at_the_angle(study: &Study) -> Option<[String; 3]> {
     let found = &study.monte_carlo;
-    let q = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed)?;
+    let q = speeds(found)?;
     let at = |values: &[f64]| Some(fixed(nearest(&found.angle_deg, values, study.request.angle_deg)?, 2));
     Some([at(&q.q50)?, at(&q.q025)?, at(&q.q975)?])
 }
@@ -157,5 +182,5 @@ fn at_the_angle(study: &Study) -> Option<String> {
     let angles_deg = &study.monte_carlo.angle_deg;
     let angle_deg = degrees(nearest(angles_deg, angles_deg, study.request.angle_deg)?);
     let [median, low, high] = speeds_at_the_angle(study)?;
-    Some(format!("At {angle_deg}°: {median} m/s, 95 % of the draws between {low} and {high} m/s."))
+    Some(format!(" Your {angle_deg}° gives {median} m/s (95 % of the draws: {low} to {high})."))
 }

@@ -26,7 +26,7 @@ fn columns<'a>() -> [CsvColumn<&'a PredictionRow>; 20] {
         ("friction_to_stick", |row| number(Some(row.prediction.friction_to_stick))),
         ("sticks", |row| row.prediction.sticks.to_string()),
         ("closed_form_speed_m_s", |row| number(row.prediction.closed_form_speed_m_s)),
-        ("turns_over", |row| row.prediction.turns_over().to_string()),
+        ("turns_over", |row| row.turns_over.to_string()),
     ]
 }
 

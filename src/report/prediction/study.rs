@@ -1,15 +1,13 @@
 //! A study to the document that the terminal and `prediction.html` show.
 
 use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
-use super::super::medium::{Medium, Words};
+use super::super::medium::Medium;
 use super::super::pictures::study_names;
 use super::super::rounding::{MISSING, plain};
 use super::super::table::ReportTable;
 use super::super::tested::tested;
-use super::super::words::{
-    bands_words, case_words, contact_words, criterion_value, degrees, range_words, variable_words,
-};
-use super::critical::{critical, has_quantiles, monte_carlo, speeds_at_the_angle};
+use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
+use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
@@ -64,16 +62,18 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             ..Frame::default()
         },
         chapters: vec![
-            Chapter::new("").with(PartContent::Figures(figures(study))),
-            tested(file, "What was asked").with(asked),
-            Chapter::new(Words::or("Predictions", ""))
+            Chapter::new("")
                 .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
+                .with_all(advice(study).map(ChapterPart::text))
+                .with_all(figures(study).map(ChapterPart::from)),
+            tested(file, "What was asked").with(asked),
+            monte_carlo(study),
+            Chapter::new("Predictions")
                 .with_all(predictions(&study.rows, Medium::Terminal))
                 .with_all(ahead)
                 .with(ChapterPart::picture("sweep", "")),
             critical(study),
             over_the_angle(&study.request),
-            monte_carlo(study),
             ladders(study),
             of_the_paper(),
             Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
@@ -93,57 +93,27 @@ fn over_the_angle(request: &StudyRequest) -> Chapter {
     Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "short")))
 }
 
-/// The four figures that a reader looks for first.
-fn figures(study: &Study) -> Vec<[String; 3]> {
+/// The three figures that a reader looks for first, of all that is uncertain.
+fn figures(study: &Study) -> Option<PartContent> {
     let drawn = &study.monte_carlo;
-    let worst = study
-        .critical
-        .iter()
-        .filter(|c| c.model == drawn.model && c.criterion == Criterion::Speed && c.largest.is_finite())
-        .max_by(|a, b| a.largest.total_cmp(&b.largest));
-    let speed = drawn.quantiles.iter().find(|q| q.criterion == Criterion::Speed && has_quantiles(drawn));
-    let at_angle = speed.and_then(|_| speeds_at_the_angle(study));
-    let figure = |name: String, found: Option<[String; 2]>| {
-        let [value, detail] = found.unwrap_or_else(|| [MISSING.to_owned(), String::new()]);
-        [name, value, detail]
-    };
-    vec![
+    let speed = speeds(drawn)?;
+    let [least, _, largest, _, most] = speed.largest.map(|value| criterion_value(Criterion::Speed, value));
+    let [at, from, to] = speeds_at_the_angle(study).unwrap_or_else(|| [MISSING; 3].map(str::to_owned));
+    let band = plain(drawn.band_percent, 3);
+    let figure = |name: &str, value, detail| [name.to_owned(), value, detail];
+    Some(PartContent::Figures(vec![
         figure(
-            "Largest slap-down speed".to_owned(),
-            worst.map(|c| {
-                let case = format!(
-                    "{}, {}, at {}°",
-                    c.model.as_str(),
-                    case_words(c.contact, c.k),
-                    degrees(c.angle_deg)
-                );
-                [criterion_value(c.criterion, c.largest), case]
-            }),
+            "Where to drop, °",
+            bands_words(&bands_to_drop(drawn, speed)),
+            format!("in 95 % of the draws within {band} % of the largest speed"),
         ),
+        figure("Largest slap-down speed", largest, format!("95 % of the draws {least} to {most}")),
         figure(
-            format!("At {}°, inputs uncertain", plain(study.request.angle_deg, 4)),
-            at_angle.map(|[median, low, high]| {
-                [format!("{median} m/s"), format!("95 % of the draws {low} to {high} m/s")]
-            }),
+            &format!("At {}°", plain(study.request.angle_deg, 4)),
+            format!("{at} m/s"),
+            format!("95 % of the draws {from} to {to} m/s"),
         ),
-        figure(
-            "Critical angle, inputs uncertain".to_owned(),
-            speed.map(|q| {
-                let [low, _, median, _, high] = q.critical_angle_deg;
-                let range = bands_words(&[(low, high)]);
-                [format!("{}°", degrees(median)), format!("95 % of the draws {range}°")]
-            }),
-        ),
-        figure(
-            "Critical in 95 % of the draws".to_owned(),
-            speed.map(|q| {
-                let unit = if q.robust_bands_deg.is_empty() { "" } else { "°" };
-                let band = plain(drawn.band_percent, 3);
-                let value = format!("{}{unit}", bands_words(&q.robust_bands_deg));
-                [value, format!("speed within {band} % of its largest")]
-            }),
-        ),
-    ]
+    ]))
 }
 
 /// Contact laws, k, angle and sweeps.

@@ -66,7 +66,7 @@ fn every_block_has_its_figures() {
         "Monte Carlo, 2000 draws of the body",
         "12° (4.5–19.5)",
         "seed 1",
-        "At 15°: ",
+        "Your 15° gives 21",
         "suffices: the simplest that no richer one moves by more than 0.1 %",
         "rod 30.10 m/s at 86°",
     ] {

@@ -1,6 +1,7 @@
 //! A trial to the pages that a site signs.
 
 use super::pictures::{fate_words, largest_words, pooled, reading};
+use crate::data::Program;
 use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
@@ -94,8 +95,9 @@ fn outcome(trial: &Trial) -> Chapter {
     let slow = "This program was built without optimisation: its times say nothing.";
     let slow = (!trial.machine.is_optimised).then(|| ChapterPart::note(slow));
     let (quick, seed) = (trial.request.either(" --quick", ""), trial.request.seed);
+    let program = Program { version: trial.version, commit: trial.machine.program_commit, ..Program::this() };
     let facts = vec![
-        Fact::words("program", format!("dropcheck {}", trial.version)),
+        Fact::words("program", program.words()),
         Fact::code("its SHA-256", &trial.machine.program_sha256[..]),
         Fact::words("machine", format!("{}, {} threads", trial.machine.processor, trial.machine.cores)),
         Fact::words("system", &trial.machine.system[..]),
