@@ -22,9 +22,7 @@ pub(super) fn table<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
         interval(Some(&Estimate::new(b.value - a.value, a.u95.hypot(b.u95), a.unit)))
     };
     let word = |pair: &(&NamedQuantity, &NamedQuantity)| {
-        let size = e_n(pair);
-        let mark = if size.abs() > 1.0 { "differ" } else { "" };
-        TableCell::marked(fixed(size, 2), mark)
+        TableCell::marked(fixed(e_n(pair), 2), if e_n(pair).abs() > 1.0 { "differ" } else { "" })
     };
     ReportTable::of(&pairs)
         .class("many")

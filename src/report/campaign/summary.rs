@@ -53,12 +53,11 @@ pub(super) fn oddities<'a>(series: &[DropSeries<'a>]) -> Vec<Oddity<'a>> {
     found
 }
 
-/// The first few of these, and how many more there are.
+/// The first five of these, and how many more there are.
 pub(super) fn few(names: impl Iterator<Item = String>) -> String {
-    const MOST: usize = 5;
     let names: Vec<String> = names.collect();
-    let shown = names[..names.len().min(MOST)].join(", ");
-    if names.len() <= MOST { shown } else { format!("{shown} and {} more", names.len() - MOST) }
+    let shown = names[..names.len().min(5)].join(", ");
+    if names.len() <= 5 { shown } else { format!("{shown} and {} more", names.len() - 5) }
 }
 
 /// The verdict on a row.
