@@ -18,7 +18,7 @@ use super::lines::{self, LineOutput, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print};
 use super::rerun::stamp;
 use super::tuning::keep_freed_memory;
-use crate::data::DropResult;
+use crate::data::Analysis;
 use crate::ingest::bytes_of;
 use crate::report::Batch;
 use crate::{ingest, report};
@@ -176,7 +176,8 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
         let result: Value = serde_json::from_slice(&result).unwrap_or_default();
         let mut said = line.as_object().into_iter().flatten();
         folder.join(report::FILE_NAMES[0]).is_file()
-            && said.all(|(key, said)| ["campaign", "id"].contains(&&key[..]) || result[key] == *said)
+            && said
+                .all(|(key, said)| ["campaign", "id", "curves"].contains(&&key[..]) || result[key] == *said)
     };
     let cask_sha256 = || ingest::cask_file::with_columns(cask, &test.stated).ok().map(|file| file.sha256);
     let recording_sha256 = || ingest::sha256(&test.recording).ok();
@@ -191,12 +192,16 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     let test = &plan.tests[number];
     let head = format!("{{\"campaign\":{},\"id\":{},", plan.place(number), json!(test.id));
     // A fault of the program costs a row too.
-    let made = catch_unwind(AssertUnwindSafe(|| analysed(plan, test, arguments)));
+    let made = catch_unwind(AssertUnwindSafe(|| {
+        let analysis = analysed(plan, test, arguments)?;
+        let curves = report::in_a_line(&report::drop_curves(&analysis))?;
+        Ok(format!("\"curves\":{curves},{}", &report::in_a_line(&analysis.result)?[1..]))
+    }));
     let made = made.unwrap_or_else(|_| {
         Err(miette::miette!("{}: the program has a fault here; please report it", test.shown))
     });
-    match made.and_then(|result| Ok(report::in_a_line(&result)?)) {
-        Ok(result) => format!("{head}{}\n", &result[1..]),
+    match made {
+        Ok(result) => format!("{head}{result}\n"),
         Err(complaint) => {
             let error = untold(test, arguments).unwrap_or_else(|| sentence(&complaint));
             let failed = json!({"exit": 2, "error": error});
@@ -223,11 +228,11 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     )))
 }
 
-fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
+fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<Analysis> {
     let Some(cask) = &test.cask else {
-        let beside = test.recording.with_extension("toml");
-        let mend = format!("put {} beside it, or name one by --cask or in the manifest", beside.display());
-        return Err(miette::miette!(help = mend, "{} has no cask file", test.shown));
+        // Without its name all recordings that have none say the same.
+        let mend = "put NAME.toml beside NAME.mcap, or name one by --cask or in the manifest";
+        return Err(miette::miette!(help = mend, "there is no cask file for the recording"));
     };
     let inputs = [test.recording.as_path(), cask];
     let folder = arguments
@@ -247,7 +252,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     if let Some(folder) = folder {
         folder.write(&report::files(&analysis)?)?;
     }
-    Ok(analysis.result)
+    Ok(analysis)
 }
 
 /// The words that would analyse this recording alone, whatever part of the campaign a run did, and where to.

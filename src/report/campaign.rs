@@ -3,32 +3,32 @@
 
 mod columns;
 mod compared;
+mod drop_curves;
 mod files;
 mod page;
 mod pictures;
 mod series;
+mod summary;
+mod terminal;
 
+pub use columns::{CampaignColumn, campaign_columns};
+pub use drop_curves::drop_curves;
 pub use files::CampaignFiles;
 pub use series::PredictedCurve;
 
-use super::document::{Chapter, ChapterPart, ReportDocument};
-use super::records::{CsvColumn, number, text_cell};
-use super::rounding::{interval, percent};
-use super::table::{ReportTable, TableCell, TableShape};
-use super::text::{Style, distinct, tail, verdict_word};
+use super::text::distinct;
 use crate::data::keys::{CHANNEL, TABLES, Takes};
 use crate::data::shown::short;
 use crate::data::{Comparison, Estimate, Verdict};
 use columns::NamedQuantity;
+use drop_curves::DropCurves;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeSet, HashMap};
 
-/// Rows that a page and a terminal show at most: more are for a program to read.
+/// Rows that a page shows at most: more are for a program to read.
 const MOST_ROWS: usize = 2000;
-const MOST_LINES: usize = 200;
 /// Casks that a page has a chapter and pictures of; `campaign.json` pools all.
 const MOST_SERIES: usize = 100;
 
@@ -59,14 +59,21 @@ pub struct BatchRow {
     pub findings: usize,
     /// Their codes, each once, errors first.
     pub codes: Vec<String>,
+    /// Those of the notes.
+    pub note_codes: Vec<String>,
     /// Why it could not be analysed.
     pub error: Option<String>,
+    /// An earlier row of the same recording, which counts once among the repeats.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub same_recording_as: Option<String>,
     /// Where it stands in the pictures.
     #[serde(skip)]
     pub(crate) at: DropPoint,
-    /// All of its quantities, of as many rows as a page has room for.
+    /// All of its quantities and its curves, of as many rows as a page has room for.
     #[serde(skip)]
     quantities: Vec<NamedQuantity>,
+    #[serde(skip)]
+    curves: Option<DropCurves>,
 }
 
 /// The name of a test as the name of a folder that leads nowhere else.
@@ -121,6 +128,11 @@ fn part<T: DeserializeOwned>(line: &Value, place: &str) -> Option<T> {
 }
 
 impl BatchRow {
+    /// Why it was not analysed, or what was found.
+    fn why(&self) -> String {
+        self.error.clone().unwrap_or_else(|| self.codes.join(", "))
+    }
+
     /// The row of a line.
     #[must_use]
     pub fn of(line: &Value) -> Self {
@@ -145,9 +157,12 @@ impl BatchRow {
             comparison: part(line, "/comparison"),
             findings: grave.len(),
             codes: distinct(grave).into_iter().map(str::to_owned).collect(),
+            note_codes: distinct(codes("note")).into_iter().map(str::to_owned).collect(),
             error: part(line, "/error"),
+            same_recording_as: None,
             at: DropPoint::of(line),
             quantities: columns::quantities(line),
+            curves: part(line, "/curves"),
         }
     }
 }
@@ -180,31 +195,10 @@ pub struct Batch {
     pub source: String,
     /// One a recording, in the order given.
     pub rows: Vec<BatchRow>,
-    /// Columns beyond those of the head.
-    columns: BTreeSet<(u8, String)>,
-}
-
-/// The columns of `campaign.csv` that every campaign has.
-fn head<'a>() -> [CsvColumn<&'a BatchRow>; 17] {
-    [
-        ("recording", |row| text_cell(&row.recording)),
-        ("verdict", |row| row.verdict.map_or_else(|| "error".into(), super::text::json_word)),
-        ("slap_down_speed_m_s", |row| number(row.slap_down_speed.map(|e| e.value))),
-        ("slap_down_speed_u95_m_s", |row| number(row.slap_down_speed.map(|e| e.u95))),
-        ("k", |row| number(row.k.map(|e| e.value))),
-        ("k_u95", |row| number(row.k.map(|e| e.u95))),
-        ("model", |row| row.model.clone().unwrap_or_default()),
-        ("predicted_m_s", |row| number(row.comparison.map(|c| c.predicted))),
-        ("difference_percent", |row| number(row.comparison.map(|c| c.difference_percent))),
-        ("agrees", |row| row.comparison.map_or_else(String::new, |c| c.agrees.to_string())),
-        ("findings", |row| row.findings.to_string()),
-        ("codes", |row| row.codes.join(" ")),
-        ("error", |row| text_cell(row.error.as_deref().unwrap_or_default())),
-        ("id", |row| text_cell(&row.id)),
-        ("cask", |row| text_cell(row.cask.as_deref().unwrap_or_default())),
-        ("report", |row| text_cell(row.report.as_deref().unwrap_or_default())),
-        ("exit", |row| row.exit.to_string()),
-    ]
+    /// What the manifest carries into the tables.
+    carried: BTreeSet<String>,
+    /// The first row of each recording, by its hash.
+    recordings: HashMap<String, String>,
 }
 
 impl Batch {
@@ -218,78 +212,20 @@ impl Batch {
     pub fn add(&mut self, line: &Value) {
         let mut row = BatchRow::of(line);
         if self.rows.len() >= MOST_ROWS {
-            row.quantities = Vec::new();
+            (row.quantities, row.curves) = (Vec::new(), None);
+        }
+        if let Some(hash) = part::<String>(line, "/input/recording_sha256") {
+            let first = self.recordings.entry(hash).or_insert_with(|| row.id.clone());
+            row.same_recording_as = Some(first.clone()).filter(|first| *first != row.id);
         }
         self.rows.push(row);
-        let is_head = |name: &str| head().iter().any(|column| column.0 == name);
-        let new = columns::of(line).into_keys().filter(|column| !is_head(&column.1));
-        self.columns.extend(new);
-    }
-
-    /// The number of columns of `campaign.csv`.
-    #[must_use]
-    pub fn column_count(&self) -> usize {
-        head().len() + self.columns.len()
-    }
-
-    /// The table, `width` columns wide; below it what was found, and reasons of failures.
-    #[must_use]
-    pub fn table(&self, width: usize) -> String {
-        super::as_text::text(&self.document(width), width)
-    }
-
-    fn document(&self, columns: usize) -> ReportDocument {
-        // A recording's name leaves room for the other columns.
-        let room = columns - 52;
-        let folder = self.common_folder();
-        let name = |row: &BatchRow, width: usize| {
-            let own = folder.and_then(|folder| Path::new(&row.recording).strip_prefix(folder).ok());
-            tail(&own.map_or_else(|| row.recording.clone(), |own| own.display().to_string()), width)
-        };
-        let word = |row: &BatchRow| row.verdict.map_or("ERROR", verdict_word);
-        let table = ReportTable::of(&self.rows)
-            .head("recording", |row| name(row, room))
-            .text("verdict", word)
-            .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
-            .text("k", |row| interval(row.k.as_ref()))
-            .number("meas/pred", |row| percent(row.comparison.map(|c| c.difference_percent)))
-            .most(MOST_LINES, MOST_LINES, "campaign.csv has all of them");
-        let grave: Vec<&BatchRow> =
-            self.rows.iter().filter(|row| row.error.is_some() || !row.codes.is_empty()).collect();
-        let style = |row: &BatchRow| match row.verdict {
-            Some(Verdict::Pass | Verdict::Review) if row.error.is_none() => Style::Yellow,
-            _ => Style::Red,
-        };
-        let why = |row: &BatchRow| row.error.clone().unwrap_or_else(|| row.codes.join(", "));
-        let reasons = ReportTable::of(&grave)
-            .shape(TableShape::ApartItems)
-            .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
-            .head("recording", |row| name(row, columns - 10))
-            .text("why", |row| why(row))
-            .most(MOST_LINES, MOST_LINES, "campaign.csv has all of them");
-        let place = folder
-            .map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), columns - 14)));
-        let chapter = Chapter::new("")
-            .with(ChapterPart::title(&self.source[..]))
-            .with_all(place.map(ChapterPart::line))
-            .with(table)
-            .with(reasons);
-        ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }
-    }
-
-    /// The folder in which all recordings are, where they are in one.
-    fn common_folder(&self) -> Option<&Path> {
-        let mut folders = self.rows.iter().map(|row| Path::new(&row.recording).parent());
-        let first = folders.next()??;
-        let is_one = !first.as_os_str().is_empty() && folders.all(|folder| folder == Some(first));
-        is_one.then_some(first)
+        self.carried.extend(columns::carried(line).map(|(name, _)| name.clone()));
     }
 
     /// Whether a file that begins so is a `campaign.csv` of this program.
     #[must_use]
     pub fn begins(head_of_file: &[u8]) -> bool {
-        // Those of the first edition, whatever stands behind them.
-        let first = head().map(|column| column.0)[..13].join(",");
+        let first = columns::names().take(10).collect::<Vec<_>>().join(",");
         head_of_file.starts_with(first.as_bytes())
     }
 }

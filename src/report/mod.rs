@@ -41,7 +41,10 @@ pub(crate) mod text;
 mod words;
 
 pub use acceleration_sources::NoChannels;
-pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve, folder_name, impossible};
+pub use campaign::{
+    Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
+    folder_name, impossible,
+};
 pub use curves_csv::in_german;
 pub use first_screen::{first_screen, not_strict};
 pub use json::{in_a_line, listing as listing_json, result as result_json};

@@ -1,4 +1,4 @@
-"""Open the page of a campaign in a real browser: sort its table, filter it, compare two of its rows.
+"""Open the page of a campaign in a real browser: sort its table, filter it, compare two of its drops.
 
     python3 tests/browser/campaign.py campaign.html
 
@@ -41,11 +41,16 @@ def main(page):
     held("words filter rows", 0 < len(cells()) <= len(up), len(cells()))
     picks = [p for p in table.find_elements(By.CSS_SELECTOR, ".pick input") if p.is_displayed()]
     picks[0].click()
-    picks[1].click()
-    compared = driver.find_element(By.CSS_SELECTOR, "div + table caption, div > table caption")
-    held("two marked rows are compared", "E_n" in compared.text, compared.text[:40])
-    rows = driver.find_elements(By.CSS_SELECTOR, "div > table tbody tr")
-    held("quantity by quantity", any(row.text.startswith("slap down speed") for row in rows), len(rows))
+    picks[-1].click()
+    time.sleep(0.2)
+    compared = driver.find_element(By.CSS_SELECTOR, ".compared caption")
+    held("two ticked drops are compared", "E_n" in compared.text, compared.text[:40])
+    top = driver.execute_script("return document.querySelector('.compared').getBoundingClientRect().top")
+    held("in view", 0 <= top < driver.execute_script("return innerHeight") / 2, top)
+    curves = driver.find_elements(By.CSS_SELECTOR, ".compared svg path")
+    held("their curves over one another", len(curves) == 4 and all(c.get_attribute("d") for c in curves), len(curves))
+    rows = driver.find_elements(By.CSS_SELECTOR, ".compared tbody tr")
+    held("quantity by quantity", rows[0].text.startswith("slap-down speed"), rows[0].text)
     for size in (375, 768):
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})

@@ -3,7 +3,7 @@
 
 use crate::run::{Answer, dropcheck, fixture, read_json, tree, words};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -102,10 +102,15 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
     assert!(read_json(&result)["cask_text"].as_str().expect("text").contains("angle_deg = 15.2"));
     let again = dropcheck(words!["analyze", series.path("anf18-json.mcap"), "--from", result]);
     assert!(again.stdout.starts_with("The same recording; every number within 1e-9."), "{}", again.stdout);
-    // Of the two repeats at 15° and 15.2° there is a pool each, and one over both.
+    // T1 and T2 are one recording: it is named, and counts once.
+    assert_eq!(column("same_recording_as")[..3], [Value::Null, "T1".into(), Value::Null]);
+    assert!(answer.stdout.contains("counted once: T2 is T1"), "{}", answer.stdout);
     let pools = campaign["pools"].as_array().expect("pools");
-    let of_anf18 = pools.iter().filter(|pool| pool["cask"] == "ANF-18" && pool["quantity"] == "k");
-    assert_eq!(of_anf18.filter(|pool| pool["angle_deg"].is_null()).count(), 1, "{pools:?}");
+    let of_anf18: Vec<&Value> =
+        pools.iter().filter(|pool| pool["cask"] == "ANF-18" && pool["quantity"] == "k").collect();
+    assert_eq!((of_anf18.len(), &of_anf18[0]["angle_deg"]), (1, &15.0.into()), "{pools:?}");
+    let sum = "7 recordings: 4 sound, 1 to look at, 0 not to be used, 2 not analysed.\n  Outliers: none.";
+    assert!(answer.stdout.contains(sum), "{}", answer.stdout);
     let page = fs::read_to_string(series.path("full/campaign.html")).expect("a page");
     for part in
         ["href=\"T5/report.html\"", "class=\"many sortable\"", "script-src 'sha256-", "body, rough", "gap"]
@@ -114,6 +119,66 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
     }
     assert!(series.path("full/T6/report.html").exists() && !series.path("full/T3").exists());
     assert_eq!(series.batch("--exit-zero --jsonl -").status, 2);
+}
+
+/// The heads of `campaign.csv`, and the columns that `campaign.json` has of any recording.
+fn columns(out: &Path) -> (Vec<String>, BTreeSet<String>) {
+    let table = fs::read_to_string(out.join("campaign.csv")).expect("a table");
+    let heads = table.lines().next().expect("heads").split(',').map(str::to_owned).collect();
+    let campaign = read_json(&out.join("campaign.json"));
+    let rows = campaign["recordings"].as_array().expect("rows").iter();
+    (heads, rows.flat_map(|row| row["columns"].as_object().expect("columns").keys().cloned()).collect())
+}
+
+#[test]
+fn the_columns_are_the_same_whatever_was_dropped() {
+    let series = Series::new();
+    series.batch("--out @full");
+    let (heads, of_all) = columns(&series.path("full"));
+    assert_eq!(heads[..5], ["id", "cask.name", "drop.angle_deg", "test.date", "verdict"]);
+    assert_eq!(heads.last().map(String::as_str), Some("hall"), "what is carried comes last");
+    let missing: Vec<&String> = of_all.iter().filter(|name| !heads.contains(name)).collect();
+    // Keys that nobody stated, and what nobody observed.
+    let is_optional = |name: &str| name.contains('.') || name.starts_with("observed_");
+    let unused: Vec<&String> =
+        heads.iter().filter(|name| !of_all.contains(*name) && !is_optional(name)).collect();
+    assert!(missing.is_empty() && unused.is_empty(), "columns.tsv: {missing:?} {unused:?}");
+    // What the result measures of the drop as a whole has a column.
+    let (result, mut measured) = (read_json(&series.path("full/T6/result.json")), 0);
+    let [first, second] = [0, 1].map(|i| &result["impacts"][i]);
+    let parts = ["first_impact", "slap_down"].map(|name| (name, &result[name]));
+    for (part, table) in parts.into_iter().chain([("impact_1", first), ("impact_2", second)]) {
+        for (name, _) in table.as_object().expect("a part").iter().filter(|(_, q)| q["u95"].is_f64()) {
+            measured += 1;
+            let column = format!("{part}_{name}");
+            assert!(heads.iter().any(|head| head.starts_with(&column)), "columns.tsv lacks {column}");
+        }
+    }
+    assert!(measured > 20, "{measured}");
+    fs::write(series.path("runs.csv"), "recording,k,hall\nbroken.csv,1,2\n").expect("a manifest");
+    series.batch("--out @broken");
+    let (of_broken, _) = columns(&series.path("broken"));
+    assert_eq!(of_broken, heads, "a name that is taken is not carried");
+}
+
+#[test]
+fn two_drops_are_compared_by_number_and_curve() {
+    let series = Series::new();
+    fs::write(series.path("runs.csv"), "recording\nanf10-plain.csv\nvhlw-rest.h5\n").expect("a manifest");
+    series.batch("--out @two");
+    let page = fs::read_to_string(series.path("two/campaign.html")).expect("a page");
+    let (_, compared) = page.split_once("What the two differ by").expect("the chapter");
+    assert!(compared.contains("slap-down speed</th>") && !compared.contains("from the first sample</th>"));
+    // The script draws them over one another.
+    assert_eq!(page.matches("\"second_end_m_s\":[").count(), 2);
+    let lines = lines(&series.path("two/results.jsonl"));
+    for line in lines {
+        let second = line["curves"]["second_end_m_s"].as_array().expect("a curve");
+        // It falls along the sensor until first contact.
+        let fall = line["first_impact"]["impact_velocity"]["value"].as_f64().expect("a speed");
+        let first = second[0].as_f64().expect("a number");
+        assert!(second.len() == 240 && (-1.0..-0.8).contains(&(first / fall)), "{first} beside {fall}");
+    }
 }
 
 #[test]
@@ -304,8 +369,11 @@ fn sixty_recordings_of_three_casks_give_back_what_they_were_made_with() {
         .output();
     assert!(made.expect("python3 starts").status.success());
     let manifest = series.join("runs.csv");
-    let words = words!["batch", "--manifest", manifest, "--out", out];
-    assert_eq!(dropcheck(words).status, 2);
+    let answer = dropcheck(words!["batch", "--manifest", manifest, "--out", out]);
+    assert_eq!(answer.status, 2);
+    for words in ["60 recordings: 57 sound", "Outliers: ANF-18-15-2 (k 0.71"] {
+        assert!(answer.stdout.contains(words), "{}", answer.stdout);
+    }
     let (campaign, truth) = (read_json(&out.join("campaign.json")), read_json(&series.join("truth.json")));
     let rows = campaign["recordings"].as_array().expect("rows");
     let broken = rows.iter().filter(|row| row["exit"] == 2).map(|row| row["id"].clone());

@@ -3,6 +3,7 @@
 
 use crate::run::{analyze, dropcheck, files_below, fixture, root};
 use dropcheck::data::CODES;
+use dropcheck::report::{CampaignColumn, campaign_columns};
 use dropcheck::stages::{Allowed, INNER_TABLES, TABLES, Takes};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -82,7 +83,7 @@ fn marks(name: &str) -> [String; 2] {
 /// A page without its generated tables.
 fn by_hand(page: &str) -> String {
     let mut rest = page.to_owned();
-    for [begin, end] in ["codes", "keys"].map(marks) {
+    for [begin, end] in ["codes", "keys", "columns"].map(marks) {
         if let Some((before, (_, after))) =
             rest.split_once(&begin).and_then(|(before, rest)| Some((before, rest.split_once(&end)?)))
         {
@@ -108,10 +109,14 @@ fn hold(page: &str, name: &str, table: &str) {
 /// The unit that the name of a key ends in.
 fn unit(key: &str) -> &'static str {
     let units = [
+        ("_e_n", ""),
         ("_kg_m2", "kg m²"),
         ("_m_s2", "m/s²"),
         ("_rad_s", "rad/s"),
         ("_deg_s", "°/s"),
+        ("_n_s", "N s"),
+        ("_n", "N"),
+        ("_j", "J"),
         ("_m_s", "m/s"),
         ("_percent", "%"),
         ("_deg", "°"),
@@ -159,6 +164,15 @@ fn table_of_keys() -> String {
 #[test]
 fn the_table_of_keys_is_that_of_the_program() {
     hold("docs/formats.md", "keys", &table_of_keys());
+}
+
+#[test]
+fn the_table_of_columns_is_that_of_the_program() {
+    let mut rows = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
+    for CampaignColumn { names, meaning, .. } in campaign_columns() {
+        let _ = writeln!(rows, "| `{}` | {} | {meaning} |", names.join("`, `"), unit(&names[0]));
+    }
+    hold("docs/formats.md", "columns", &rows);
 }
 
 #[test]

@@ -10,21 +10,11 @@ use crate::{ingest, predict};
 use serde_json::Value;
 use std::path::Path;
 
-/// Columns of the widest spreadsheet.
-const MOST_COLUMNS: usize = 16_384;
 /// Angles of a predicted curve.
 const ANGLES: u32 = 100;
 
 /// Writes the files of a campaign of which these are all lines.
 pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> miette::Result<()> {
-    let count = batch.column_count();
-    if count > MOST_COLUMNS {
-        return Err(miette::miette!(
-            help = "name channels and carried columns alike in all tests, or make several campaigns; the \
-                    lines of the results are kept",
-            "campaign.csv would have {count} columns, more than a spreadsheet holds"
-        ));
-    }
     let folder = Folder::checked(out, &SUMMARY[..3], inputs)?;
     let cask_file = |row: &BatchRow| {
         let line = lines.line(usize::try_from(row.at.number).ok()?.checked_sub(1)?)?;

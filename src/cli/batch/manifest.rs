@@ -1,7 +1,7 @@
 //! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a
 //! manifest to fill in.
 
-use super::paths::{in_folder, stem};
+use super::paths::{in_folder, note, stem};
 use super::planned::{PlannedTest, cask_of};
 use crate::ingest::{bytes_of, cask_file::key_of_column};
 use std::collections::{HashMap, HashSet};
@@ -146,7 +146,11 @@ pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     writer.write_record([ID, RECORDING, CASK, "drop.angle_deg", "test.date"]).map_err(fault)?;
     // A shell makes the file first into which the manifest goes.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
-    for recording in in_folder(folder)?.into_iter().filter(|path| !is_empty(path)) {
+    for recording in in_folder(folder)? {
+        if is_empty(&recording) {
+            note(&format!("{} is empty and was left out", recording.display()));
+            continue;
+        }
         let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());
         let words = [stem(&recording), recording.display().to_string(), cask.unwrap_or_default()];
         writer.write_record(words.iter().map(String::as_str).chain(["", ""])).map_err(fault)?;

@@ -79,12 +79,16 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
     endings.dedup();
     if !endings.is_empty() {
         let (folder, endings) = (folder.display().to_string(), endings.join(", ."));
-        let words = format!(
+        note(&format!(
             "files of {folder} that end in .{endings} were left out; name a recording among them itself"
-        );
-        // There is no one left to tell where standard error is closed.
-        let _ = writeln!(anstream::stderr(), "note: {}", report::printable(&words));
+        ));
     }
+}
+
+/// Says something on standard error.
+pub fn note(words: &str) {
+    // There is no one left to tell where standard error is closed.
+    let _ = writeln!(anstream::stderr(), "note: {}", report::printable(words));
 }
 
 /// Whether a file is a manifest or the table of an earlier campaign; a recording may have its name.

@@ -7,39 +7,22 @@ use crate::numerics::pooled::e_n;
 use crate::report::document::ChapterPart;
 use crate::report::rounding::{fixed, interval};
 use crate::report::table::{ReportTable, TableCell};
-use crate::report::text::Style;
-
-/// One quantity of both.
-struct QuantityPair<'a> {
-    name: &'a str,
-    a: Estimate,
-    b: Estimate,
-}
-
-impl QuantityPair<'_> {
-    fn e_n(&self) -> f64 {
-        e_n((self.b.value, self.b.u95), (self.a.value, self.a.u95))
-    }
-}
 
 /// The table of two rows.
 pub(super) fn table<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
-    let pair = |of_a: &'a NamedQuantity| {
-        let of_b = b.quantities.iter().find(|of_b| of_b.name == of_a.name)?;
-        Some(QuantityPair { name: &of_a.name, a: of_a.estimate, b: of_b.estimate })
+    let e_n = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
+        e_n((b.estimate.value, b.estimate.u95), (a.estimate.value, a.estimate.u95))
     };
-    let pairs: Vec<QuantityPair> =
-        a.quantities.iter().filter_map(pair).filter(|pair| pair.e_n().is_finite()).collect();
-    let difference = |QuantityPair { a, b, .. }: &QuantityPair| {
+    let pair =
+        |of_a: &'a NamedQuantity| Some((of_a, b.quantities.iter().find(|of_b| of_b.name == of_a.name)?));
+    let pairs: Vec<(&NamedQuantity, &NamedQuantity)> =
+        a.quantities.iter().filter_map(pair).filter(|pair| e_n(pair).is_finite()).collect();
+    let difference = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
+        let (a, b) = (a.estimate, b.estimate);
         interval(Some(&Estimate::new(b.value - a.value, a.u95.hypot(b.u95), a.unit)))
     };
-    let word = |pair: &QuantityPair| {
-        let words = fixed(pair.e_n(), 2);
-        if pair.e_n().abs() > 1.0 {
-            TableCell::marked(words, "differ")
-        } else {
-            TableCell::toned(Style::Dim, words)
-        }
+    let word = |pair: &(&NamedQuantity, &NamedQuantity)| {
+        TableCell::marked(fixed(e_n(pair), 2), if e_n(pair).abs() > 1.0 { "differ" } else { "" })
     };
     ReportTable::of(&pairs)
         .class("many")
@@ -48,9 +31,9 @@ pub(super) fn table<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
              agree.",
             a.id, b.id
         ))
-        .head("quantity", |pair| pair.name.replace('_', " "))
-        .number(&a.id[..], |pair| interval(Some(&pair.a)))
-        .number(&b.id[..], |pair| interval(Some(&pair.b)))
+        .head("quantity", |(a, _)| a.name)
+        .number(&a.id[..], |(a, _)| interval(Some(&a.estimate)))
+        .number(&b.id[..], |(_, b)| interval(Some(&b.estimate)))
         .number("difference", difference)
         .number("E_n", word)
         .into()

@@ -1,19 +1,22 @@
 //! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its
 //! page with the pictures.
 
-use super::columns;
-use super::series::DropSeries;
-use super::{Batch, BatchRow, MOST_SERIES, PredictedCurve, head, page};
+use super::columns::{self, Columns};
+use super::series::{DropSeries, PooledQuantity, RowPlace};
+use super::{Batch, BatchRow, MOST_SERIES, PredictedCurve, page};
 use crate::data::Program;
 use crate::report::json::{in_a_line, pretty};
 use crate::report::records::{finished, text_cell};
+use crate::report::text::json_word;
 use crate::report::{ReportError, as_html};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 
 /// A campaign all of whose lines are known, with what the model predicts for its casks.
 pub struct CampaignFiles<'a> {
     batch: &'a Batch,
     series: Vec<DropSeries<'a>>,
+    places: HashMap<u32, RowPlace>,
 }
 
 impl<'a> CampaignFiles<'a> {
@@ -23,7 +26,8 @@ impl<'a> CampaignFiles<'a> {
         batch: &'a Batch,
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
     ) -> Self {
-        Self { batch, series: DropSeries::all(&batch.rows, predicted) }
+        let series = DropSeries::all(&batch.rows, predicted);
+        Self { batch, places: DropSeries::places(&series), series }
     }
 
     /// A row of `campaign.csv`.
@@ -31,14 +35,33 @@ impl<'a> CampaignFiles<'a> {
     /// # Errors
     /// [`ReportError::Csv`] where the writer fails.
     pub fn csv_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
-        let (row, own) = (BatchRow::of(line), columns::of(line));
-        let head = head();
-        let fixed = head.iter().map(|column| column.1(&row));
-        record(
-            fixed.chain(
-                self.batch.columns.iter().map(|column| own.get(column).map_or_else(String::new, cell)),
-            ),
-        )
+        let own = self.columns(line);
+        let carried = self.batch.carried.iter().map(String::as_str);
+        record(columns::names().chain(carried).map(|name| own.get(name).map_or_else(String::new, cell)))
+    }
+
+    /// Every column of a line.
+    fn columns(&self, line: &Value) -> Columns {
+        let mut columns = columns::of(line);
+        let Some(row) = self.row(line) else { return columns };
+        let place = self.places.get(&row.at.number).copied().unwrap_or_default();
+        let [of_k, of_speed] = [PooledQuantity::K, PooledQuantity::Speed].map(|q| place.e_n[q as usize]);
+        let own = json!({
+            "verdict": row.verdict.map_or_else(|| "error".into(), json_word), "exit": row.exit,
+            "report": row.report, "findings": row.findings, "codes": row.codes.join(" "),
+            "note_codes": row.note_codes.join(" "), "same_recording_as": row.same_recording_as,
+            "outlier": of_k.or(of_speed).map(|_| place.is_out), "k_e_n": of_k,
+            "slap_down_speed_e_n": of_speed,
+        });
+        let own = own.as_object().cloned().unwrap_or_default();
+        columns.extend(own.into_iter().filter(|(_, value)| !value.is_null()));
+        columns
+    }
+
+    /// The row of a line.
+    fn row(&self, line: &Value) -> Option<&BatchRow> {
+        let number = line["campaign"]["number"].as_u64()?;
+        self.batch.rows.get(usize::try_from(number).ok()?)
     }
 
     /// What `campaign.json` begins with; the rows follow, with commas between them, then [`Self::JSON_END`].
@@ -68,8 +91,8 @@ impl<'a> CampaignFiles<'a> {
     /// # Errors
     /// [`ReportError::Json`] where the writer fails.
     pub fn json_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
-        let mut row = serde_json::to_value(BatchRow::of(line))?;
-        row["columns"] = columns::of(line).into_iter().map(|((_, name), value)| (name, value)).collect();
+        let mut row = serde_json::to_value(self.row(line))?;
+        row["columns"] = self.columns(line).into_iter().collect();
         Ok(in_a_line(&row)?.into_bytes())
     }
 
@@ -91,12 +114,8 @@ impl Batch {
     /// # Errors
     /// [`ReportError::Csv`] where the writer fails.
     pub fn csv_head(&self) -> Result<Vec<u8>, ReportError> {
-        record(
-            head()
-                .iter()
-                .map(|column| column.0.to_owned())
-                .chain(self.columns.iter().map(|(_, name)| text_cell(name))),
-        )
+        let carried = self.carried.iter().map(|name| text_cell(name));
+        record(columns::names().map(str::to_owned).chain(carried))
     }
 }
 
@@ -108,10 +127,11 @@ fn record(cells: impl Iterator<Item = String>) -> Result<Vec<u8>, ReportError> {
 
 /// A value as a cell; a number that was carried as text stays one.
 fn cell(value: &Value) -> String {
-    match value.as_str() {
-        Some(text) if text.parse::<f64>().is_ok() => text.to_owned(),
-        Some(text) => text_cell(text),
-        None => value.to_string(),
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) if text.parse::<f64>().is_ok() => text.to_owned(),
+        Value::String(text) => text_cell(text),
+        other => other.to_string(),
     }
 }
 

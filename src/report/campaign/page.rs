@@ -1,16 +1,19 @@
-//! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording
-//! with a link to its report.
+//! A campaign to the document of its page: outliers first and what is not to be used, then a chapter a cask,
+//! then every recording with a link to its report.
 
-use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
+use super::columns::NamedQuantity;
+use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, is_usable, scatter_words};
+use super::summary::{Oddity, few, oddities, tag};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES, compared};
 use crate::data::{Program, STANDARD_GRAVITY_M_S2, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
 use crate::report::json::in_a_line;
 use crate::report::rounding::{
-    MISSING, fixed, interval, optional, optional_fixed, pair, percent, plain, significant,
+    MISSING, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
 use crate::report::table::{ReportTable, TableCell};
-use crate::report::text::{Style, verdict_word};
+use crate::report::text::Style;
+use serde_json::json;
 use std::collections::{BTreeSet, HashMap};
 
 const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1/u². Its interval is that of \
@@ -23,53 +26,82 @@ const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1
 /// The page.
 pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let count = |verdict| batch.rows.iter().filter(|row| row.verdict == verdict).count();
-    let (pass, review, fail) =
-        (count(Some(Verdict::Pass)), count(Some(Verdict::Review)), count(Some(Verdict::Fail)));
-    let failed = count(None);
-    let angles =
-        series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
-    let angles = angles.collect::<BTreeSet<u64>>().len();
-    let worst = match (fail + failed, review) {
+    let (pass, review) = (count(Some(Verdict::Pass)), count(Some(Verdict::Review)));
+    let odd = oddities(series);
+    let count = batch.rows.len();
+    let worst = match (count - pass - review, review + odd.len()) {
         (0, 0) => Style::Green,
         (0, _) => Style::Yellow,
         _ => Style::Red,
     };
-    let banner = Tone(worst, format!("{pass} of {}", batch.rows.len()));
-    let words =
-        format!("sound; {review} to look at, {fail} not to be used, {failed} that could not be analysed.");
-    let mut chapters = vec![Chapter::new("").with(PartContent::Banner(banner, words)), apart(series)];
+    let banner = Tone(worst, format!("{pass} of {count} sound"));
+    let angles =
+        series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
+    let angles = angles.collect::<BTreeSet<u64>>().len();
+    let heading = format!("Drop tests: {}", few(series.iter().map(|series| series.name.clone())));
+    let banner = Chapter::new("").with(PartContent::Banner(banner, batch.sum(&odd)));
+    let mut chapters = vec![banner, outliers(&odd)];
+    chapters.extend(reasons(batch));
     chapters.extend(both(batch));
     chapters.extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| of_series(series, i + 1)));
     let more =
         format!("The first {MOST_SERIES} of {} casks: campaign.json has the pools of all.", series.len());
     chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").with(ChapterPart::note(more))));
-    chapters.push(recordings(batch, series));
+    let places = DropSeries::places(series);
+    let rows = in_order(batch, &places);
+    chapters.push(recordings(&rows, count, &places));
     ReportDocument {
         page: Frame {
-            title: format!("Campaign {}", batch.source),
+            title: format!("{heading} · {}", batch.source),
             product: "Campaign of drop tests",
             version: Program::this().version.to_owned(),
-            heading: batch.source.clone(),
-            about: format!("{} recordings · {} casks · {angles} angles", batch.rows.len(), series.len()),
-            footer: "campaign.csv and campaign.json hold every input and result of every recording as \
+            heading,
+            about: format!(
+                "{} · {count} recordings · {} casks · {angles} angles",
+                batch.source,
+                series.len()
+            ),
+            footer: "campaign.csv and campaign.json have the results and settings of every recording as \
                      numbers; each recording has its own report.",
             style: include_str!("../live/campaign.css"),
             script: include_str!("../live/campaign.js"),
-            data: data(batch),
+            data: data(&rows),
             ..Frame::default()
         },
         chapters,
     }
 }
 
-/// The quantities of all rows for the script that compares two of them.
-fn data(batch: &Batch) -> String {
-    let quantities = |row: &BatchRow| -> Vec<serde_json::Value> {
-        let numbers = row.quantities.iter().map(|quantity| (&quantity.name, quantity.estimate));
-        numbers.map(|(name, e)| serde_json::json!([name, e.value, e.u95, e.unit])).collect()
+/// The rows as the list has them: the farthest outlier first, then what gave no result, then the others.
+fn in_order<'a>(batch: &'a Batch, places: &HashMap<u32, RowPlace>) -> Vec<&'a BatchRow> {
+    let key = |row: &BatchRow| match places.get(&row.at.number) {
+        Some(place) if place.is_out => -place.e_n.into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs())),
+        Some(_) if is_usable(row) => 3.0,
+        Some(_) => 2.0,
+        None => 1.0,
     };
-    let rows: Vec<_> = batch.rows.iter().take(MOST_ROWS).map(quantities).collect();
+    let mut rows: Vec<&BatchRow> = batch.rows.iter().collect();
+    rows.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    rows.truncate(MOST_ROWS);
+    rows
+}
+
+/// Quantities and curves of the rows for the script that compares two of them.
+fn data(rows: &[&BatchRow]) -> String {
+    let row = |row: &&BatchRow| {
+        let numbers = row
+            .quantities
+            .iter()
+            .map(|NamedQuantity { name, estimate: e }| json!([name, e.value, e.u95, e.unit]));
+        json!({"numbers": numbers.collect::<Vec<_>>(), "curves": row.curves})
+    };
+    let rows: Vec<_> = rows.iter().map(row).collect();
     in_a_line(&rows).unwrap_or_default().replace('<', "\\u003c")
+}
+
+/// The day of a test.
+fn date(row: &BatchRow) -> Option<&str> {
+    row.at.date.as_deref().map(|date| date.get(..10).unwrap_or(date))
 }
 
 /// Where just two gave a result: what they differ by.
@@ -79,53 +111,33 @@ fn both(batch: &Batch) -> Option<Chapter> {
     Some(Chapter::new("What the two differ by").with(compared::table(a, b)))
 }
 
-/// A row that does not fit, and why.
-struct Oddity<'a> {
-    row: &'a BatchRow,
-    size: f64,
-    why: String,
-}
-
-/// Points that fall out of their repeats, or lie outside both intervals of measurement and prediction.
-fn apart(series: &[DropSeries]) -> Chapter {
-    let mut found: Vec<Oddity> = Vec::new();
-    for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
-    {
-        for member in pool.members.iter().filter(|member| member.is_out && pool.angle_deg.is_some()) {
-            let e_n = member.e_n.unwrap_or_default();
-            let (name, own) =
-                (quantity_words(pool.quantity), interval(pool.quantity.of(member.row).as_ref()));
-            let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
-            let against = match pool.members.len() {
-                2 => "contradicts the other repeat".to_owned(),
-                count => format!("falls out of the {} other repeats", count - 1),
-            };
-            let why = format!("{name} {own} {against} of {place}, E_n = {}", fixed(e_n, 1));
-            found.push(Oddity { row: member.row, size: e_n.abs(), why });
-        }
-    }
-    let disagree =
-        series.iter().flat_map(|series| &series.rows).filter(|row| row.comparison.is_some_and(|c| !c.agrees));
-    for row in disagree {
-        let by = percent(row.comparison.map(|c| c.difference_percent));
-        let why = format!("measured over predicted {by}: outside both intervals");
-        found.push(Oddity { row, size: 0.0, why });
-    }
-    found.sort_by(|a, b| b.size.total_cmp(&a.size));
-    let table = ReportTable::of(&found)
+/// Drops that disagree with their repeats, or lie outside both intervals of measurement and prediction.
+fn outliers(odd: &[Oddity]) -> Chapter {
+    let table = ReportTable::of(odd)
         .caption("The largest E_n first. One in twenty sound drops lies outside a 95 % interval by chance.")
         .head("test", |odd| linked(odd.row))
-        .text("why", |odd| odd.why.clone())
+        .text("why", |odd| format!("{}: {}", odd.what, odd.against))
         .text("findings", |odd| odd.row.codes.join(", "))
+        .if_any(odd.iter().any(|odd| !odd.row.codes.is_empty()))
         .most(MOST_ROWS, 50, "the column E_n of the recordings");
-    let chapter = Chapter::new("Points that fall out");
-    if found.is_empty() { chapter.with(ChapterPart::text("None.")) } else { chapter.with(table) }
+    let chapter = Chapter::new("Outliers");
+    if odd.is_empty() { chapter.with(ChapterPart::text("None.")) } else { chapter.with(table) }
+}
+
+/// What was not analysed, and what was found in the others; those of one reason together.
+fn reasons(batch: &Batch) -> Option<Chapter> {
+    let name = |rows: &[&BatchRow]| match rows {
+        [row] => linked(row),
+        rows => few(rows.iter().map(|row| row.id.clone())).into(),
+    };
+    let any = batch.rows.iter().any(|row| !row.why().is_empty());
+    any.then(|| Chapter::new("Not analysed, or with findings").with(batch.reasons(name)))
 }
 
 fn of_series(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| {
         let angle = pool.angle_deg.map_or_else(|| "all".to_owned(), |angle| format!("{}°", plain(angle, 4)));
-        format!("{} at {angle}", quantity_words(pool.quantity))
+        format!("{} at {angle}", pool.quantity.words()[2])
     };
     let unit = |pool: &Pool| if pool.quantity == PooledQuantity::K { "" } else { " m/s" };
     let word = |pool: &Pool| pool.pooled.word().map_or(MISSING, scatter_words);
@@ -152,13 +164,6 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
         .with(ChapterPart::note(REPEATS))
 }
 
-fn quantity_words(quantity: PooledQuantity) -> &'static str {
-    match quantity {
-        PooledQuantity::K => "k",
-        PooledQuantity::Speed => "slap-down speed",
-    }
-}
-
 /// A row's name, leading to its report.
 fn linked(row: &BatchRow) -> TableCell {
     TableCell::linked(row.id.clone(), row.report.as_deref().map(encoded).unwrap_or_default())
@@ -172,35 +177,25 @@ fn encoded(path: &str) -> String {
         .collect()
 }
 
-fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
-    let places: HashMap<u32, RowPlace> =
-        series.iter().flat_map(|s| s.rows.iter().map(|row| (row.at.number, s.place(row)))).collect();
-    let e_n = |row: &BatchRow, quantity: PooledQuantity| {
-        let e_n = places.get(&row.at.number).and_then(|place| place.e_n[quantity as usize]);
-        optional_fixed(e_n, 2)
-    };
+fn recordings(rows: &[&BatchRow], all: usize, places: &HashMap<u32, RowPlace>) -> Chapter {
+    let place = |row: &BatchRow| places.get(&row.at.number).copied().unwrap_or_default();
+    let e_n = |row: &BatchRow, quantity: PooledQuantity| optional_fixed(place(row).e_n[quantity as usize], 2);
     let both = |values: [Option<f64>; 2], factor: f64| {
         values.map(|value| optional(value.map(|value| value / factor), 3)).join(" · ")
     };
-    let tag = |row: &BatchRow| {
-        let (style, word) = match row.verdict {
-            Some(Verdict::Pass) => (Style::Green, "sound"),
-            Some(verdict @ Verdict::Review) => (Style::Yellow, verdict_word(verdict)),
-            Some(verdict @ Verdict::Fail) => (Style::Red, verdict_word(verdict)),
-            None => (Style::Red, "error"),
-        };
-        TableCell::toned(style, word.to_lowercase())
-    };
-    let shown = &batch.rows[..batch.rows.len().min(MOST_ROWS)];
-    let table = ReportTable::of(shown)
+    let table = ReportTable::of(rows)
         .class("many sortable")
-        .head("test", linked)
-        .text("verdict", tag)
+        .chosen(|row| place(row).is_out)
+        .head("test", |row| TableCell {
+            mark: ["", "outlier"][usize::from(place(row).is_out)],
+            ..linked(row)
+        })
+        .tag("verdict", |row| tag(row))
         .soft("cask", |row| row.at.cask.clone())
         .number("angle °", |row| {
             row.at.angle_deg.map_or_else(|| MISSING.to_owned(), |angle| plain(angle, 4))
         })
-        .soft("date", |row| row.at.date.as_deref().map_or("", |date| date.get(..10).unwrap_or(date)))
+        .soft("date", |row| date(row).unwrap_or_default())
         .number("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
         .number("k", |row| interval(row.k.as_ref()))
         .number("measured / predicted", |row| percent(row.comparison.map(|c| c.difference_percent)))
@@ -208,12 +203,13 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
         .number("peaks g", |row| both(row.at.peaks_m_s2, STANDARD_GRAVITY_M_S2))
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
-        .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")));
-    let more = (shown.len() < batch.rows.len())
+        .text("findings", |row| row.codes.join(", "))
+        .if_any(rows.iter().any(|row| !row.codes.is_empty()));
+    let more = (rows.len() < all)
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
     Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(
-        "E_n against the other repeats at the angle; within ±1 they agree. Peaks: largest deceleration \
-             of the struck end of the rigid \
-             body, and energies absorbed, in the first and the second impact.",
+        "Outliers first, then what is not to be used. E_n against the other repeats at the angle; within ±1 \
+         they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies absorbed, \
+         in the first and the second impact.",
     ))
 }

@@ -6,7 +6,8 @@ use super::series::{DropSeries, PooledQuantity, PredictedCurve, is_usable};
 use crate::data::{BodyModel, Estimate};
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
-    ALARM, COLOURS, Colour, Curve, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape, Points,
+    ALARM, AxisScale, COLOURS, Colour, Curve, Dash, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape,
+    Points,
 };
 use crate::report::rounding::plain;
 use crate::report::words::contact_words;
@@ -26,10 +27,11 @@ impl DropSeries<'_> {
 
     fn speeds(&self, name: &str) -> Picture {
         let mut speed = self.panel("Slap-down speed", "slap-down speed, m/s");
-        speed.height = 620;
+        speed.height = 520;
         (speed.fills, speed.lines) = predicted(&self.curves);
         speed.marks = self.marks();
         let mut ratio = self.panel("Measured over predicted", "ratio");
+        ratio.height = 240;
         if let Some((from, to)) = ratio.x.range {
             ratio.lines.push(Curve::new(GREY, vec![(from, 1.0), (to, 1.0)]));
         }
@@ -43,7 +45,7 @@ impl DropSeries<'_> {
         let caption = format!(
             "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one \
              another. Bands: the analytical model over the measured range of k{k}. Below: measured over \
-             predicted with each drop's own k. Hollow: not to be used. Ringed: falls out of its repeats."
+             predicted with each drop's own k. Hollow: not to be used. Ringed: outlier."
         );
         Plate::new(name, format!("{}: slap-down speed over the drop angle", self.name), caption)
             .or(NOTHING)
@@ -52,22 +54,27 @@ impl DropSeries<'_> {
 
     fn ks(&self, name: &str) -> Picture {
         let k = |row: &BatchRow| PooledQuantity::K.of(row);
-        let over = |what: &str, label: &str| Panel::new(format!("Over the {what}"), label, "k", 330);
-        let first = self.rows.iter().filter_map(|row| date(row)).min();
-        let since_first = first.map_or_else(String::new, |first| format!("days since {first}"));
-        let days = |row: &BatchRow| {
-            let since = date(row)?.since(first?).ok()?;
-            Some(f64::from(since.get_days()))
-        };
-        let over_number = over("test number", "test number in the campaign");
+        let over = |what: &str, axis: PanelAxis| Panel::new(format!("k over the {what}"), axis, "k", 330);
+        let dates = PanelAxis { scale: AxisScale::Days, ..PanelAxis::new("test date") };
         let panels = [
-            self.drawn(self.panel("Over the drop angle", "k"), k, |row| self.angle(row)),
-            self.drawn(over("test date", &since_first), k, days).with_air(0.03),
-            self.drawn(over_number, k, |row| Some(row.at.number.into())).with_air(0.03),
+            self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row)),
+            self.drawn(over("test date", dates), k, day).with_air(0.03),
+            self.drawn(over("test number", "test number in the campaign".into()), k, |row| {
+                Some(row.at.number.into())
+            })
+            .with_air(0.03),
         ];
-        let caption = "The coefficient of restitution with its 95 % interval. Hollow: not to be used. \
-                       Ringed: falls out of its repeats.";
-        Plate::new(name, format!("{}: restitution", self.name), caption).or(NOTHING).picture(&panels)
+        let mean = self.pools.iter().rfind(|pool| pool.quantity == PooledQuantity::K);
+        let panels = panels.map(|mut panel| {
+            let ends = panel.x_range();
+            let line = |mean: f64| Curve::new(GREY, vec![(ends.start, mean), (ends.end, mean)]);
+            panel.lines.extend(mean.map(|pool| line(pool.pooled.mean).named("mean").broken(Dash::Dashed)));
+            panel
+        });
+        let caption = "The coefficient of restitution with its 95 % interval. Dashed: mean without outliers. \
+                       Hollow: not to be used. Ringed: outlier.";
+        let plate = Plate { columns: 3, ..Plate::new(name, format!("{}: restitution", self.name), caption) };
+        plate.or(NOTHING).picture(&panels)
     }
 
     fn panel(&self, title: &str, y: &str) -> Panel {
@@ -127,9 +134,10 @@ fn relative(row: &BatchRow) -> Option<Estimate> {
     Some(Estimate::new(ratio, ratio * share, "1"))
 }
 
-/// The day of a test.
-fn date(row: &BatchRow) -> Option<jiff::civil::Date> {
-    row.at.date.as_deref()?.get(..10)?.parse().ok()
+/// The day of a test, counted from 1970 on.
+fn day(row: &BatchRow) -> Option<f64> {
+    let date: jiff::civil::Date = row.at.date.as_deref()?.get(..10)?.parse().ok()?;
+    Some(date.since(jiff::civil::date(1970, 1, 1)).ok()?.get_days().into())
 }
 
 /// A band for each body and contact law between the curves of its lowest and highest k.

@@ -41,17 +41,11 @@ impl PooledQuantity {
         }
     }
 
-    pub(super) fn name(self) -> &'static str {
+    /// Its name in JSON, its unit, and what a person calls it.
+    pub(super) fn words(self) -> [&'static str; 3] {
         match self {
-            Self::K => "k",
-            Self::Speed => "slap_down_speed",
-        }
-    }
-
-    pub(super) fn unit(self) -> &'static str {
-        match self {
-            Self::K => "1",
-            Self::Speed => "m/s",
+            Self::K => ["k", "1", "k"],
+            Self::Speed => ["slap_down_speed", "m/s", "slap-down speed"],
         }
     }
 }
@@ -138,6 +132,14 @@ impl<'a> DropSeries<'a> {
         self.rows.iter().copied().filter(|row| is_usable(row))
     }
 
+    /// The places of all rows by their numbers.
+    pub(super) fn places(series: &[Self]) -> HashMap<u32, RowPlace> {
+        series
+            .iter()
+            .flat_map(|series| series.places.iter().map(|(number, place)| (*number, *place)))
+            .collect()
+    }
+
     /// The place of a row among its repeats.
     pub(super) fn place(&self, row: &BatchRow) -> RowPlace {
         self.places.get(&row.at.number).copied().unwrap_or_default()
@@ -176,9 +178,10 @@ impl<'a> DropSeries<'a> {
         let repeat = |m: &PoolMember| json!({"id": m.row.id, "e_n": m.e_n, "falls_out": m.is_out});
         let record = |pool: &Pool| {
             let Pooled { count, mean, u95, scatter, chi_square } = pool.pooled;
+            let [quantity, unit, _] = pool.quantity.words();
             json!({
-                "cask": self.name, "angle_deg": pool.angle_deg, "quantity": pool.quantity.name(),
-                "unit": pool.quantity.unit(), "count": count, "mean": mean, "u95": u95, "scatter": scatter,
+                "cask": self.name, "angle_deg": pool.angle_deg, "quantity": quantity,
+                "unit": unit, "count": count, "mean": mean, "u95": u95, "scatter": scatter,
                 "chi_square": chi_square, "degrees": count - 1,
                 "scatter_is": pool.pooled.word().map(scatter_words),
                 "repeats": pool.members.iter().map(repeat).collect::<Vec<_>>(),
@@ -205,7 +208,8 @@ pub(super) fn is_usable(row: &BatchRow) -> bool {
 /// Both quantities at every angle, and k of all angles.
 fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
     let mut by_angle: BTreeMap<i64, Vec<&'a BatchRow>> = BTreeMap::new();
-    for row in rows {
+    // One recording is one drop, however often it is listed.
+    for row in rows.iter().filter(|row| row.same_recording_as.is_none()) {
         #[allow(clippy::cast_possible_truncation, reason = "0 to 90 degrees in millionths")]
         let angle = row.at.angle_deg.map(|angle| (angle * 1e6).round() as i64);
         if let Some(angle) = angle {
@@ -224,7 +228,8 @@ fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
             .filter(|m| m.is_out)
             .map(|m| m.row.at.number)
             .collect();
-        let left: Vec<&BatchRow> = rows.iter().copied().filter(|row| !out.contains(&row.at.number)).collect();
+        let all = by_angle.values().flatten().copied();
+        let left: Vec<&BatchRow> = all.filter(|row| !out.contains(&row.at.number)).collect();
         pools.extend(pool(None, PooledQuantity::K, &left));
     }
     pools

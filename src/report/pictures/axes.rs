@@ -107,7 +107,9 @@ impl PlotFrame<'_> {
     fn grid(&self, svg: &mut Svg) {
         let (width, height, panel) = (self.width, self.height, self.panel);
         let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
-        let x = ticks(&panel.x, &self.x, if width < WIDTH / 2.0 { 8 } else { 14 });
+        let most = if width < WIDTH / 2.0 { 8 } else { 14 };
+        // A date takes the room of two or three numbers.
+        let x = ticks(&panel.x, &self.x, if panel.x.has_dates() { most / 3 + 1 } else { most });
         let y = ticks(&panel.y, &self.y, 8);
         let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
@@ -126,11 +128,11 @@ impl PlotFrame<'_> {
         for value in x.bold.iter().filter(|_| !panel.x.label.is_empty()) {
             let at = across(*value);
             svg.line(&line(1.0, vec![(at, height), (at, height + 5.0)]));
-            svg.word(&tick(*value, panel.x.is_logarithmic()), (at, height + 22.0), Anchor::Middle);
+            svg.word(&tick(*value, &panel.x), (at, height + 22.0), Anchor::Middle);
         }
         for value in &y.bold {
             svg.line(&line(1.0, vec![(-5.0, up(*value)), (0.0, up(*value))]));
-            svg.word(&tick(*value, panel.y.is_logarithmic()), (-10.0, up(*value)), Anchor::End);
+            svg.word(&tick(*value, &panel.y), (-10.0, up(*value)), Anchor::End);
         }
     }
 
@@ -203,12 +205,13 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     };
     match axis.scale {
         AxisScale::Rows(_) => Ticks::default(),
-        AxisScale::Linear => {
+        AxisScale::Linear | AxisScale::Days => {
             let least = (to - from) / f64::from(most);
             let power = 10_f64.powf(least.log10().floor());
             let step =
                 [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= least * 0.999);
-            let step = step.unwrap_or(least);
+            // A date has no parts.
+            let step = if axis.has_dates() { least.ceil().max(1.0) } else { step.unwrap_or(least) };
             Ticks { bold: steps(step).into_iter().map(|i| f64::from(i) * step).collect(), fine: Vec::new() }
         }
         AxisScale::Logarithmic => {
@@ -223,13 +226,22 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     }
 }
 
-/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
-fn tick(value: f64, logarithmic: bool) -> String {
-    if logarithmic && !(1e-2..1e5).contains(&value) {
+/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic; a date's day.
+fn tick(value: f64, axis: &PanelAxis) -> String {
+    if axis.has_dates() {
+        return date_of_day(value).unwrap_or_default();
+    }
+    if axis.is_logarithmic() && !(1e-2..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded }).replace('-', "−")
+}
+
+/// The date of a day since 1970.
+#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
+fn date_of_day(day: f64) -> Option<String> {
+    Some(jiff::Timestamp::from_second((day * 86_400.0) as i64).ok()?.strftime("%F").to_string())
 }
 
 #[cfg(test)]
@@ -247,10 +259,19 @@ mod tests {
 
     #[test]
     fn ticks_read_well() {
-        assert_eq!(tick(-0.000_000_01, false), "0");
-        assert_eq!(tick(-12.5, false), "−12.5");
-        assert_eq!(tick(1e-5, true), "1e−5");
-        assert_eq!(tick(100.0, true), "100");
+        let (linear, logarithmic) = (PanelAxis::new("x"), PanelAxis::new("f").logarithmic());
+        assert_eq!(tick(-0.000_000_01, &linear), "0");
+        assert_eq!(tick(-12.5, &linear), "−12.5");
+        assert_eq!(tick(1e-5, &logarithmic), "1e−5");
+        assert_eq!(tick(100.0, &logarithmic), "100");
+    }
+
+    #[test]
+    fn days_are_ticked_by_their_dates() {
+        let days = PanelAxis { scale: AxisScale::Days, ..PanelAxis::new("date") };
+        let found = ticks(&days, &(20_512.8..20_515.2), 4).bold;
+        let found: Vec<String> = found.into_iter().map(|day| tick(day, &days)).collect();
+        assert_eq!(found, ["2026-03-01", "2026-03-02", "2026-03-03"]);
     }
 
     #[test]

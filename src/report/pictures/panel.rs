@@ -198,6 +198,8 @@ pub(crate) enum AxisScale {
     #[default]
     Linear,
     Logarithmic,
+    /// Days since 1970, numbered with their dates.
+    Days,
     /// One below the other, a unit each, the last one from 0 to 1.
     Rows(Vec<RowWords>),
 }
@@ -230,6 +232,11 @@ impl PanelAxis {
     /// Whether it has powers of ten.
     pub(super) fn is_logarithmic(&self) -> bool {
         matches!(self.scale, AxisScale::Logarithmic)
+    }
+
+    /// Whether its numbers are dates.
+    pub(super) fn has_dates(&self) -> bool {
+        matches!(self.scale, AxisScale::Days)
     }
 
     /// The value as a place along the axis.

@@ -1,0 +1,108 @@
+//! A campaign to what is said of it first: how many recordings of which verdict, the drops that do not fit,
+//! and what was found.
+
+use super::series::DropSeries;
+use super::{Batch, BatchRow};
+use crate::data::Verdict;
+use crate::report::rounding::{fixed, interval, percent, plain};
+use crate::report::table::{ReportTable, TableCell, TableShape};
+use crate::report::text::{Style, verdict_word};
+use std::cmp::Reverse;
+use std::collections::HashSet;
+
+/// Rows that a terminal shows at most: more are for a program to read.
+pub(super) const MOST_LINES: usize = 200;
+
+/// A drop that does not fit.
+pub(super) struct Oddity<'a> {
+    pub(super) row: &'a BatchRow,
+    /// |E_n| against the other repeats; 0 of what disagrees with its prediction alone.
+    size: f64,
+    /// Which of its numbers, and what that disagrees with.
+    pub(super) what: String,
+    pub(super) against: String,
+}
+
+/// Drops that disagree with their repeats, the largest E_n first, then those that lie outside both intervals
+/// of measurement and prediction.
+pub(super) fn oddities<'a>(series: &[DropSeries<'a>]) -> Vec<Oddity<'a>> {
+    let mut found: Vec<Oddity> = Vec::new();
+    for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
+    {
+        for member in pool.members.iter().filter(|member| member.is_out && pool.angle_deg.is_some()) {
+            let e_n = member.e_n.unwrap_or_default();
+            let (name, own) = (pool.quantity.words()[2], interval(pool.quantity.of(member.row).as_ref()));
+            let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
+            let others = match pool.members.len() {
+                2 => "the other repeat".to_owned(),
+                count => format!("the {} other repeats", count - 1),
+            };
+            let what = format!("{name} {own}, E_n {}", fixed(e_n, 1));
+            let against = format!("disagrees with {others} of {place}");
+            found.push(Oddity { row: member.row, size: e_n.abs(), what, against });
+        }
+    }
+    let disagree =
+        series.iter().flat_map(|series| &series.rows).filter(|row| row.comparison.is_some_and(|c| !c.agrees));
+    for row in disagree {
+        let by = percent(row.comparison.map(|c| c.difference_percent));
+        let (what, against) = (format!("measured over predicted {by}"), "outside both intervals".to_owned());
+        found.push(Oddity { row, size: 0.0, what, against });
+    }
+    found.sort_by(|a, b| b.size.total_cmp(&a.size));
+    found
+}
+
+/// The first five of these, and how many more there are.
+pub(super) fn few(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    let shown = names[..names.len().min(5)].join(", ");
+    if names.len() <= 5 { shown } else { format!("{shown} and {} more", names.len() - 5) }
+}
+
+/// The verdict on a row.
+pub(super) fn tag(row: &BatchRow) -> TableCell {
+    let (style, word) = match row.verdict {
+        Some(Verdict::Pass) => (Style::Green, "sound"),
+        Some(verdict @ Verdict::Review) => (Style::Yellow, verdict_word(verdict)),
+        Some(verdict @ Verdict::Fail) => (Style::Red, verdict_word(verdict)),
+        None => (Style::Red, "error"),
+    };
+    TableCell::toned(style, word.to_lowercase())
+}
+
+impl Batch {
+    /// How many recordings of which verdict, the outliers, and recordings that are listed twice.
+    pub(super) fn sum(&self, odd: &[Oddity]) -> String {
+        let count = |verdict| self.rows.iter().filter(|row| row.verdict == verdict).count();
+        let [sound, review, fail] = [Verdict::Pass, Verdict::Review, Verdict::Fail].map(|v| count(Some(v)));
+        // The worst number of each.
+        let mut told = HashSet::new();
+        let outliers = odd.iter().filter(|odd| odd.size > 0.0 && told.insert(odd.row.at.number));
+        let outliers = few(outliers.map(|odd| format!("{} ({})", odd.row.id, odd.what)));
+        let outliers = if outliers.is_empty() { "none" } else { &outliers };
+        let named = |row: &BatchRow| Some(format!("{} is {}", row.id, row.same_recording_as.as_ref()?));
+        let again = few(self.rows.iter().filter_map(named));
+        let again = if again.is_empty() { again } else { format!(" Listed twice, counted once: {again}.") };
+        let (all, failed) = (self.rows.len(), count(None));
+        format!(
+            "{all} recordings: {sound} sound, {review} to look at, {fail} not to be used, {failed} not \
+             analysed. Outliers: {outliers}.{again}"
+        )
+    }
+
+    /// Rows with an error or warning, the gravest first, those of one verdict and reason together.
+    pub(super) fn reasons(&self, name: impl Fn(&[&BatchRow]) -> TableCell) -> ReportTable {
+        let mut found: Vec<&BatchRow> = self.rows.iter().filter(|row| !row.why().is_empty()).collect();
+        found.sort_by_cached_key(|row| (row.verdict.map(Reverse), row.why()));
+        let alike = found.chunk_by(|a, b| a.verdict == b.verdict && a.why() == b.why());
+        let alike: Vec<&[&BatchRow]> = alike.collect();
+        ReportTable::of(&alike)
+            .shape(TableShape::ApartItems)
+            .tag("verdict", |rows| tag(rows[0]))
+            .head("recording", |rows| name(rows))
+            .text("why", |rows| rows[0].why())
+            .most(MOST_LINES, 50, "campaign.csv has all of them")
+            .into()
+    }
+}
