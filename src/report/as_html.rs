@@ -16,7 +16,7 @@ const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_st
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
-    let Frame { title, product, version, heading, about, footer, style, data, .. } = &document.page;
+    let Frame { title, product, version, heading, about, footer, foot, style, data, .. } = &document.page;
     let scripts = scripts(document, pictures);
     let generator = format!("dropcheck {version}");
     html! {
@@ -29,7 +29,8 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
-                style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) {
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) (PreEscaped(foot_style(foot)))
+                    @if is_live(pictures) {
                     (PreEscaped(UPLOT_STYLE)) } }
             }
             body { main {
@@ -38,11 +39,12 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                     h1 { (printable(heading)) }
                     p class="soft" { (printable(about)) }
                 }
-                @for chapter in &document.chapters {
+                @for (i, chapter) in document.chapters.iter().enumerate() {
                     @if let Some(words) = chapter.heading(Medium::Page).map(printable) {
-                        h2 { (words) }
+                        h2 id=(anchor(&words)) { (words) }
                     }
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
+                    @if i == 0 { (contents(document)) }
                 }
                 footer { (footer) }
                 @if !data.is_empty() { script type="application/json" id="data" { (PreEscaped(data)) } }
@@ -51,6 +53,35 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
         }
     }
     .into_string()
+}
+
+/// The chapters, and the files beside the page; nothing on a page without such files.
+fn contents(document: &ReportDocument) -> Markup {
+    let headings = document.chapters.iter().filter_map(|chapter| chapter.heading(Medium::Page));
+    let chapters = headings.map(|words| (format!("#{}", anchor(words)), printable(words)));
+    let files = document.page.files.iter().map(|name| ((*name).to_owned(), (*name).to_owned()));
+    let links =
+        |links: Vec<(String, String)>| html! { @for (to, words) in links { a href=(to) { (words) } " " } };
+    html! { @if !document.page.files.is_empty() {
+        nav aria-label="Contents" {
+            p { strong { "Contents " } (links(chapters.collect())) }
+            p { strong { "Files beside this page " } (links(files.collect())) }
+        }
+    } }
+}
+
+/// A heading as the name of its place.
+fn anchor(words: &str) -> String {
+    let parts = words.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+/// The foot of each printed page; every sign that could end the words is written by its number.
+fn foot_style(words: &str) -> String {
+    let plain =
+        |c: char| if c.is_alphanumeric() || c == ' ' { c.into() } else { format!("\\{:x} ", u32::from(c)) };
+    let words: String = printable(words).chars().map(plain).collect();
+    format!("@page {{ @bottom-left {{ content: \"{words}\" }} }}")
 }
 
 fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
@@ -69,11 +100,10 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         PartContent::ReportTable(table) => self::table(table),
         PartContent::Picture(name, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
-                @let live = (!picture.live.is_empty()).then(|| format!("live-{name}"));
-                figure aria-label=(printable(&picture.alt)) class=[class(room)] data-live=[&live] {
+                figure id=(name) aria-label=(printable(&picture.alt)) class=[class(room)] {
                     (PreEscaped(&picture.svg))
-                    @if let Some(id) = &live {
-                        script type="application/json" id=(id) { (PreEscaped(&picture.live)) }
+                    @if !picture.live.is_empty() {
+                        script type="application/json" { (PreEscaped(&picture.live)) }
                     }
                     figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
                 }

@@ -31,6 +31,10 @@ pub(crate) struct Frame {
     pub(crate) about: String,
     /// Sentences at the foot.
     pub(crate) footer: &'static str,
+    /// What stands at the foot of each printed page beside its number.
+    pub(crate) foot: String,
+    /// The files beside a page that has a list of its chapters and of them; none on one that has no list.
+    pub(crate) files: &'static [&'static str],
     /// Style besides that of all pages.
     pub(crate) style: &'static str,
     /// What runs in the page, and the JSON that it reads; nothing where they are empty.

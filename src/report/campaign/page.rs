@@ -56,6 +56,7 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
             style: include_str!("../live/campaign.css"),
             script: include_str!("../live/campaign.js"),
             data: data(batch),
+            ..Frame::default()
         },
         chapters,
     }
