@@ -32,6 +32,16 @@ for (const figure of document.querySelectorAll("figure[id]")) {
   figure.querySelector("figcaption").before(tools);
 }
 
+// What scrolls sideways on a narrow screen can be reached by the keyboard.
+function reach() {
+  for (const part of document.querySelectorAll("table, figure")) {
+    if (part.scrollWidth > part.clientWidth) part.tabIndex = 0;
+    else part.removeAttribute("tabindex");
+  }
+}
+reach();
+addEventListener("resize", reach);
+
 function button(into, words, act) {
   const b = document.createElement("button");
   b.type = "button";
