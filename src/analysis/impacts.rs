@@ -101,7 +101,7 @@ pub(super) fn amplification(result: &DropResult) -> Option<Estimate> {
 
 /// The low-pass of the peaks: as stated, or the same for every drop of this mass.
 fn low_pass(file: &CaskFile) -> (String, f64) {
-    let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg, None);
+    let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     (motion::filter_name(file.filter), cutoff_hz)
 }
 

@@ -62,7 +62,7 @@ pub(super) fn of(
     let tabulated = measured.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     result.amplification = impacts::amplification(&result);
-    result.settings.splice(0..0, of_curves(file, &events, effect));
+    result.settings.splice(0..0, of_curves(file, effect));
     match reached {
         Reached::Impact => {}
         Reached::Flown(flown) => {
@@ -85,7 +85,7 @@ pub(super) fn of(
     }
     let ShownSignals { mut signals, .. } = shown;
     signals.truncate(recorded);
-    let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(&events, file));
+    let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
     analysis(recording, file, result, move || Curves { channels: channels(), motion })
 }
@@ -177,16 +177,14 @@ pub(super) struct ShownSignals {
 
 impl ShownSignals {
     pub fn of(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
-        let (cutoff_hz, _) = cutoff(events, file);
+        let (cutoff_hz, _) = cutoff(file);
         let signals = motion::around(signals, events, cutoff_hz);
         Self { smooth: motion::filtered(&signals, cutoff_hz), signals }
     }
 }
 
-fn cutoff(events: &Events, file: &CaskFile) -> (f64, &'static str) {
-    let pulse_s =
-        events.separation.zip(events.first_contact).map(|(left, contact)| left.time_s - contact.time_s);
-    motion::cutoff_hz(file.filter, file.cask.mass_kg, pulse_s)
+fn cutoff(file: &CaskFile) -> (f64, &'static str) {
+    motion::cutoff_hz(file.filter, file.cask.mass_kg)
 }
 
 /// What the curves' low-pass would have changed had it been used for the numbers, in words.
@@ -207,10 +205,12 @@ fn filter_effect(
     let flight = motion::with_modes(&integrated, flight, &window, setup.cog_m)?;
     let motion = motion::outcome(&integrated, &flight, events, setup)?;
     let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
+    // No sign before nothing: −0 and 0 are 0.
+    let rounded = |value: f64, parts: f64| (value * parts).round() / parts + 0.0;
     Some(format!(
         "slap-down speed {:+.2} m/s, k {:+.3}",
-        horizontal_m_s.hypot(vertical_m_s) - speed.value,
-        motion.rebound_m_s / setup.impact_velocity_m_s - quantities.k.value
+        rounded(horizontal_m_s.hypot(vertical_m_s) - speed.value, 100.0),
+        rounded(motion.rebound_m_s / setup.impact_velocity_m_s - quantities.k.value, 1000.0)
     ))
 }
 
@@ -219,15 +219,15 @@ fn setting(name: &str, value: impl Into<String>, origin: &str) -> Setting {
 }
 
 /// What the curves are made with, and what that would have changed.
-fn of_curves(file: &CaskFile, events: &Events, effect: Option<String>) -> Vec<Setting> {
-    let (cutoff_hz, origin) = cutoff(events, file);
+fn of_curves(file: &CaskFile, effect: Option<String>) -> Vec<Setting> {
+    let (cutoff_hz, origin) = cutoff(file);
     let effect = effect.map(|effect| {
         setting("effect of that low-pass, had it been applied before integrating", effect, "from the data")
     });
-    let shown = format!("−3 dB at {cutoff_hz:.0} Hz, zero phase (two passes, second order)");
+    let shown = format!("−3 dB at {cutoff_hz:.1} Hz, zero phase (two passes, second order)");
     let low_pass = setting("low-pass of the curves shown", shown, origin);
     let integrated = setting("samples that are integrated", "unfiltered, offset removed", "default");
-    effect.into_iter().chain([low_pass, integrated]).collect()
+    [low_pass].into_iter().chain(effect).chain([integrated]).collect()
 }
 
 /// What the analysis went by, and the free fall where it is seen.

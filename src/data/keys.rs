@@ -19,11 +19,7 @@ pub static TABLES: [KeyTable; 16] = [
     KeyTable { name: "cask", remark: "", keys: &CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
     KeyTable { name: "contact", remark: "", keys: &CONTACT },
-    KeyTable {
-        name: "filter",
-        remark: "left out: chosen from the mass and the data; give one of the two",
-        keys: &FILTER,
-    },
+    KeyTable { name: "filter", remark: "left out: chosen from the mass; give one of the two", keys: &FILTER },
     KeyTable {
         name: "tolerance",
         remark: "half-widths of 95 % intervals; these are the defaults",

@@ -22,30 +22,22 @@ const RATE_OVER_CUTOFF: f64 = 100.0;
 /// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end
 /// (28).
 const CUTOFF_100_T_HZ: f64 = 200.0;
-/// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
-const PULSE_CUTOFF: f64 = 3.0;
 /// Points of the motion, uniform over contact and flight: 0.1 ms over 60 ms.
 const CURVE_POINTS: u32 = 600;
 
-/// The −3 dB cut-off for the curves, Hz, and where it comes from.
+/// The −3 dB cut-off for curves and peaks, Hz, and where it comes from: the same for every drop of a mass.
 #[must_use]
-pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64, pulse_s: Option<f64>) -> (f64, &'static str) {
+pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64) -> (f64, &'static str) {
     match choice {
         FilterChoice::Cfc(class) => (class * CFC_DESIGN * TWO_PASS_CUTOFF, "cask file"),
         FilterChoice::CutoffHz(hz) => (hz, "cask file"),
         FilterChoice::Auto => {
-            let by_mass_hz = CUTOFF_100_T_HZ * (1e5 / mass_kg).cbrt();
-            let by_pulse_hz = pulse_s.filter(|t| *t > 0.0).map_or(0.0, |t| PULSE_CUTOFF / t);
-            if by_pulse_hz > by_mass_hz {
-                (by_pulse_hz, "default: 3 over the first pulse's duration")
-            } else {
-                (by_mass_hz, "default: 200 Hz at 100 t, scaled with mass^(-1/3)")
-            }
+            (CUTOFF_100_T_HZ * (1e5 / mass_kg).cbrt(), "default: IAEA SSG-26, 200 Hz × (100 t/m)^⅓")
         }
     }
 }
 
-/// The name of the low-pass that [`cutoff_hz`] gives without a pulse.
+/// The name of the low-pass that [`cutoff_hz`] gives.
 #[must_use]
 pub fn filter_name(choice: FilterChoice) -> String {
     match choice {
@@ -59,10 +51,10 @@ pub fn filter_name(choice: FilterChoice) -> String {
 /// Hz   (28), (25)
 #[must_use]
 pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
-    let by_mass_hz = cutoff_hz(FilterChoice::Auto, mass_kg, None).0;
+    let by_mass_hz = cutoff_hz(FilterChoice::Auto, mass_kg).0;
     let classes = [60.0, 180.0, 600.0].map(|class| {
         let choice = FilterChoice::Cfc(class);
-        (filter_name(choice), cutoff_hz(choice, mass_kg, None).0)
+        (filter_name(choice), cutoff_hz(choice, mass_kg).0)
     });
     let advised =
         [("SSG-26, 100 Hz".to_owned(), by_mass_hz / 2.0), (filter_name(FilterChoice::Auto), by_mass_hz)];
@@ -216,13 +208,13 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn the_default_cutoff_keeps_the_peak_of_a_short_pulse() {
-        // A half sine of 1 ms between two silences.
+    fn the_default_cutoff_keeps_the_peak_of_a_usual_pulse() {
+        // A half sine of 5.3 ms, 3 over the default cut-off of 4.5 t, between two silences.
         let sine =
-            |i: u32| if (5000..5100).contains(&i) { (PI * f64::from(i - 5000) / 100.0).sin() } else { 0.0 };
-        let pulse: Vec<f64> = (0..10_100).map(sine).collect();
+            |i: u32| if (5000..5530).contains(&i) { (PI * f64::from(i - 5000) / 530.0).sin() } else { 0.0 };
+        let pulse: Vec<f64> = (0..10_530).map(sine).collect();
         let peak = |choice| {
-            let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz(choice, 4.5e3, Some(1e-3)).0, 1e5);
+            let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz(choice, 4.5e3).0, 1e5);
             filter.expect("below Nyquist").apply(&pulse).into_iter().fold(0.0, f64::max)
         };
         assert!((peak(FilterChoice::Auto) - 1.0_f64).abs() < 0.01, "{}", peak(FilterChoice::Auto));

@@ -1,5 +1,6 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
+use super::FILE_NAMES;
 use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
 use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
@@ -10,7 +11,7 @@ use super::record;
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
 use super::table::{ReportTable, TableCell, TableShape};
-use super::tested::tested;
+use super::tested::{TOLD, tested};
 use super::text::{
     Style, capital, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
     verdict_style, verdict_word, yes,
@@ -18,7 +19,7 @@ use super::text::{
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
     Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Program,
-    STANDARD_GRAVITY_M_S2, Severity, TestRecord,
+    STANDARD_GRAVITY_M_S2, Setting, Severity, TestRecord,
 };
 
 /// Findings that take away what the first impact would give.
@@ -46,40 +47,48 @@ const SLAP_DOWN_CODES: [IssueCode; 8] = [
 /// results.
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
-    let name = &file.cask.name;
-    let curves = ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"]
-        .map(|name| ChapterPart::picture(name, ""));
+    let (name, input) = (&file.cask.name, &result.input);
+    let heading = record::heading(&result.test, name);
+    let pictures =
+        |names: &[&str]| names.iter().map(|name| ChapterPart::picture(name, "")).collect::<Vec<_>>();
+    let hash = input.recording_sha256.get(..16).unwrap_or_default();
     ReportDocument {
         page: Frame {
-            title: format!("Drop test of {name} – {}", verdict_word(result.verdict)),
+            title: format!("{heading} – {}", verdict_word(result.verdict)),
             product: "Drop test report",
             version: result.version.to_owned(),
-            heading: format!("{name}: slap-down drop test"),
-            about: result.input.recording.clone(),
+            foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
+            heading,
+            about: input.recording.clone(),
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
-                     the target.",
+                     the target. [P]: Analytical, Numerical and Experimental Investigations on the Impact \
+                     Behaviour of Packagings for the Transport of Radioactive Material under Slap Down \
+                     Conditions (BAM, PATRAM). SSG-26: IAEA Specific Safety Guide No. SSG-26.",
             letterhead: file.letterhead.clone(),
+            files: &FILE_NAMES[1..],
             ..Frame::default()
         },
         chapters: vec![
             summary(result, file),
+            Chapter::new("Accelerations and velocities")
+                .only(Medium::Page)
+                .with_all(pictures(&["accelerations", "velocities"])),
             record::head(&result.test),
             tested(file, "What was tested")
                 .with(ChapterPart::picture("setup", ""))
                 .with(record::sensors(file)),
             quantities(result),
-            impacts(result),
+            impacts(result).with_all(pictures(&["impacts", "crush"])),
             comparison(result),
             record::observed(&result.observed),
             record::limits(&result.limits),
             quality(&result.quality).only(Medium::Page),
-            Chapter::new("Curves").only(Medium::Page).with_all(curves),
-            reconstruction(result),
-            flight(result),
+            reconstruction(result).with_all(pictures(&["motion"])),
+            flight(result).with_all(pictures(&["fit"])),
             budget(result, file),
             predictions(result),
-            channels(result),
+            channels(result).with_all(pictures(&["spectra"])),
             quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
             record::photographs(&result.test),
@@ -170,9 +179,11 @@ fn quantities(result: &DropResult) -> Chapter {
     let fact = |name: &str, value: &Option<Estimate>, note: &str| {
         Fact::number(name, interval(value.as_ref())).note(note)
     };
+    let of_impact = result.settings.iter().find(|setting| setting.name == "impact velocity");
+    let stated = of_impact.map_or_else(String::new, |setting| format!("from {}", setting.origin));
     let first_impact = vec![
         fact("first contact", &first.time, "after the first sample"),
-        fact("impact velocity", &first.impact_velocity, ""),
+        fact("impact velocity", &first.impact_velocity, &stated),
         fact("contact lasts", &first.duration, ""),
         fact("rebound velocity", &first.rebound_velocity, "vertical, up positive"),
         fact("angular velocity", &first.angular_velocity, ""),
@@ -213,7 +224,8 @@ fn comparison(result: &DropResult) -> Chapter {
                 Fact::number("predicted", pair(c.predicted, c.predicted_u95, "m/s")).note(by),
                 Fact::number("difference", percent(c.difference_percent)).toned(style, agreement(c.agrees)),
             ];
-            ChapterPart::facts("", facts)
+            // A page has them in its first boxes.
+            ChapterPart::facts("", facts).only(Medium::Terminal)
         },
     );
     let model = taken.map(|model| {
@@ -249,13 +261,13 @@ pub(super) fn quality(issues: &[Finding]) -> Chapter {
         Severity::Error => Style::Red,
     };
     let findings = ReportTable::of(issues)
-        .class("")
+        .class("findings")
         .shape(TableShape::Items)
         .tag("Severity", |i| TableCell::toned(style(i.severity), json_word(i.severity)))
         .code("Check", |i| json_word(i.code))
         .text("Channel", |i| i.channel.as_deref().unwrap_or(MISSING))
         .soft("When", |i| span_text(i).unwrap_or_else(|| MISSING.into()))
-        .text("Finding", |i| &i.message[..]);
+        .text("Finding", |i| true_minus(&i.message));
     chapter.with(findings)
 }
 
@@ -281,15 +293,14 @@ fn predictions(result: &DropResult) -> Chapter {
 
 /// What each channel is worth.
 fn channels(result: &DropResult) -> Chapter {
+    // The impacts have the peaks on a page, by impact and with their intervals.
+    let is_told = result.impacts.iter().any(|impact| !impact.channels.is_empty());
+    let peaks_on = is_told.then_some(Medium::Terminal);
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
     let rate = |rate_hz: f64, digits| format!("{} kHz", plain(rate_hz / 1e3, digits));
     let table = ReportTable::of(&result.channels)
         .class("")
-        .caption(
-            "Offset, noise (RMS) and peaks in g. The peaks are those of the event that the curves show, from \
-             just before the first impact, \
-             not of the whole recording: of the filtered curve, and of the unfiltered one.",
-        )
+        .caption("Offset and noise (RMS) in g; where no impact is tabulated, also the peaks of the event")
         .head(Words::or("Channel", "channel"), |c| &c.name[..])
         .text(Words::or("End, axis", "end, axis"), |c| format!("{}, {}", json_word(c.end), json_word(c.axis)))
         .code("Source", |c| &c.source[..])
@@ -304,8 +315,10 @@ fn channels(result: &DropResult) -> Chapter {
         })
         .number(Words::or("Offset", "offset g"), |c| g(c.offset_m_s2))
         .number(Words::or("Noise", "noise g"), |c| g(c.noise_m_s2))
-        .number(Words::or("Peak of the event", "event\npeak g"), |c| g(c.peak_filtered_m_s2))
-        .number(Words::or("Unfiltered", "event\nraw g"), |c| g(c.peak_raw_m_s2));
+        .number(Words::or("Filtered peak", "event\npeak g"), |c| g(c.peak_filtered_m_s2))
+        .only(peaks_on)
+        .number(Words::or("Unfiltered peak", "event\nraw g"), |c| g(c.peak_raw_m_s2))
+        .only(peaks_on);
     Chapter::new("Channels").with(table)
 }
 
@@ -318,22 +331,23 @@ fn program(result: &DropResult) -> String {
 
 /// Which files, which version, which settings.
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
-    let (input, speed) = (&result.input, interval(result.slap_down.speed.as_ref()));
+    let input = &result.input;
     let mut facts = vec![
         Fact::words("Recording", format!("{} ({})", input.recording, json_word(input.format))),
-        Fact::code("its SHA-256", &input.recording_sha256[..]),
+        Fact::code("SHA-256 of the recording", &input.recording_sha256[..]),
         Fact::words("Cask file", &input.cask[..]),
-        Fact::code("its SHA-256", &input.cask_sha256[..]),
+        Fact::code("SHA-256 of the cask file", &input.cask_sha256[..]),
         Fact::words("Program", program(result)),
-        Fact::words("Slap-down speed", format!("{speed} · result schema {}", result.schema)),
+        Fact::words("Schema of result.json", result.schema),
     ];
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
-    facts.splice(5..5, own.map(|sha256| Fact::code("its SHA-256", sha256)));
+    facts.splice(5..5, own.map(|sha256| Fact::code("SHA-256 of the program", sha256)));
     let stated = settings::of_cask_file(file, &result.settings);
-    let all: Vec<_> = result.settings.iter().chain(&stated).collect();
+    let is_new = |s: &&Setting| !TOLD.contains(&s.name.as_str());
+    let all: Vec<_> = result.settings.iter().chain(&stated).filter(is_new).collect();
     let settings = ReportTable::of(&all)
         .class("")
-        .caption("Every setting and where it came from")
+        .caption("Every other setting and where it came from; cask and drop stand under \"What was tested\"")
         .head("Setting", |s| &s.name[..])
         .text("Value", |s| true_minus(&s.value))
         .text("From", |s| &s.origin[..]);

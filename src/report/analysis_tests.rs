@@ -80,9 +80,7 @@ fn made(analysis: &Analysis) -> String {
 #[test]
 fn it_stands_alone() {
     let page = made(&sample::analysis());
-    for call in
-        ["src=", "href=", "url(", "@import", "<script src", "http://", "https://", "fetch(", "XMLHttp"]
-    {
+    for call in ["src=", "url(", "@import", "<script src", "http://", "https://", "fetch(", "XMLHttp"] {
         let hits = page.matches(call).count();
         // The only addresses are the name of the SVG vocabulary, and that of the library of the charts in its
         // head.
@@ -93,7 +91,50 @@ fn it_stands_alone() {
         };
         assert_eq!(hits, allowed, "{call}");
     }
-    assert!(page.len() < 700_000, "{} bytes", page.len());
+    assert!(page.len() < 750_000, "{} bytes", page.len());
+}
+
+#[test]
+fn its_links_lead_to_its_chapters_and_to_the_files_beside_it() {
+    let page = made(&sample::analysis());
+    let links: Vec<&str> = page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let (chapters, files): (Vec<_>, Vec<_>) = links.into_iter().partition(|link| link.starts_with('#'));
+    assert_eq!(files, super::FILE_NAMES[1..]);
+    assert!(chapters.len() > 8, "{chapters:?}");
+    for chapter in chapters {
+        assert_eq!(page.matches(&format!(" id=\"{}\"", &chapter[1..])).count(), 1, "{chapter}");
+    }
+}
+
+#[test]
+fn the_test_is_the_heading_and_the_foot_and_no_row() {
+    let mut analysis = sample::analysis();
+    analysis.result.test.id = Some("T-7 </style>".into());
+    analysis.result.test.title = Some("Slap-down at −40 °C".into());
+    analysis.result.test.date = Some("2026-11-22T18:04:00+01:00".into());
+    let page = made(&analysis);
+    for words in [
+        "<h1>T-7 &lt;/style&gt;: Slap-down at −40 °C</h1>",
+        "content: \"T\\2d 7 \\3c \\2f style\\3e  \\b7  recording 9f86d081884c7d65\"",
+        "2026-11-22, 18:04 +01:00",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("Title</th>"));
+}
+
+#[test]
+fn a_long_recording_is_thinned_and_says_so() {
+    let mut analysis = sample::analysis();
+    let live = |analysis: &Analysis| pictures::draw(analysis).swap_remove(1).live;
+    assert!(live(&analysis).starts_with("{\"each\":1,"));
+    let curve = &mut analysis.curves.channels[0];
+    for values in [&mut curve.time_s, &mut curve.raw_m_s2, &mut curve.filtered_m_s2, &mut curve.velocity_m_s]
+    {
+        *values = values.iter().flat_map(|value| [*value; 50]).collect();
+    }
+    let thinned = live(&analysis);
+    assert!(thinned.starts_with("{\"each\":34,") && thinned.len() < 150_000, "{}", thinned.len());
 }
 
 #[test]

@@ -17,7 +17,7 @@ const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_st
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
-    let Frame { title, product, version, heading, about, footer, letterhead, style, data, .. } =
+    let Frame { title, product, version, heading, about, footer, foot, letterhead, style, data, .. } =
         &document.page;
     let scripts = scripts(document, pictures);
     let generator = format!("dropcheck {version}");
@@ -31,9 +31,10 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
-                style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) {
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) (PreEscaped(foot_style("left", foot)))
+                    @if is_live(pictures) {
                     (PreEscaped(UPLOT_STYLE)) } @if let Some(words) = &letterhead.footer {
-                    (PreEscaped(below_each(words))) } }
+                    (PreEscaped(foot_style("center", words))) } }
             }
             body { main {
                 header {
@@ -43,11 +44,12 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                     h1 { (printable(heading)) }
                     p class="soft" { (printable(about)) }
                 }
-                @for chapter in &document.chapters {
+                @for (i, chapter) in document.chapters.iter().enumerate() {
                     @if let Some(words) = chapter.heading(Medium::Page).map(printable) {
-                        h2 { (words) }
+                        h2 id=(anchor(&words)) { (words) }
                     }
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
+                    @if i == 0 { (contents(document)) }
                 }
                 footer {
                     (footer)
@@ -59,6 +61,35 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
         }
     }
     .into_string()
+}
+
+/// The chapters, and the files beside the page; nothing on a page without such files.
+fn contents(document: &ReportDocument) -> Markup {
+    let headings = document.chapters.iter().filter_map(|chapter| chapter.heading(Medium::Page));
+    let chapters = headings.map(|words| (format!("#{}", anchor(words)), printable(words)));
+    let files = document.page.files.iter().map(|name| ((*name).to_owned(), (*name).to_owned()));
+    let links =
+        |links: Vec<(String, String)>| html! { @for (to, words) in links { a href=(to) { (words) } " " } };
+    html! { @if !document.page.files.is_empty() {
+        nav aria-label="Contents" {
+            p { strong { "Contents " } (links(chapters.collect())) }
+            p { strong { "Files beside this page " } (links(files.collect())) }
+        }
+    } }
+}
+
+/// A heading as the name of its place.
+fn anchor(words: &str) -> String {
+    let parts = words.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+/// Words at a place below each printed page; every sign that could end the words is written by its number.
+fn foot_style(place: &str, words: &str) -> String {
+    let plain =
+        |c: char| if c.is_alphanumeric() || c == ' ' { c.into() } else { format!("\\{:x} ", u32::from(c)) };
+    let words: String = printable(words).chars().map(plain).collect();
+    format!("@page {{ @bottom-{place} {{ content: \"{words}\" }} }}")
 }
 
 fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
@@ -77,11 +108,10 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         PartContent::ReportTable(table) => self::table(table),
         PartContent::Picture(name, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
-                @let live = (!picture.live.is_empty()).then(|| format!("live-{name}"));
-                figure aria-label=(printable(&picture.alt)) class=[class(room)] data-live=[&live] {
+                figure id=(name) aria-label=(printable(&picture.alt)) class=[class(room)] {
                     (PreEscaped(&picture.svg))
-                    @if let Some(id) = &live {
-                        script type="application/json" id=(id) { (PreEscaped(&picture.live)) }
+                    @if !picture.live.is_empty() {
+                        script type="application/json" { (PreEscaped(&picture.live)) }
                     }
                     figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
                 }
@@ -108,13 +138,6 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
 fn image(Photo { name, media_type, bytes }: &Photo, class: &str) -> Markup {
     let data = format!("data:{media_type};base64,{}", STANDARD.encode(bytes));
     html! { @if !bytes.is_empty() { img class=[self::class(class)] alt=(printable(name)) src=(data); } }
-}
-
-/// Words below each page of paper, as a style.
-fn below_each(words: &str) -> String {
-    let escaped = |c| format!("\\{:x} ", u32::from(c));
-    let words: String = printable(words).chars().map(escaped).collect();
-    format!("@page {{ @bottom-center {{ content: \"{words}\"; font: 8px sans-serif; }} }}")
 }
 
 /// Whether any picture is to be zoomed.

@@ -33,6 +33,10 @@ pub(crate) struct Frame {
     pub(crate) footer: &'static str,
     /// What a site puts around it.
     pub(crate) letterhead: Letterhead,
+    /// What stands at the foot of each printed page beside its number.
+    pub(crate) foot: String,
+    /// The files beside a page that has a list of its chapters and of them; none on one that has no list.
+    pub(crate) files: &'static [&'static str],
     /// Style besides that of all pages.
     pub(crate) style: &'static str,
     /// What runs in the page, and the JSON that it reads; nothing where they are empty.

@@ -1,13 +1,12 @@
 //! Both impacts to the chapter that tabulates them: in short on a terminal, one table per impact on a page.
 
-use super::document::{Chapter, ChapterPart, PartContent};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart};
+use super::medium::{Medium, Words};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
 use super::table::ReportTable;
 use super::text::distinct;
 use crate::data::{
-    ChannelPeak, DropResult, End, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration,
-    STANDARD_GRAVITY_M_S2,
+    ChannelPeak, DropResult, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration, STANDARD_GRAVITY_M_S2,
 };
 
 /// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
@@ -37,23 +36,25 @@ impl ImpactRow {
 
 const G: f64 = 1.0 / STANDARD_GRAVITY_M_S2;
 
-const ROWS: [ImpactRow; 16] = [
-    ImpactRow::new("start", "ms", 1e3, false, |i| i.start),
+const ROWS: [ImpactRow; 14] = [
     ImpactRow::new("duration", "ms", 1e3, true, |i| i.numbers.duration),
     ImpactRow::new("velocity change of the end", "m/s", 1.0, true, |i| i.numbers.velocity_change),
     ImpactRow::new("restitution", "", 1.0, true, |i| i.numbers.restitution),
-    ImpactRow::new("impulse upwards", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
-    ImpactRow::new("impulse along the target", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
-    ImpactRow::new("friction, one over the other", "", 1.0, false, |i| i.numbers.friction),
+    ImpactRow::new("impulse upwards I_z", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
+    ImpactRow::new("impulse along the target I_x", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
+    ImpactRow::new("impulse ratio I_x/I_z", "", 1.0, false, |i| i.numbers.friction),
     ImpactRow::new("kinetic energy before", "kJ", 1e-3, true, |i| i.numbers.energy_before),
-    ImpactRow::new("energy taken", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
+    ImpactRow::new("energy absorbed", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
     ImpactRow::new("kinetic energy after", "kJ", 1e-3, false, |i| i.numbers.energy_after),
-    ImpactRow::new("before, over that of the first", "", 1.0, false, |i| i.numbers.energy_ratio),
-    ImpactRow::new("taken, over that of the first", "", 1.0, true, |i| i.numbers.absorbed_ratio),
+    ImpactRow::new("absorbed, share of the initial energy", "", 1.0, true, |i| i.numbers.absorbed_ratio),
     ImpactRow::new("crush", "mm", 1e3, true, |i| i.numbers.crush),
     ImpactRow::new("largest force", "MN", 1e-6, true, |i| i.numbers.force_peak),
-    ImpactRow::new("deceleration of the body at S", "g", G, true, |i| i.rigid_body_deceleration.at_cog),
-    ImpactRow::new("the same at the end", "g", G, true, |i| i.rigid_body_deceleration.at_struck_end),
+    ImpactRow::new("deceleration of the centre of gravity", "g", G, true, |i| {
+        i.rigid_body_deceleration.at_cog
+    }),
+    ImpactRow::new("deceleration at the struck end", "g", G, true, |i| {
+        i.rigid_body_deceleration.at_struck_end
+    }),
 ];
 
 fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
@@ -67,19 +68,27 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
     if first.numbers.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
         return chapter;
     }
-    let short: Vec<&ImpactRow> = ROWS.iter().filter(|row| row.is_short).collect();
-    let table = ReportTable::of(&short)
-        .head("", |row| row.name)
-        .number("first end", |row| row.words(first))
-        .number("second end", |row| row.words(second));
-    let facts = result.impacts.iter().map(of_one).collect::<Vec<_>>();
+    let (all, short) = (ROWS.iter().collect::<Vec<_>>(), ROWS.iter().filter(|row| row.is_short).collect());
+    let table = |rows: Vec<&ImpactRow>, caption: &str| {
+        ReportTable::of(&rows)
+            .caption(caption)
+            .head(Words::or("Quantity", ""), |row| row.name)
+            .number(Words::or("First impact", "first end"), |row| row.words(first))
+            .number(Words::or("Second impact", "second end"), |row| row.words(second))
+            .into()
+    };
     let missing = result.quality.iter().find(|f| f.code == IssueCode::SecondImpact);
     let why = missing.filter(|_| second.numbers.crush.is_none());
-    let why = why.map(|f| ChapterPart::note(format!("{MISSING} could not be had: {}", f.message)));
+    let why = why.map(|f| ChapterPart::note(format!("{MISSING} not determined: {}", f.message)));
+    let rigid = "The rigid body, free of ringing; impulse, energy and force with the stated mass";
+    let of_page = [table(all, rigid)]
+        .into_iter()
+        .chain(by_low_pass(&result.impacts))
+        .chain([channels(&result.impacts)]);
     chapter
-        .with(ChapterPart::from(table).only(Medium::Terminal))
+        .with(ChapterPart::only(table(short, ""), Medium::Terminal))
         .with(ChapterPart::text(filter_words(result)))
-        .with_all(facts.into_iter().flatten())
+        .with_all(of_page.map(|part| part.only(Medium::Page)))
         .with_all(why)
         .with_all(energy_words(result).map(ChapterPart::text))
 }
@@ -88,8 +97,9 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
 fn filter_words(result: &DropResult) -> String {
     let peaks = || result.impacts.iter().flat_map(|i| &i.channels);
     let low_pass = peaks().next().map_or_else(String::new, |peak| {
+        let rule = if peak.filter.starts_with("SSG-26") { " × (100 t/m)^⅓" } else { "" };
         format!(
-            "Forces and decelerations through the low-pass {} (−3 dB at {} Hz).",
+            "Forces, decelerations and filtered curves go through one low-pass: {}{rule} (−3 dB at {} Hz).",
             peak.filter,
             plain(peak.cutoff_hz, 4)
         )
@@ -98,7 +108,10 @@ fn filter_words(result: &DropResult) -> String {
     if above.is_empty() {
         return low_pass;
     }
-    format!("{low_pass} It overshoots: the filtered peak of {} lies above the raw one.", above.join(", "))
+    format!(
+        "{low_pass} It overshoots: the filtered peak of {} lies above the unfiltered one.",
+        above.join(", ")
+    )
 }
 
 /// What is left for the second end, measured beside predicted as Fig. 8 of [P] has it, and the amplification.
@@ -115,31 +128,38 @@ fn energy_words(result: &DropResult) -> Option<String> {
     Some(format!("Slap-down speed over impact velocity: {amplified}.{}", left.unwrap_or_default()))
 }
 
-/// The tables of one impact on a page: the rigid body, its decelerations by low-pass, the channels.
-fn of_one(impact: &ImpactTable) -> Vec<ChapterPart> {
-    let end = if impact.end == End::First { "First impact" } else { "Second impact" };
-    let numbers = ReportTable::of(&ROWS)
-        .caption(format!(
-            "{end}: the rigid body, free of ringing; impulse, energy and force with the stated mass"
-        ))
-        .head("Quantity", |row| row.name)
-        .number("± 95 %", |row| row.words(impact));
-    let taken = &impact.rigid_body_deceleration;
-    let decelerations = ReportTable::of(&taken.others)
-        .caption(format!("{end}: largest deceleration of the rigid body by low-pass, g"))
-        .chosen(|d| d.filter == taken.filter)
+/// The decelerations through the low-passes that were not taken.
+fn by_low_pass([first, second]: &[ImpactTable; 2]) -> Option<ChapterPart> {
+    let [first, second] = [first, second].map(|impact| &impact.rigid_body_deceleration);
+    let others: Vec<_> = first.others.iter().filter(|other| other.filter != first.filter).collect();
+    let of_second = |d: &RigidBodyDeceleration| second.others.iter().find(|other| other.filter == d.filter);
+    let table = ReportTable::of(&others)
+        .caption(
+            "Both decelerations through other low-passes, g; SSG-26 scales its 100 Hz and 200 Hz with \
+             (100 t/m)^⅓",
+        )
         .head("Low-pass", |d| &d.filter[..])
-        .number("−3 dB, Hz", |d: &RigidBodyDeceleration| plain(d.cutoff_hz, 4))
-        .number("At S", |d| scaled(d.at_cog, G, ""))
-        .number("At the end", |d| scaled(d.at_struck_end, G, ""));
-    let channels = ReportTable::of(&impact.channels)
-        .caption(format!("{end}: what the channels read, ringing and all"))
-        .head("Channel", |c: &ChannelPeak| &c.name[..])
-        .number("Raw peak, g", |c| scaled(c.peak_raw, G, ""))
-        .number("Filtered, g", |c| scaled(c.peak_filtered, G, ""))
-        .number("At, ms", |c| scaled(c.time, 1e3, ""))
-        .number("Pulse, ms", |c| scaled(c.pulse_length, 1e3, ""));
-    let beside = [(!taken.others.is_empty()).then(|| decelerations.into()), Some(channels.into())];
-    let beside = PartContent::Beside([vec![numbers.into()], beside.into_iter().flatten().collect()]);
-    vec![ChapterPart::from(beside).only(Medium::Page)]
+        .number("−3 dB, Hz", |d| plain(d.cutoff_hz, 4))
+        .number("First impact, centre of gravity", |d| scaled(d.at_cog, G, ""))
+        .number("at the struck end", |d| scaled(d.at_struck_end, G, ""))
+        .number("Second impact, centre of gravity", |d| scaled(of_second(d).and_then(|d| d.at_cog), G, ""))
+        .number("at the struck end", |d| scaled(of_second(d).and_then(|d| d.at_struck_end), G, ""));
+    (!others.is_empty()).then(|| table.into())
+}
+
+/// What the channels read in each impact.
+fn channels([first, second]: &[ImpactTable; 2]) -> ChapterPart {
+    let rows: Vec<(&str, &ChannelPeak)> = [("first", first), ("second", second)]
+        .into_iter()
+        .flat_map(|(name, impact)| impact.channels.iter().map(move |peak| (name, peak)))
+        .collect();
+    ReportTable::of(&rows)
+        .caption("What the channels read, ringing and all")
+        .head("Impact", |(name, _)| *name)
+        .text("Channel", |(_, c)| &c.name[..])
+        .number("Unfiltered peak, g", |(_, c)| scaled(c.peak_raw, G, ""))
+        .number("Filtered, g", |(_, c)| scaled(c.peak_filtered, G, ""))
+        .number("At, ms", |(_, c)| scaled(c.time, 1e3, ""))
+        .number("Pulse, ms", |(_, c)| scaled(c.pulse_length, 1e3, ""))
+        .into()
 }

@@ -9,18 +9,30 @@ use super::text::{Style, json_word};
 use crate::data::keys::{LIMITS, OBSERVED};
 use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, TestRecord};
 
-/// Who tested what, where and when; nothing where the cask file does not say.
+/// The heading of the report: the test's number and title, and of the cask what is not stated.
+pub(super) fn heading(test: &TestRecord, cask: &str) -> String {
+    let title = test.title.as_deref().unwrap_or("slap-down drop test");
+    format!("{}: {title}", test.id.as_deref().unwrap_or(cask))
+}
+
+/// "2026-11-22, 18:04 +01:00" of a date as RFC 3339 writes it.
+fn date_words(date: &str) -> String {
+    let Some((day, time)) = date.split_once(['T', 't', ' ']) else { return date.to_owned() };
+    let zone = time.find(['Z', 'z', '+', '-']).map_or("", |at| &time[at..]);
+    format!("{day}, {} {zone}", time.get(..5).unwrap_or(time)).trim_end().to_owned()
+}
+
+/// Who tested what, where and when, beside the heading; nothing where the cask file does not say.
 pub(super) fn head(test: &TestRecord) -> Chapter {
+    let date = test.date.as_deref().map(date_words);
     let temperature = test.temperature_c.map(|t| format!("{} °C", plain(t, 4)));
     let words = [
-        ("Test", &test.id),
-        ("Title", &test.title),
-        ("Date", &test.date),
+        ("Date", &date),
         ("Place", &test.place),
         ("Carried out by", &test.operator),
         ("Customer", &test.customer),
         ("Specimen", &test.specimen),
-        ("Its temperature", &temperature),
+        ("Temperature of the specimen", &temperature),
         ("Target", &test.target),
         ("Remarks", &test.remarks),
     ];

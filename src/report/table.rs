@@ -182,9 +182,9 @@ impl<'a, R> TableRows<'a, R> {
     }
 
     /// The column set last on this medium alone.
-    pub(crate) fn only(mut self, medium: Medium) -> Self {
+    pub(crate) fn only(mut self, medium: impl Into<Option<Medium>>) -> Self {
         if let Some(column) = self.table.columns.last_mut() {
-            column.only = Some(medium);
+            column.only = medium.into();
         }
         self
     }

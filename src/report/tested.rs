@@ -6,6 +6,19 @@ use super::rounding::plain;
 use super::words::contact_words;
 use crate::data::CaskFile;
 
+/// The settings that the chapter has already.
+pub(super) const TOLD: [&str; 9] = [
+    "mass",
+    "length",
+    "section in the plane of the drop",
+    "centre of gravity from the first end",
+    "inertia",
+    "drop angle",
+    "impact velocity",
+    "gravity",
+    "contact law of the first end",
+];
+
 /// The cask, the drop and the contact; what is a default is marked.
 pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
     let (cask, drop) = (&file.cask, &file.drop);

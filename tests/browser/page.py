@@ -48,6 +48,8 @@ def printed(driver):
     text = subprocess.run(command, input=base64.b64decode(pdf), capture_output=True, check=True).stdout.decode()
     sheets = [[line.strip() for line in sheet.splitlines() if line.strip()] for sheet in text.split("\f")]
     sheets = [sheet for sheet in sheets if sheet]
+    feet = [sheet.pop() for sheet in sheets]
+    held("every sheet has its number", all(f.endswith(f" {i} / {len(feet)}") for i, f in enumerate(feet, 1)), feet[0])
     held("so many sheets of A4", 4 <= len(sheets) <= 14, len(sheets))
     heads = [" ".join(head.split()) for head in heads]
     ends = [" ".join(sheet[-1].split()) for sheet in sheets]
@@ -74,7 +76,12 @@ def main(page):
     low, high = scale(driver, chart)
     held("a drag zooms to half", abs((high - low) / (whole[1] - whole[0]) - 0.5) < 0.05, f"{low:.1f} {high:.1f}")
     legend = chart.find_element(By.CSS_SELECTOR, ".u-legend").text
-    held("the cursor reads values", re.search(r"A1 filtered:?\s*-?\d", legend), legend.replace("\n", " "))
+    held("the cursor reads values", re.search(r"A1 filtered\s*[-−]?\d", legend), legend.replace("\n", " "))
+    figure = chart.find_element(By.XPATH, "ancestor::figure")
+    figure.find_element(By.XPATH, ".//button[.='Copy as CSV']").click()
+    times = [1e3 * float(row.split(",")[0]) for row in (page.parent / "curves.csv").read_text().splitlines()[1:]]
+    rows, said = sum(low <= time <= high for time in times), figure.find_element(By.CSS_SELECTOR, "[role=status]").text
+    held("every sample that is seen is copied, and that is said", said == f"Copied {rows} rows", said)
     chart.send_keys("0")
     held("0 shows the whole", scale(driver, chart) == whole)
     chart.send_keys("+")

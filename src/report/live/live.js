@@ -1,19 +1,46 @@
-// The figures of a report as charts to zoom, pan and read; print and readers without this script have the drawings.
+// The figures of a report as charts to zoom, pan, read, copy and save; print and readers without this script have the drawings.
 "use strict";
-for (const figure of document.querySelectorAll("figure[data-live]")) {
-  const panels = JSON.parse(document.getElementById(figure.dataset.live).textContent);
-  const box = document.createElement("div");
-  box.className = "live";
-  figure.insertBefore(box, figure.firstChild);
-  figure.classList.add("is-live");
-  const charts = panels.map((panel) => chart(box, panel, figure.dataset.live));
+const FONT = "13px Helvetica, Arial, sans-serif";
+const minus = (words) => String(words).replaceAll("-", "−");
+const unitOf = (label) => label.split(", ").pop();
+const drawn = {};
+
+for (const figure of document.querySelectorAll("figure[id]")) {
+  const numbers = figure.querySelector("script");
   const tools = document.createElement("div");
   tools.className = "tools";
-  button(tools, "Whole", () => charts.forEach(whole));
-  button(tools, "Copy as CSV", () => copy(charts.map(table).join("\n")));
-  box.append(tools);
-  addEventListener("resize", () => charts.forEach((u) => u.setSize({ width: box.clientWidth, height: 260 })));
+  const answer = document.createElement("span");
+  answer.setAttribute("role", "status");
+  if (numbers) {
+    const { each, of, panels } = JSON.parse(numbers.textContent);
+    drawn[figure.id] = of ? drawn[of] : panels.flatMap((panel) => panel.lines);
+    const box = document.createElement("div");
+    box.className = "live";
+    figure.prepend(box);
+    figure.classList.add("is-live");
+    const charts = panels.map((panel) => chart(box, panel, of ? drawn[of] : panel.lines, figure.id));
+    const all = each > 1 ? `Drawn and copied: the lowest and the highest of each ${each} samples; curves.csv has all.` : "Drag to zoom: every sample is here.";
+    button(tools, "Reset zoom", () => charts.forEach(whole));
+    button(tools, "Copy as CSV", () => { answer.textContent = `Copied ${copy(table(charts))} rows`; });
+    answer.textContent = all;
+    addEventListener("resize", () => charts.forEach((u) => u.setSize(u.fitted())));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach((u) => u.redraw()));
+  }
+  button(tools, "Save PNG", () => png(figure));
+  button(tools, "Save SVG", () => save(`${figure.id}.svg`, new Blob([drawing(figure)], { type: "image/svg+xml" })));
+  tools.append(answer);
+  figure.querySelector("figcaption").before(tools);
 }
+
+// What scrolls sideways on a narrow screen can be reached by the keyboard.
+function reach() {
+  for (const part of document.querySelectorAll("table, figure")) {
+    if (part.scrollWidth > part.clientWidth) part.tabIndex = 0;
+    else part.removeAttribute("tabindex");
+  }
+}
+reach();
+addEventListener("resize", reach);
 
 function button(into, words, act) {
   const b = document.createElement("button");
@@ -23,15 +50,35 @@ function button(into, words, act) {
   into.append(b);
 }
 
-function chart(box, panel, key) {
-  const places = ({ x0, dx, x }) => { let at = 0; return x.map((step) => x0 + dx * (at += step)); };
-  const data = uPlot.join(panel.lines.map((line) => [places(line), line.y]));
-  const series = panel.lines.map((line) => ({
-    label: line.label || panel.y, stroke: line.color, alpha: line.opacity, width: line.width,
-    dash: line.dash || undefined, points: { show: false },
-    value: (u, v) => (v == null ? "–" : v.toPrecision(5)),
+// Times and values of a line: single precision, not a number where samples are missing.
+function samples({ x0, dx, steps, y }) {
+  const values = [...new Float32Array(Uint8Array.from(atob(y), (c) => c.charCodeAt(0)).buffer)];
+  let at = 0;
+  return [values.map((_, i) => x0 + dx * (at += steps ? steps[i] : Math.min(i, 1))), values.map((v) => (Number.isNaN(v) ? null : v))];
+}
+
+// The part of a line between two times.
+function cut([x, y], from, to) {
+  const is = x.map((at) => at >= from && at <= to);
+  return [x.filter((_, i) => is[i]), y.filter((_, i) => is[i])];
+}
+
+// The digits that tell a value from its neighbours in single precision: those of curves.csv.
+function digits(v) {
+  return String(+v.toPrecision([6, 7, 8, 9].find((n) => n === 9 || Math.fround(+v.toPrecision(n)) === v)));
+}
+
+function chart(box, panel, lines, key) {
+  const data = uPlot.join(lines.map((line) => cut(samples(line), panel.from - line.dx / 2, panel.to + line.dx / 2)));
+  const x = unitOf(panel.x), unit = unitOf(panel.y);
+  const series = lines.map((line) => ({
+    label: line.label || panel.y.split(", ")[0], points: { show: false }, pxAlign: 0, width: 0.55 * line.stroke,
+    stroke: line.color + Math.round(255 * line.opacity).toString(16).padStart(2, "0"),
+    dash: line.dash?.map((piece) => 0.55 * piece * devicePixelRatio),
+    head: `${line.label || panel.y.split(", ")[0]}, ${unit}`,
+    value: (u, v) => (v == null ? "" : minus(v.toPrecision(5))),
   }));
-  // Lines are thinned each for itself: the cursor reads the point nearest to it.
+  // Lines may have times of their own: the cursor reads the point nearest to it.
   const nearest = (u, s, i) => {
     const values = u.data[s];
     for (let d = 0; d < 200; d++) {
@@ -40,39 +87,57 @@ function chart(box, panel, key) {
     }
     return i;
   };
+  const ink = () => getComputedStyle(document.body).color;
   const marks = (u) => {
-    const { ctx, bbox } = u;
+    const { ctx, bbox } = u, ends = [];
     ctx.save();
-    ctx.font = `${12 * devicePixelRatio}px sans-serif`;
+    ctx.font = FONT.replace("13", 13 * devicePixelRatio);
     ctx.textAlign = "center";
-    ctx.fillStyle = ctx.strokeStyle = "#6b7280";
-    ctx.setLineDash([4, 4]);
-    for (const [i, [at, label]] of panel.marks.entries()) {
+    ctx.fillStyle = ctx.strokeStyle = ink();
+    ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([5 * devicePixelRatio, 4 * devicePixelRatio]);
+    for (const [at, label] of panel.marks) {
       const x = u.valToPos(at, "x", true);
       if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      // A word stands above the axes and inside of the chart, in a row below a neighbour that it would touch.
+      const half = ctx.measureText(label).width / 2 + 4;
+      const middle = Math.min(Math.max(x, half), ctx.canvas.width - half);
+      let row = ends.findIndex((end) => middle - half > end);
+      if (row < 0) row = ends.length;
+      ends[row] = middle + half;
+      const foot = bbox.top - (6 + 16 * row) * devicePixelRatio;
+      ctx.fillText(label, middle, foot);
+      ctx.globalAlpha = 0.55;
       ctx.beginPath();
-      ctx.moveTo(x, bbox.top);
+      ctx.moveTo(x, foot + 5 * devicePixelRatio);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
-      // A word at the edge stays inside.
-      const half = ctx.measureText(label).width / 2;
-      const middle = Math.min(Math.max(x, bbox.left + half), bbox.left + bbox.width - half);
-      ctx.fillText(label, middle, bbox.top + (10 + 14 * (i % 2)) * devicePixelRatio);
+      ctx.globalAlpha = 1;
     }
     ctx.restore();
   };
-  const ink = () => getComputedStyle(document.body).color;
-  const axis = (label) => ({ label, stroke: ink, grid: { stroke: "#8883" }, ticks: { stroke: "#8886" } });
+  const axis = (label, size) => ({
+    label, size, stroke: ink, font: FONT, labelFont: FONT, labelSize: 22, grid: { stroke: "#6e747c47", width: 1 },
+    ticks: { stroke: "#6e747c", size: 5, width: 1 }, border: { show: true, stroke: "#6e747c", width: 1 },
+    values: (u, ticks) => ticks.map((v) => minus(+v.toPrecision(9))),
+  });
+  const above = 12 + 16 * Math.min(panel.marks.length, 2);
+  // As high as the drawing that it stands for, and high enough for a phone.
+  const fitted = () => ({ width: box.clientWidth, height: above + 54 + Math.max(180, box.clientWidth * panel.height / 1800) });
   const u = new uPlot({
-    title: panel.title, width: box.clientWidth, height: 260, series: [{ label: panel.x }, ...series],
-    scales: { x: { time: false } }, axes: [axis(panel.x), axis(panel.y)],
-    cursor: { sync: { key, setSeries: false }, dataIdx: nearest, drag: { x: true, y: false } },
+    title: panel.title, ...fitted(), padding: [above, 14, 0, 0],
+    series: [{ value: (u, v) => (v == null ? "" : `at ${minus(v.toFixed(3))} ${x}`), label: "\u200b" }, ...series],
+    scales: { x: { time: false } }, axes: [axis(panel.x, 32), axis(panel.y, 56)],
+    legend: { markers: { width: 2, dash: (u, i) => (series[i - 1].dash ? "dashed" : "solid") } },
+    // Panels of the same times have one cursor and one zoom.
+    cursor: { sync: { key: key + data[0][0], setSeries: false }, dataIdx: nearest, drag: { x: true, y: false } },
     hooks: { draw: [marks] },
   }, data, box);
+  u.fitted = fitted;
   const root = u.root;
   root.chart = u;
   root.tabIndex = 0;
-  root.setAttribute("role", "img");
+  root.setAttribute("role", "group");
   root.setAttribute("aria-label", `${panel.title}: plus and minus zoom, arrows pan, with Shift they move the cursor, 0 shows the whole`);
   // The wheel is the page's until the chart was clicked or Ctrl is held.
   u.over.addEventListener("wheel", (e) => {
@@ -114,22 +179,55 @@ function whole(u) {
   u.setScale("x", { min: x[0], max: x[x.length - 1] });
 }
 
-// What a chart shows now, as CSV.
-function table(u) {
+// What the charts of a figure show now: a row for each time, a column for each name.
+function table(charts) {
   const cell = (s) => (/[",\n]/.test(s) ? `"${s.replaceAll('"', '""')}"` : s);
-  const { min, max } = u.scales.x;
-  const rows = [u.series.map((s) => cell(s.label)).join(",")];
-  u.data[0].forEach((x, i) => {
-    if (x >= min && x <= max) rows.push(u.data.map((column) => column[i] ?? "").join(","));
-  });
-  return rows.join("\n") + "\n";
+  const heads = [...new Set(charts.flatMap((u) => u.series.slice(1).map((s) => s.head)))];
+  const rows = new Map();
+  for (const u of charts) {
+    const { min, max } = u.scales.x;
+    u.data[0].forEach((x, i) => {
+      if (x < min || x > max) return;
+      const row = rows.get(x) || rows.set(x, {}).get(x);
+      u.series.slice(1).forEach((s, j) => { if (s.show && u.data[j + 1][i] != null) row[s.head] = digits(u.data[j + 1][i]); });
+    });
+  }
+  const lines = [...rows].sort((a, b) => a[0] - b[0]).map(([x, row]) => [+x.toFixed(6), ...heads.map((head) => row[head] ?? "")].join(","));
+  return [[charts[0].axes[0].label, ...heads].map(cell).join(","), ...lines];
 }
 
-function copy(text) {
+// Puts the lines on the clipboard, and says how many stand below the head.
+function copy(lines) {
   const area = document.createElement("textarea");
-  area.value = text;
+  area.value = lines.join("\n") + "\n";
   document.body.append(area);
   area.select();
   document.execCommand("copy");
   area.remove();
+  return lines.length - 1;
+}
+
+function drawing(figure) {
+  return new XMLSerializer().serializeToString(figure.querySelector("svg"));
+}
+
+function save(name, blob) {
+  const a = document.createElement("a");
+  a.href = URL.createObjectURL(blob);
+  a.download = name;
+  a.click();
+  setTimeout(() => URL.revokeObjectURL(a.href), 1000);
+}
+
+// The drawing as wide as a page at 300 dots an inch.
+function png(figure) {
+  const image = new Image();
+  image.onload = () => {
+    const canvas = document.createElement("canvas");
+    canvas.width = 2400;
+    canvas.height = 2400 * image.height / image.width;
+    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+    canvas.toBlob((blob) => save(`${figure.id}.png`, blob));
+  };
+  image.src = `data:image/svg+xml,${encodeURIComponent(drawing(figure))}`;
 }

@@ -18,9 +18,9 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
     let axes = Panel::new("Force over crush", "crush of the corner, mm", "vertical force, MN", 350);
     let filter = &analysis.result.impacts[0].rigid_body_deceleration.filter;
     let caption = format!(
-        "Vertical force of the target, the stated mass times the acceleration of S through the low-pass \
-         {filter}, over how far the corner of the undeformed cask is below where it touched. The area within \
-         is about what the contact takes."
+        "Vertical force of the target, the stated mass times the acceleration of the centre of gravity \
+         through the low-pass {filter}, over how far the corner of the undeformed cask is below where it \
+         touched. The area within is about the energy that the contact absorbs."
     );
     Plate::new("crush", "Force over crush", caption).picture(&[Panel { lines, ..axes }])
 }

@@ -4,6 +4,7 @@ use super::super::grid::named_events;
 use super::super::spectrum;
 use super::super::text::json_word;
 use super::draw::{Picture, Plate};
+use super::live::MOST_VALUES;
 use super::panel::{self, COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{Analysis, Axis, ChannelCurve, End, Mode, STANDARD_GRAVITY_M_S2};
 use std::ops::Range;
@@ -22,9 +23,9 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
         .settings
         .iter()
         .find(|setting| setting.name.starts_with("low-pass"))
-        .map_or_else(String::new, |setting| format!(" Filter: {}.", setting.value));
+        .map_or_else(String::new, |setting| format!(" Filter: {}; {}.", setting.value, setting.origin));
     let caption = format!(
-        "As Fig. 12 of the paper: specific force at both ends over time, offset removed: unfiltered (faint) \
+        "As Fig. 12 of [P]: specific force at both ends over time, offset removed: unfiltered (faint) \
          and filtered (bold), 1 g = 9.80665 m/s². A decelerating end reads positive on its transverse \
          axis.{filter}"
     );
@@ -55,7 +56,10 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
     ];
     let caption =
         "Specific force of every channel about both impacts, unfiltered (faint) and filtered (bold).";
-    Plate::new("impacts", "Both impacts", caption).live().picture(&panels)
+    // They are part of the accelerations where these are not thinned.
+    let count: usize = channel_lines(analysis).map(|line| 2 * line.curve.time_s.len()).sum();
+    let lines_of = if count > MOST_VALUES { "" } else { "accelerations" };
+    Plate::new("impacts", "Both impacts", caption).live_of(lines_of).picture(&panels)
 }
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
@@ -83,7 +87,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Picture {
         ];
         panels.push(panel(analysis, "Of the rigid body", "velocity, m/s", lines));
     }
-    let caption = "As Fig. 13 of the paper: velocity over time. Above: each sensor's unfiltered signal \
+    let caption = "As Fig. 13 of [P]: velocity over time. Above: each sensor's unfiltered signal \
                    integrated along its axis, gravity left out between the contacts. Below: the ends of the \
                    rigid body that all channels share, up positive.";
     Plate::new("velocities", "Velocity of both ends", caption).live().picture(&panels)

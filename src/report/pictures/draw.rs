@@ -29,8 +29,8 @@ pub(crate) struct Plate {
     pub(crate) nothing: (&'static str, &'static str),
     /// Panels beside one another.
     pub(crate) columns: usize,
-    /// Whether a page may draw it again to be zoomed.
-    pub(crate) is_live: bool,
+    /// The picture whose lines a page takes to draw it again, to be zoomed; "" for its own, `None` for none.
+    pub(crate) live_of: Option<&'static str>,
 }
 
 impl Plate {
@@ -44,7 +44,7 @@ impl Plate {
             caption: caption.into(),
             nothing,
             columns: 1,
-            is_live: false,
+            live_of: None,
         }
     }
 
@@ -55,7 +55,12 @@ impl Plate {
 
     /// To be zoomed on a page.
     pub(crate) fn live(self) -> Self {
-        Self { is_live: true, ..self }
+        self.live_of("")
+    }
+
+    /// The same with the lines of another picture, of which its own are a part.
+    pub(crate) fn live_of(self, picture: &'static str) -> Self {
+        Self { live_of: Some(picture), ..self }
     }
 
     /// The picture of those panels that have something to show.
@@ -70,7 +75,7 @@ impl Plate {
         let (svg, height) = drawing(&panels, self.columns);
         let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
         let shown = if rows.is_empty() { self.caption.clone() } else { rows.join("; ") };
-        let live = if self.is_live { live::numbers(&panels) } else { String::new() };
+        let live = self.live_of.map_or_else(String::new, |of| live::numbers(&panels, of));
         let alt = format!("{}. {shown}", self.title);
         Picture { alt, live, ..self.drawn(svg, height, "") }
     }

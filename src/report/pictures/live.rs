@@ -1,58 +1,73 @@
-//! Panels to the numbers that a page's own script draws again, to be zoomed.
+//! Panels to the numbers that a page's own script draws again, to be zoomed and copied.
 
 use super::super::text::printable;
 use super::decimate::runs;
 use super::panel::{Curve, Panel};
-use crate::data::shown::to_digits;
+use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use serde_json::{Value, json};
 
-/// Columns of which the lowest and the highest point are kept: as many as a screen shows.
-const COLUMNS: f64 = 800.0;
-/// Places are counted in parts of a column.
-const PARTS: f64 = 64.0;
+/// Values of a picture that has every sample, in single precision as in the files of curves, and of one that
+/// is thinned: a page of two channels stays below 750 kB at any rate.
+pub(super) const MOST_VALUES: usize = 25_000;
+const THINNED_VALUES: usize = 12_000;
 
-/// The panels with lines on linear axes, as JSON; empty where there is none.
-pub(super) fn numbers(panels: &[&Panel]) -> String {
-    let all: Vec<Value> =
-        panels.iter().filter(|panel| !panel.lines.is_empty()).map(|panel| of_panel(panel)).collect();
-    if all.is_empty() { String::new() } else { Value::from(all).to_string().replace('<', "\\u003c") }
-}
-
-fn of_panel(panel: &Panel) -> Value {
-    let range = panel.x_range();
-    let column = (range.end - range.start) / COLUMNS;
-    let lines: Vec<Value> = panel.lines.iter().map(|line| of_line(line, range.start, column)).collect();
-    let marks: Vec<Value> = panel.marks.iter().map(|mark| json!([mark.at, mark.label])).collect();
-    json!({"title": panel.title, "x": panel.x.label, "y": panel.y.label, "lines": lines, "marks": marks})
-}
-
-/// Values, and their places as steps from `x0` on in units of `dx`; null between runs, where samples are
-/// missing.
-fn of_line(line: &Curve, from: f64, column: f64) -> Value {
-    let (mut steps, mut y, mut at) = (Vec::new(), Vec::new(), 0.0);
-    let mut put = |x: f64, value: Value| {
-        let place = (x * PARTS).round();
-        steps.push(json!(whole(place - at)));
-        y.push(value);
-        at = place;
-    };
-    for (i, run) in runs(line.points.iter().map(|p| ((p.0 - from) / column, p.1))).iter().enumerate() {
-        if let Some((begins, _)) = run.first().filter(|_| i > 0) {
-            put(begins - 0.5, Value::Null);
-        }
-        for p in run {
-            put(p.0, json!(to_digits(p.1, 4)));
-        }
+/// The panels with lines on linear axes, as JSON, the lines being those of the picture `of` where it has a
+/// name; empty where there is none.
+pub(super) fn numbers(panels: &[&Panel], of: &str) -> String {
+    let drawn = || panels.iter().filter(|panel| !panel.lines.is_empty());
+    let count: usize = drawn().flat_map(|panel| &panel.lines).map(|line| line.points.len()).sum();
+    if count == 0 {
+        return String::new();
     }
-    let (pieces, label) = (line.dash.pieces(), line.label.as_deref().map(printable));
+    // Of each so many samples the lowest and the highest are drawn; of one it is all.
+    let each = if count > MOST_VALUES { (2 * count).div_ceil(THINNED_VALUES) } else { 1 };
+    let all: Vec<Value> = drawn().map(|panel| of_panel(panel, each, of)).collect();
+    json!({"each": each, "of": of, "panels": all}).to_string().replace('<', "\\u003c")
+}
+
+fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
+    let own = panel.lines.iter().filter(|_| of.is_empty());
+    let lines: Vec<Value> = own.map(|line| of_line(line, each)).collect();
+    let marks: Vec<Value> = panel.marks.iter().map(|mark| json!([mark.at, mark.label])).collect();
+    let range = panel.x_range();
     json!({
-        "label": label, "color": line.colour.to_string(), "opacity": line.opacity, "dash": pieces,
-        "width": f64::from(line.stroke) / 2.0, "x0": from, "dx": column / PARTS, "x": steps, "y": y
+        "title": panel.title, "x": panel.x.label, "y": panel.y.label, "height": panel.height, "lines": lines,
+        "marks": marks, "from": range.start, "to": range.end
     })
 }
 
-/// Without the decimals that a number of JSON would show.
-#[allow(clippy::cast_possible_truncation, reason = "a panel has a few thousand columns")]
-fn whole(value: f64) -> i64 {
-    value as i64
+/// The values, and not a number between runs, where samples are missing; their places, in steps of `dx` from
+/// `x0` on, as the numbers of samples between them, where these are not all one.
+#[allow(clippy::cast_precision_loss, reason = "samples are fewer than 2^52")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts, and digits that no sensor has"
+)]
+fn of_line(line: &Curve, each: usize) -> Value {
+    let ends = line.points.first().zip(line.points.last());
+    let (x0, last) = ends.map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
+    let (mut steps, mut bytes, mut at) = (Vec::new(), Vec::new(), 0);
+    let mut put = |place: usize, value: f64| {
+        steps.push(place - at);
+        bytes.extend_from_slice(&(value as f32).to_le_bytes());
+        at = place;
+    };
+    let places = line.points.iter().enumerate().map(|(i, p)| (i as f64 / each as f64, p.1));
+    for (i, run) in runs(places).into_iter().enumerate() {
+        let place = |x: f64| (x * each as f64).round() as usize;
+        if let Some((begins, _)) = run.first().filter(|_| i > 0) {
+            put(place(*begins) - 1, f64::NAN);
+        }
+        for (x, y) in run {
+            put(place(x), y);
+        }
+    }
+    let is_even = steps.iter().enumerate().all(|(i, step)| *step == usize::from(i > 0));
+    json!({
+        "label": line.label.as_deref().map(printable), "color": line.colour.to_string(),
+        "opacity": line.opacity, "dash": line.dash.pieces(), "stroke": line.stroke,
+        "x0": x0, "dx": (last - x0) / (line.points.len().max(2) - 1) as f64,
+        "steps": (!is_even).then_some(steps), "y": STANDARD.encode(bytes)
+    })
 }
