@@ -1,5 +1,5 @@
-//! Stated inputs in which nothing in the recording tests a mistake: one that moves the speed or k by twice the
-//! half-width of its interval is found by no check.
+//! Stated inputs in which nothing in the recording tests a mistake: one that moves the speed or k by twice
+//! the half-width of its interval is found by no check.
 
 use super::FitData;
 use super::inputs::{InputShift, Inputs, UncertainInput};

@@ -277,7 +277,7 @@ pub(super) mod tests {
         let together = text(&lines);
         assert!(together.contains("recordings in of/a/test site\n"), "{together}");
         assert!(together.contains("\n  damaged-truncated.mcap  REVIEW"), "{together}");
-        assert!(together.contains("look at  damaged-truncated.mcap\n      ends_early, gap\n"), "{together}");
+        assert!(together.contains("review  damaged-truncated.mcap\n      ends_early, gap\n"), "{together}");
         lines[1]["campaign"]["recording"] = json!("b.mcap");
         assert!(!text(&lines).contains("recordings in"));
     }

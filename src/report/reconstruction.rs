@@ -191,8 +191,9 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     let untested = ReportTable::of(&result.untested)
         .class("")
         .caption(
-            "What nothing in this recording tests: a mistake that moves k or the speed by two half-widths misses \
-             no closure by 3.5 u and leaves no channel off the line of the others. The largest effect first",
+            "What nothing in this recording tests: a mistake that moves k or the speed by two half-widths \
+             misses no closure by 3.5 u and leaves no channel off the line of the others. The largest effect \
+             first",
         )
         .head("Input", |i| &i.what[..])
         .code("Key", |i| &i.key[..])

@@ -173,7 +173,7 @@ fn a_site_puts_its_own_words_and_logo_around_the_report() {
         ("alert(1)", 0),
         ("<p>&lt;b&gt;Centre</p>", 1),
         ("<p>&lt;/style&gt;7</p></footer>", 1),
-        ("@bottom-center { content: \"\\3c \\2f \\73 ", 1),
+        ("@bottom-center { content: \"\\3c \\2f style\\3e 7\"", 1),
         ("</style>", 1),
     ] {
         assert_eq!(page.matches(held).count(), count, "{held}");

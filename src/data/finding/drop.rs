@@ -250,8 +250,8 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
         ),
         ClosureKind::Turning => format!(
             "the measured rotation differs by {how_far} from what the first impact would give a rigid body \
-             of this section, centre of gravity and inertia: check each channel's scale and position, and state \
-             `inertia_kg_m2` and `cog_m`"
+             of this section, centre of gravity and inertia: check each channel's scale and position, and \
+             state `inertia_kg_m2` and `cog_m`"
         ),
         ClosureKind::Rest => format!(
             "{} is off by {how_far} at rest before the release: check its sensitivity, unit and the angle",

@@ -86,7 +86,7 @@ impl Batch {
         let again = if again.is_empty() { again } else { format!(" Listed twice, counted once: {again}.") };
         let (all, failed) = (self.rows.len(), count(None));
         format!(
-            "{all} recordings: {sound} sound, {review} to look at, {fail} not to be used, {failed} not \
+            "{all} recordings: {sound} sound, {review} for review, {fail} not to be used, {failed} not \
              analysed. Outliers: {outliers}.{again}"
         )
     }
