@@ -13,7 +13,7 @@ use super::settings;
 use super::table::{ReportTable, TableCell, TableShape};
 use super::tested::{TOLD, tested};
 use super::text::{
-    Style, capital, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
+    Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
     verdict_style, verdict_word, yes,
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
@@ -132,7 +132,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let cause = cause(result).map(|finding| ChapterPart::text(sentence(&finding.message)));
     let limits = defaults_that_weigh(result, file).map(|words| ChapterPart::text(sentence(&words)));
     let untested = untested(result).map(|[named, remedies]| {
-        ChapterPart::text(format!("Nothing in this recording tests {named}. {} would.", capital(&remedies)))
+        ChapterPart::text(format!("Nothing in this recording tests {named}. To test them: {remedies}."))
     });
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
