@@ -200,15 +200,16 @@ fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> V
     plans.par_iter().enumerate().filter_map(filed).collect()
 }
 
-/// The same work by numpy and scipy, where there is a Python that has them.
+/// The same work by a notebook of numpy and scipy that shares no code with the program, where there is a
+/// Python (3.11 or later) that has them.
 fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
-    let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.known.truth.v0);
+    let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.cask.display());
     let list = drops.iter().map(line).collect::<Vec<_>>().join("\n");
     let path = folder.join("drops.txt");
     std::fs::write(&path, list).ok()?;
     let answered =
         Command::new("python3").args(["-c", include_str!("notebook.py")]).arg(path).output().ok()?;
-    let mut worked = Worked::named("scipy, as in a notebook", false);
+    let mut worked = Worked::named("notebook, least squares", false);
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
         let [seconds, speed_m_s, k] = numbers[..] else { return None };

@@ -96,7 +96,8 @@ fn spoken(panel: &Panel) -> Vec<String> {
     marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
 }
 
-/// Panels in rows of `columns`, those without axes in rows of their own; and how high the drawing is.
+/// Panels in rows of `columns`, those without axes in rows of their own, each row as wide as the picture; and
+/// how high the drawing is.
 fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
@@ -109,7 +110,7 @@ fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut top = 0.0;
     for row in &rows {
         #[allow(clippy::cast_precision_loss, reason = "columns are few")]
-        let width = if row[0].height == 0 { WIDTH } else { WIDTH / columns as f64 };
+        let width = WIDTH / row.len() as f64;
         let mut left = 0.0;
         for panel in row {
             svg.from((left, top), |svg| axes::draw(svg, panel, width));

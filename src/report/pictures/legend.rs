@@ -44,7 +44,8 @@ fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
     let mut rows: Vec<Vec<Entry>> = vec![Vec::new()];
     let lines = panel.lines.iter().map(|line| (LegendKey::Curve(line), line.label.as_deref()));
     let fills = panel.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
-    let points = panel.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
+    let points = panel.points.iter().filter(|points| !points.is_named_there);
+    let points = points.map(|points| (LegendKey::Points(points), points.label.as_deref()));
     for (key, label) in lines.chain(fills).chain(points) {
         let Some(label) = label.map(printable) else { continue };
         let takes = SAMPLE + width_of(&label, 13.0) + 26.0;

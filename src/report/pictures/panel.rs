@@ -158,6 +158,8 @@ impl PointShape {
 pub(crate) struct Points {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
+    /// Whether the name stands beside the first of them instead.
+    pub(crate) is_named_there: bool,
     pub(crate) colour: Colour,
     pub(crate) shape: PointShape,
     /// Half the size in drawing units.
@@ -169,7 +171,7 @@ pub(crate) struct Points {
 impl Points {
     /// Full points that the legend does not name.
     pub(crate) fn new(colour: Colour, shape: PointShape, at: Vec<(f64, f64)>) -> Self {
-        Self { label: None, colour, shape, radius: 10, is_hollow: false, at }
+        Self { label: None, is_named_there: false, colour, shape, radius: 10, is_hollow: false, at }
     }
 
     /// With their name in the legend.

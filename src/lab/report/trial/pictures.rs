@@ -34,15 +34,9 @@ fn unit(point: &TrialPoint) -> &str {
     if point.error_unit.starts_with('%') { "%" } else { "as it is" }
 }
 
-/// The look of a way by its place among the others; rungs of the prediction are not to look like ways.
-fn look(index: usize, way: &TrialPoint, at: Vec<(f64, f64)>) -> Points {
-    let index = if way.family == WAYS[2] { index + 10 } else { index };
+/// The look of a way by its place among the others.
+fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
     Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
-}
-
-/// Around what the program takes.
-fn rings(at: Vec<(f64, f64)>) -> Points {
-    Points { radius: 21, ..Points::new(INK, PointShape::Ring, at) }
 }
 
 /// Whole powers of ten around times.
@@ -58,27 +52,10 @@ pub(super) fn ways(trial: &Trial) -> Picture {
                    another way is as fast and as accurate; ring: what the program takes. Bar: from the best \
                    class to the worst. The rungs of the prediction are given the true k, and timed by \
                    themselves.";
-    let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family).collect()).collect();
-    // The ways of the second family are those of the first.
-    let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
-        let named = |(index, way): (usize, &&TrialPoint)| look(index, way, Vec::new()).named(&way.method[..]);
-        let levels = if title == "Ways" {
-            levels(ways, (0.0, 0.0), "what a verdict needs", "median of what is promised")
-        } else {
-            Vec::new()
-        };
-        Panel {
-            title: title.to_owned(),
-            points: ways.iter().enumerate().map(named).collect(),
-            lines: levels,
-            ..Panel::default()
-        }
-    });
+    let families = WAYS.map(|family| pooled(trial, family).collect::<Vec<_>>());
     let panels: Vec<Panel> = families.iter().filter_map(|ways| ways_panel(trial, ways)).collect();
-    let panels: Vec<Panel> =
-        if panels.is_empty() { panels } else { legends.into_iter().chain(panels).collect() };
     let nothing = ("There is nothing to show: no way was tried.", "No way was tried.");
-    Plate { columns: 3, ..Plate::new("speed", "Speed against accuracy", caption).or(nothing) }
+    Plate { columns: 2, ..Plate::new("speed", "Speed against accuracy", caption).or(nothing) }
         .picture(&panels)
 }
 
@@ -93,15 +70,16 @@ pub(super) fn reading<'a>(trial: &'a Trial, family: &str) -> Option<&'a TrialPoi
 }
 
 /// What a verdict needs and what the program promises, as lines.
-fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) -> Vec<Curve> {
+fn levels(ways: &[&TrialPoint], ends: (f64, f64)) -> Vec<Curve> {
     let level = |error: f64, dash, words: &str| {
         Curve { stroke: 3, ..Curve::new(GREY, vec![(ends.0, error), (ends.1, error)]) }
             .broken(dash)
             .named(words)
     };
     let half_width = ways.iter().find_map(|p| p.promised.filter(|_| p.is_default));
-    let needed = ways.first().map(|p| level(p.matters, Dash::Dashed, needed));
-    needed.into_iter().chain(half_width.map(|half_width| level(half_width, Dash::Dotted, promised))).collect()
+    let needed = ways.first().map(|p| level(p.matters, Dash::Dashed, "what a verdict needs"));
+    let promised = half_width.map(|half| level(half, Dash::Dotted, "median of what is promised"));
+    needed.into_iter().chain(promised).collect()
 }
 
 fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
@@ -114,18 +92,19 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let bar = |(index, way): (usize, &&TrialPoint)| {
         let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
         let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
-        Curve { opacity: 0.6, ..Curve::new(look(index, way, Vec::new()).colour, points) }
+        Curve { opacity: 0.4, ..Curve::new(look(index, Vec::new()).colour, points) }
     };
     let lines = ways.iter().enumerate().map(bar);
-    let levels = levels(ways, ends, "", "").into_iter().map(|level| Curve { label: None, ..level });
     let mark = |(index, way): (usize, &&TrialPoint)| Points {
         is_hollow: !way.is_on_front,
-        ..look(index, way, vec![at(way)])
+        is_named_there: true,
+        ..look(index, vec![at(way)]).named(&way.method[..])
     };
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
+    let ring = Points { radius: 21, ..Points::new(INK, PointShape::Ring, taken) };
     Some(Panel {
-        lines: lines.chain(levels).collect(),
-        points: ways.iter().enumerate().map(mark).chain([rings(taken)]).collect(),
+        lines: lines.chain(levels(ways, ends)).collect(),
+        points: ways.iter().enumerate().map(mark).chain([ring]).collect(),
         marks: reading.map(|p| Mark { at: seconds(p), label: READING.to_owned() }).into_iter().collect(),
         ..Panel::new(
             &first.family,
