@@ -141,7 +141,7 @@ function plot(title, lines, all, names, width) {
   };
   const x = scale(all.map((p) => p[0]), left, width - right), y = scale(all.map((p) => p[1]), height - bottom, top);
   const word = (text, at, more) => svg.append(element("text", { x: at[0], y: at[1], ...more }, text));
-  word(title, [left, 14], { class: "title" });
+  word(title, [0, 14], { class: "title" });
   names.forEach((name, i) => word(name, [left + i * (width - left) / 2, 34], { fill: COLOURS[i] }));
   const grid = (from, to) => svg.append(element("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1] }));
   const shown = (v) => String(+v.toFixed(6)).replace("-", "−");
