@@ -46,8 +46,10 @@ impl<'a> CampaignFiles<'a> {
         let Some(row) = self.row(line) else { return columns };
         let place = self.places.get(&row.at.number).copied().unwrap_or_default();
         let [of_k, of_speed] = [PooledQuantity::K, PooledQuantity::Speed].map(|q| place.e_n[q as usize]);
+        let untested = line["untested"].as_array().into_iter().flatten();
+        let untested: Vec<&str> = untested.filter_map(|input| input["key"].as_str()).collect();
         let own = json!({
-            "verdict": row.verdict.map_or_else(|| "error".into(), json_word), "exit": row.exit,
+            "untested": untested.join(" "), "verdict": row.verdict.map_or_else(|| "error".into(), json_word), "exit": row.exit,
             "report": row.report, "findings": row.findings, "codes": row.codes.join(" "),
             "note_codes": row.note_codes.join(" "), "same_recording_as": row.same_recording_as,
             "outlier": of_k.or(of_speed).map(|_| place.is_out), "k_e_n": of_k,
