@@ -218,13 +218,21 @@ mod tests {
 
     #[test]
     fn with_the_angle_alone_uncertain_quantiles_are_those_of_the_angle() {
-        let found = of(Uncertain { angle_deg: 1.96, ..uncertain((0.5, 0.5), DRAWS) }, vec![0.0, 30.0]);
+        let found = of(Uncertain { angle_deg: 1.96, ..uncertain((0.5, 0.5), DRAWS) }, steps(30, 30.0));
         let speeds = &found.quantiles[0];
         // At 30° the speed of a rough rod with k = 0.5 falls with the angle: its 2.5 % quantile is at the
         // angle's 97.5 %, 1.96° above; 5 standard errors of that probability reach from 1.40 to 3.1 standard
         // deviations of 1°.
-        assert!(speeds.q025[1] > speed(0.5, 33.1) && speeds.q025[1] < speed(0.5, 31.4), "{}", speeds.q025[1]);
-        assert!(speeds.q975[1] < speed(0.5, 26.9) && speeds.q975[1] > speed(0.5, 28.6), "{}", speeds.q975[1]);
+        assert!(
+            speeds.q025[30] > speed(0.5, 33.1) && speeds.q025[30] < speed(0.5, 31.4),
+            "{}",
+            speeds.q025[30]
+        );
+        assert!(
+            speeds.q975[30] < speed(0.5, 26.9) && speeds.q975[30] > speed(0.5, 28.6),
+            "{}",
+            speeds.q975[30]
+        );
         // The critical angle is that of the true angle: no draw moves it.
         let [low, .., high] = speeds.critical_angle_deg;
         assert!((0.0..=30.0).contains(&low) && (0.0..=30.0).contains(&high));

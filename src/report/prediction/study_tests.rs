@@ -66,7 +66,7 @@ fn every_block_has_its_figures() {
         "Monte Carlo, 2000 draws of the body",
         "12° (4.5–19.5)",
         "seed 1",
-        "Your 15° gives 21",
+        "Your 15° gives 20.68 m/s (95 % of",
         "suffices: the simplest that no richer one moves by more than 0.1 %",
         "rod 30.10 m/s at 86°",
     ] {
