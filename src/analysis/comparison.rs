@@ -39,8 +39,9 @@ impl Measured {
                 findings.extend(judge::judge_blows(impact.recorded(), flight, events, findings));
             }
         }
-        is_told &= !findings.iter().any(judge::contradicts_motion);
-        if findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
+        let is_contradicted = findings.iter().any(judge::contradicts_motion);
+        is_told &= !is_contradicted;
+        if is_contradicted || findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
             return None;
         }
         let compared = compare::compare(&predict::bodies(&file.cask), file, quantities, &predict::predict_by);

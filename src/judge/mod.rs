@@ -66,11 +66,8 @@ pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     }
 }
 
-/// Whether a finding takes away what was read off the motion: an error, and a warning that speaks against the
-/// motion itself (of 741 simulated drops with one the intervals held 74 %, of 410 with others 91 %).
-///
-/// A missing slap-down leaves the first impact as it is, and a velocity step that a channel lost may be one
-/// that `is_told` by the rest of the motion.
+/// Whether an error takes away what was read off the motion; a missing slap-down leaves the first impact as
+/// it is, and a velocity step that a channel lost may be one that `is_told` by the rest of the motion.
 #[must_use]
 pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
     let is_kept = match finding.code {
@@ -78,11 +75,13 @@ pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
         IssueCode::Clipped | IssueCode::Gap => is_told,
         _ => false,
     };
-    (finding.severity == Severity::Error && !is_kept) || contradicts_motion(finding)
+    finding.severity == Severity::Error && !is_kept
 }
 
 /// Whether a finding says that the motion is not the one that was reconstructed, or that the samples do not
-/// show it: then the motion tells no velocity step either.
+/// show it: then no number is stated, and the motion tells no velocity step either.
+///
+/// Of 741 simulated drops with such a warning the intervals held 74 %, of 410 with other warnings 91 %.
 #[must_use]
 pub fn contradicts_motion(finding: &Finding) -> bool {
     let is_of_motion = matches!(

@@ -49,7 +49,8 @@ impl<'a> CampaignFiles<'a> {
         let untested = line["untested"].as_array().into_iter().flatten();
         let untested: Vec<&str> = untested.filter_map(|input| input["key"].as_str()).collect();
         let own = json!({
-            "untested": untested.join(" "), "verdict": row.verdict.map_or_else(|| "error".into(), json_word), "exit": row.exit,
+            "untested": untested.join(" "), "exit": row.exit,
+            "verdict": row.verdict.map_or_else(|| "error".into(), json_word),
             "report": row.report, "findings": row.findings, "codes": row.codes.join(" "),
             "note_codes": row.note_codes.join(" "), "same_recording_as": row.same_recording_as,
             "outlier": of_k.or(of_speed).map(|_| place.is_out), "k_e_n": of_k,
