@@ -25,13 +25,14 @@ Examples:
 
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
+#[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
 pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
     #[arg(short, long, required_unless_present = "from")]
     cask: Option<PathBuf>,
-    /// Repeat the analysis that this result.json tells of, with the cask file in it, and say what differs
+    /// Repeat the analysis recorded in this result.json, with the cask file in it, and say what differs
     #[arg(long, value_name = "RESULT", conflicts_with_all = ["cask", "without"])]
     from: Option<PathBuf>,
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures

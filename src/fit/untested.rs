@@ -12,10 +12,10 @@ const WRONG: f64 = 2.0;
 const MOST_USUAL: f64 = 20.0;
 
 /// Remedies that more than one input has.
-const REST: &str = "record the rest before the release";
-const SECOND_SENSOR: &str = "a second sensor at this end";
-const TAPE: &str = "a tape between the edges that strike";
-const FILM: &str = "film of the fall";
+const REST: &str = "record the cask at rest before the release";
+const SECOND_SENSOR: &str = "a second sensor at the same end";
+const MEASURE: &str = "measure between the edges that strike";
+const FILM: &str = "high-speed video of the fall";
 
 /// What one standard uncertainty of an input does, where the file were off by it.
 pub(super) struct Influence {
@@ -113,7 +113,8 @@ fn stated_key(measured: &FitData, input: &UncertainInput) -> Option<StatedKey> {
             return of_channel(channel, "position_m", "10 mm", 0.01 / by_m, SECOND_SENSOR);
         }
         InputShift::Cross { channel, share, .. } => {
-            let key = of_channel(channel, "axis", "1°", 1_f64.to_radians() / share, "level the sensor");
+            let key =
+                of_channel(channel, "axis", "1°", 1_f64.to_radians() / share, "check how the sensor sits");
             return key.map(|key| StatedKey { what: input.name.replace("cross axis", "tilt"), ..key });
         }
         InputShift::ImpactVelocity { share } if measured.setup.is_of_fall => {
@@ -129,18 +130,18 @@ fn stated_key(measured: &FitData, input: &UncertainInput) -> Option<StatedKey> {
             of_key("cask.cog_m", "10 mm", 0.01 / by_m, "weigh the cask on two supports")
         }
         InputShift::Inertia { share } => {
-            let key = of_key("cask.inertia_kg_m2", "10 %", 0.1 / share, "film of both ends");
+            let key = of_key("cask.inertia_kg_m2", "10 %", 0.1 / share, "high-speed video of both ends");
             StatedKey { what: "inertia, with contents that move".into(), ..key }
         }
         InputShift::Friction { by, .. } => {
-            of_key("contact.friction", "0.1", 0.1 / by, "an axial channel at the first end")
+            of_key("contact.friction", "0.1", 0.1 / by, "an axial sensor at the first end")
         }
         InputShift::Clock { share } => of_key("tolerance.clock_percent", "1 %", 0.01 / share, REST),
         InputShift::Length { by_m } => {
-            of_key("cask.length_m", "1 %", 0.01 * measured.setup.length_m / by_m, TAPE)
+            of_key("cask.length_m", "1 %", 0.01 * measured.setup.length_m / by_m, MEASURE)
         }
         InputShift::Section { by_m } => {
-            of_key("cask.height_m", "1 %", 0.01 * measured.setup.height_m / by_m, TAPE)
+            of_key("cask.height_m", "1 %", 0.01 * measured.setup.height_m / by_m, MEASURE)
         }
         InputShift::AngularVelocity { by_rad_s } => {
             of_key("drop.angular_velocity_deg_s", "1°/s", 1_f64.to_radians() / by_rad_s, FILM)

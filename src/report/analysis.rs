@@ -59,7 +59,12 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             version: result.version.to_owned(),
             foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
             heading,
-            about: input.recording.clone(),
+            about: format!(
+                "{} m at {}° · {}",
+                plain(file.drop.height_m, 5),
+                plain(file.drop.angle_rad.to_degrees(), 5),
+                input.recording
+            ),
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
                      the target. [P]: Analytical, Numerical and Experimental Investigations on the Impact \
@@ -129,7 +134,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         json_word(result.input.format),
         tail(&result.input.cask, 24)
     );
-    let cause = cause(result).map(|finding| ChapterPart::text(sentence(&finding.message)));
+    let cause = cause(result).map(|said| ChapterPart::text(sentence(&said)));
     let limits = defaults_that_weigh(result, file).map(|words| ChapterPart::text(sentence(&words)));
     let untested = untested(result).map(|[named, remedies]| {
         ChapterPart::text(format!("Nothing in this recording tests {named}. To test them: {remedies}."))
@@ -155,7 +160,8 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
     let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
     let compared = result.comparison.as_ref();
     let figure = |name: &str, value: Option<String>, detail: String| {
-        [name.to_owned(), value.unwrap_or_else(|| MISSING.to_owned()), detail]
+        let value = value.filter(|value| value != MISSING);
+        [name.to_owned(), value.unwrap_or_else(|| "not determined".to_owned()), detail]
     };
     vec![
         figure("Slap-down speed, measured", Some(interval(speed)), String::new()),

@@ -21,10 +21,13 @@ const MOST_WITH_EFFECT: usize = 3;
 /// A move below this share of the half-width is not worth a number.
 const WORTH_A_NUMBER: f64 = 0.1;
 
-/// The finding that a reader meets first: a usual slip explains the others, else the first error or warning.
-pub(super) fn cause(result: &DropResult) -> Option<&Finding> {
+/// What a reader meets first: the usual slip that explains the others, else the first error or warning, with
+/// its channel.
+pub(super) fn cause(result: &DropResult) -> Option<String> {
     let doubts = || result.quality.iter().filter(|f| f.severity > Severity::Note);
-    doubts().find(|f| f.code == IssueCode::UsualSlip).or_else(|| doubts().next())
+    let found = doubts().find(|f| f.code == IssueCode::UsualSlip).or_else(|| doubts().next())?;
+    let channel = found.channel.as_ref().filter(|channel| !found.message.contains(&channel[..]));
+    Some(channel.map_or_else(|| found.message.clone(), |channel| format!("{channel}: {}", found.message)))
 }
 
 /// What nothing in the recording tests, by how much a mistake in it moves k and the speed, and what tests it;
@@ -41,7 +44,7 @@ pub(super) fn untested(result: &DropResult) -> Option<[String; 2]> {
         ];
         let moves: Vec<String> = moves.into_iter().flatten().collect();
         // No line ends between a number and its unit.
-        format!("{} ({}: {})", input.what, input.by.replace(' ', "\u{a0}"), moves.join(", "))
+        format!("{} ({} off: {})", input.what, input.by.replace(' ', "\u{a0}"), moves.join(", "))
     };
     let all = &result.untested;
     let (first, others) = all.split_at(all.len().min(MOST_WITH_EFFECT));
@@ -115,8 +118,10 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         tail(&result.input.recording, 40),
     );
     let word = verdict_word(result.verdict);
-    let cause = cause(result).map(|f| sentence(&f.message)).unwrap_or_default();
-    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, 3);
+    let cause = cause(result).map(|said| sentence(&said)).unwrap_or_default();
+    // Where nothing else is to be said the cause has room for its remedy.
+    let most = if result.untested.is_empty() { 7 } else { 3 };
+    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, most);
     let head = styled_lines(Style::Bold, &clamped(&title, width, 0, 1))
         + &format!("{}{}", styled(verdict_style(result.verdict), word), &said[word.len()..]);
     let row = |name: &str, words: &str, most: usize| {
@@ -129,8 +134,9 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     };
     let limits = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
     let is_limited = !limits.is_empty() && (result.k.is_some() || result.slap_down.speed.is_some());
+    let holds = if result.slap_down.speed.is_some() { "  (± holds 95 %)" } else { "" };
     let numbers = [
-        row("Slap-down speed", &number(result.slap_down.speed.as_ref()), 1),
+        row("Slap-down speed", &(number(result.slap_down.speed.as_ref()) + holds), 1),
         row("Restitution k", &number(result.k.as_ref()), 1),
         compared(result).map_or_else(String::new, |words| row("Predicted speed", &words, 1)),
         if is_limited { row("Interval", &limits, 2) } else { String::new() },

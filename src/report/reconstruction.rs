@@ -232,18 +232,18 @@ pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Optio
     let all = weighty_defaults(result, file);
     let named: Vec<String> =
         all.iter().map(|d| format!("{} {:.0} %", d.share.input, d.share.percent)).collect();
-    let of_what = if result.slap_down.speed.is_some() { "the speed's" } else { "k's" };
+    let of_what = if result.slap_down.speed.is_some() { "the speed" } else { "k" };
     // Keys of one table stand behind its name once.
-    let mut keys = String::new();
+    let mut keys: Vec<&str> = Vec::new();
     let mut before = "";
     for key in distinct(all.iter().map(|d| d.key.as_str())) {
         let (table, name) = key.split_once(' ').unwrap_or(("", key));
-        let separator = if keys.is_empty() { "" } else { ", " };
-        keys += &if table == before { format!("{separator}{name}") } else { format!("{separator}{key}") };
+        keys.push(if table == before { name } else { key });
         before = table;
     }
-    let verb = if all.len() == 1 { "is a default" } else { "are defaults" };
-    (!named.is_empty()).then(|| format!("{} of {of_what} variance {verb}: state {keys}", named.join(", ")))
+    let keys = keys.join(", ");
+    (!named.is_empty())
+        .then(|| format!("variance of {of_what} by assumed tolerances: {}; state {keys}", named.join(", ")))
 }
 
 /// How many inputs a formal report must not leave to defaults.

@@ -5,8 +5,8 @@ use super::{IssueCode as Code, Severity};
 use crate::data::{End, Estimate, STANDARD_GRAVITY_M_S2 as G};
 
 /// What is left to know a velocity step by that a channel lost.
-const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far as the other channels and the \
-                              way of the second end to the target tell them";
+const AS_FAR_AS_TOLD: &str = "k and the slap-down speed are determined only as far as the other channels and \
+                              the path of the second end to the target allow";
 /// What channels whose clocks are apart need.
 const ONE_TRIGGER: &str =
     "the channels' clocks are apart; record them with one trigger, or shift the channel";

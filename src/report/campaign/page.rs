@@ -16,7 +16,7 @@ use crate::report::text::Style;
 use serde_json::json;
 use std::collections::{BTreeSet, HashMap};
 
-const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1/u². Its interval is that of \
+const REPEATS: &str = "Mean of the repeats without outliers, weighted with 1/u². Its interval is that of \
                        one drop: repeats share what is \
                        stated of cask, angle and sensors, and no mean makes that smaller. Scatter: the \
                        standard deviation. χ² of the \

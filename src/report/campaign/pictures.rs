@@ -119,7 +119,7 @@ impl DropSeries<'_> {
         panel
     }
 
-    /// The names of those that fall out.
+    /// The names of the outliers.
     fn marks(&self) -> Vec<Mark> {
         let out = self.rows.iter().filter(|row| self.falls_out(row));
         out.filter_map(|row| Some(Mark { at: self.angle(row)?, label: row.id.clone() })).collect()

@@ -50,7 +50,7 @@ impl PooledQuantity {
     }
 }
 
-/// A row among its repeats: E_n against the others, and whether it falls out of them.
+/// A row among its repeats: E_n against the others, and whether it is an outlier.
 pub(super) struct PoolMember<'a> {
     pub(super) row: &'a BatchRow,
     pub(super) e_n: Option<f64>,
@@ -62,7 +62,7 @@ pub(super) struct Pool<'a> {
     pub(super) angle_deg: Option<f64>,
     pub(super) quantity: PooledQuantity,
     pub(super) members: Vec<PoolMember<'a>>,
-    /// Of those that do not fall out.
+    /// Of those that are no outliers.
     pub(super) pooled: Pooled,
 }
 
@@ -87,7 +87,7 @@ pub(super) struct DropSeries<'a> {
     pub(super) pools: Vec<Pool<'a>>,
     pub(super) curves: Vec<PredictedCurve>,
     places: HashMap<u32, RowPlace>,
-    /// Lowest and highest k measured, but for what falls out.
+    /// Lowest and highest k measured, but for outliers.
     pub(super) k: Option<[f64; 2]>,
 }
 
@@ -145,7 +145,7 @@ impl<'a> DropSeries<'a> {
         self.places.get(&row.at.number).copied().unwrap_or_default()
     }
 
-    /// Whether a row falls out of its repeats in any quantity.
+    /// Whether a row is an outlier among its repeats in any quantity.
     pub(super) fn falls_out(&self, row: &BatchRow) -> bool {
         self.place(row).is_out
     }
@@ -221,7 +221,7 @@ fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
     });
     let mut pools: Vec<Pool> = of_angle.collect();
     if by_angle.len() > 1 {
-        // What falls out of its repeats does not enter the mean over the angles.
+        // An outlier among its repeats does not enter the mean over the angles.
         let out: HashSet<u32> = pools
             .iter()
             .flat_map(|pool| &pool.members)

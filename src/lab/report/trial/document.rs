@@ -6,7 +6,7 @@ use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
 use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
-use crate::report::medium::Medium;
+use crate::report::medium::{Medium, Words};
 use crate::report::record;
 use crate::report::rounding::{optional_fixed, plain, significant};
 use crate::report::table::{ReportTable, TableCell, TableShape};
@@ -82,8 +82,8 @@ fn banner(trial: &Trial) -> Chapter {
     let (style, word, words) = if trial.is_accepted() {
         let silent = hidden(trial).len();
         let words = format!(
-            "All {all} limits hold, on simulated drops; {silent} damages can stay silent and are for the \
-             site."
+            "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed: check these \
+             on site."
         );
         (Style::Green, "ACCEPTED", words)
     } else {
@@ -210,7 +210,12 @@ fn by_class(trial: &Trial) -> ReportTable {
 fn limits(limits: &[TrialLimit]) -> ReportTable {
     let mut limits: Vec<&TrialLimit> = limits.iter().collect();
     limits.sort_by_key(|limit| limit.is_kept());
-    let bound = |bound: Option<f64>| bound.map_or_else(String::new, |bound| plain(bound, 3));
+    // A terminal has no heads.
+    let said = |word: &str, number: Option<String>| match number {
+        Some(number) => Words::or(&number[..], format!("{word} {number}")),
+        None => "–".into(),
+    };
+    let bound = |word: &str, bound: Option<f64>| said(word, bound.map(|bound| plain(bound, 3)));
     let held = |limit: &TrialLimit| {
         let (style, word) = if limit.is_kept() { (Style::Green, "holds") } else { (Style::Red, "BEYOND") };
         TableCell::toned(style, word)
@@ -222,9 +227,9 @@ fn limits(limits: &[TrialLimit]) -> ReportTable {
     ReportTable::of(&limits)
         .class("many")
         .text("what", |limit| &limit.name[..])
-        .number("least", |limit| bound(limit.least))
-        .number("found", |limit| limit.value.map_or_else(|| "–".to_owned(), |value| significant(value, 3)))
-        .number("most", |limit| bound(limit.most))
+        .number("least", |limit| bound("least", limit.least))
+        .number("found", |limit| said("found", limit.value.map(|value| significant(value, 3))))
+        .number("most", |limit| bound("most", limit.most))
         .text("unit", |limit| &limit.unit[..])
         .soft("", |limit| held(limit))
         .text("why", |limit| why(limit))
