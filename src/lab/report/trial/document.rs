@@ -82,8 +82,8 @@ fn banner(trial: &Trial) -> Chapter {
     let (style, word, words) = if trial.is_accepted() {
         let silent = hidden(trial).len();
         let words = format!(
-            "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed: check these \
-             on site."
+            "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed: check \
+             these on site."
         );
         (Style::Green, "ACCEPTED", words)
     } else {
