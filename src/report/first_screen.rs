@@ -4,8 +4,8 @@
 use super::reconstruction::{defaults_that_weigh, largest, weighty_default_count};
 use super::rounding::{MISSING, interval, pair, percent, plain, significant};
 use super::text::{
-    Style, clamped, counted, distinct, json_word, sentence, styled, styled_lines, tail, verdict_sentence,
-    verdict_style, verdict_word,
+    Style, clamped, counted, distinct, json_word, printable, sentence, styled, styled_lines, tail,
+    verdict_sentence, verdict_style, verdict_word,
 };
 use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, LimitState, Severity, Untested};
 
@@ -142,7 +142,8 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         if is_limited { row("Interval", &limits, 2) } else { String::new() },
     ];
     let foot = row("Findings", &findings(result), 1)
-        + &report.map_or_else(String::new, |page| row("Report", page, 1));
+        // A path is whole, however long.
+        + &report.map_or_else(String::new, |page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
     let limits: Vec<String> =
         result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state))).collect();
     let limits = if limits.is_empty() { String::new() } else { row("Limits", &limits.join(", "), 1) };
