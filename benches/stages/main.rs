@@ -154,7 +154,7 @@ fn quantities(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {
         let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
-        stages::ladder(&measured, None, None, &moved).expect("quantities")
+        stages::ladder(&measured, None, &moved).expect("quantities")
     });
 }
 

@@ -130,14 +130,13 @@ fn moved(
         stood_in: impact.stand_in.as_ref().and_then(|s| s.stood_in(signals)),
         fall_s: impact.fall_s.as_ref().map(|fall_s| fall_s.end - fall_s.start),
     };
-    let reading = motion::read_channels(integrated, events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
     let second = || {
         let stated = motion::outcome(integrated, &flight, events, &setup)?;
         SecondImpact::find(file, &integrated.signals, &stated, &measured)
     };
-    let ladder = || fit::ladder(&measured, plain.as_ref(), reading, &moved);
+    let ladder = || fit::ladder(&measured, plain.as_ref(), &moved);
     let (taken, second) = rayon::join(ladder, second);
     let taken = taken?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;

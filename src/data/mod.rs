@@ -57,12 +57,10 @@ pub use impacts::{ChannelPeak, ForceOverCrush, ImpactNumbers, ImpactTable, Rigid
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{
-    AssumedFriction, AxialClosure, CONTACT_STEPS, ChannelReading, Motion, MotionState, Setup, StoodIn,
-};
+pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
-pub use quantities::{Contribution, FirstImpact, Quantities, SlapDown, Untested, UntestedMoves};
+pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel, U_RELEASE_S,

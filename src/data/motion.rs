@@ -94,7 +94,9 @@ pub struct Motion {
     pub contact: MotionState,
     /// As L leaves the target.
     pub separation: MotionState,
-    /// Vertical velocity of L's corner then, m/s.
+    /// Speed with which L strikes, m/s.
+    pub impact_m_s: f64,
+    /// Vertical velocity of L's corner as it leaves, m/s.
     pub rebound_m_s: f64,
     /// Horizontal velocity of L's corner then, m/s: 0 where it sticks.
     pub slip_m_s: f64,
@@ -113,13 +115,4 @@ pub struct Motion {
     pub lowest_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,
-}
-
-/// What the channels say by themselves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChannelReading {
-    /// Velocity of the channel nearest to L as L leaves, m/s, up positive.
-    pub first_m_s: f64,
-    /// Velocity of the channel nearest to R as it strikes, m/s, up positive.
-    pub second_m_s: Option<f64>,
 }

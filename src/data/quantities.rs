@@ -2,6 +2,7 @@
 //! first impact and the slap-down.
 
 use super::estimate::Estimate;
+use super::motion::Motion;
 use serde::Serialize;
 
 /// Declares numbers by their names, each with its unit: a struct over any type, and the way to and from a
@@ -67,22 +68,40 @@ macro_rules! named_numbers {
 }
 pub(super) use named_numbers;
 
-/// Declares the quantities once: those of the first impact, those of the slap-down, which are missing where
-/// there is none, and those that the result states beside both. The first two are parts of the result too,
-/// there with the time of the event.
+/// A quantity as a report lists it.
+#[derive(Debug, Clone, Copy)]
+pub struct QuantityRow {
+    /// Its name.
+    pub name: &'static str,
+    /// What it counts from, or which sign is which.
+    pub remark: &'static str,
+    /// Its value.
+    pub value: Option<Estimate>,
+}
+
+/// Declares the quantities once, each with its unit, its name and remark in a report (none where the name is
+/// empty), and how it follows from the motion: those of the first impact, those of the slap-down, which are
+/// missing where there is none, and those that the result states beside both. The first two are parts of the
+/// result too, there with the time of the event.
 macro_rules! quantities {
     (
         $(#[$first_about:meta])*
         FirstImpact {
             $(#[$contact_about:meta])* time,
-            $($(#[$first_field:meta])* $first:ident: $first_unit:literal,)*
+            $(
+                $(#[$first_field:meta])*
+                $first:ident: $first_unit:literal, $first_words:expr => $first_by:expr;
+            )*
         }
         $(#[$second_about:meta])*
         SlapDown {
             $(#[$strike_about:meta])* time,
-            $($(#[$second_field:meta])* $second:ident: $second_unit:literal,)*
+            $(
+                $(#[$second_field:meta])*
+                $second:ident: $second_unit:literal, $second_words:expr => $second_by:expr;
+            )*
         }
-        beside { $($(#[$beside_about:meta])* $beside:ident: $beside_unit:literal,)* }
+        beside { $($(#[$beside_about:meta])* $beside:ident: $beside_unit:literal => $beside_of:expr;)* }
     ) => {
         named_numbers! {
             /// Everything that is read off the reconstructed motion.
@@ -93,33 +112,51 @@ macro_rules! quantities {
             may_be_missing { $($(#[$second_field])* $second: $second_unit,)* }
         }
 
-        $(#[$first_about])*
-        #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-        pub struct FirstImpact {
-            $(#[$contact_about])* pub time: Option<Estimate>,
-            $($(#[$first_field])* pub $first: Option<Estimate>,)*
-        }
-
-        $(#[$second_about])*
-        #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-        pub struct SlapDown {
-            $(#[$strike_about])* pub time: Option<Estimate>,
-            $($(#[$second_field])* pub $second: Option<Estimate>,)*
-        }
-
-        impl FirstImpact {
-            /// The first impact at a time, with its quantities where they are measured.
+        impl Quantities<f64> {
+            /// The quantities of a motion.
             #[must_use]
-            pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
-                Self { time, $($first: measured.map(|all| all.$first),)* }
+            pub fn of(motion: &Motion) -> Self {
+                fn by<T>(motion: &Motion, formula: fn(&Motion) -> T) -> T {
+                    formula(motion)
+                }
+                Self {
+                    $($first: by(motion, $first_by),)*
+                    $($beside: by(motion, $beside_of),)*
+                    $($second: by(motion, $second_by),)*
+                }
             }
         }
 
-        impl SlapDown {
-            /// The slap-down at a time, with its quantities where they are measured.
+        quantities!(part $(#[$first_about])* FirstImpact $(#[$contact_about])* time
+            { $($(#[$first_field])* $first: $first_words => |all| all.$first.into();)* });
+        quantities!(part $(#[$second_about])* SlapDown $(#[$strike_about])* time
+            { $($(#[$second_field])* $second: $second_words => |all| all.$second;)* });
+    };
+    (part $(#[$about:meta])* $name:ident $(#[$time_about:meta])* time
+        { $($(#[$field_about:meta])* $field:ident: $words:expr => $of:expr;)* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+        pub struct $name {
+            $(#[$time_about])* pub time: Option<Estimate>,
+            $($(#[$field_about])* pub $field: Option<Estimate>,)*
+        }
+
+        impl $name {
+            /// At a time, with its quantities where they are measured.
             #[must_use]
             pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
-                Self { time, $($second: measured.and_then(|all| all.$second),)* }
+                fn by(all: Option<&Quantities>, of: fn(&Quantities) -> Option<Estimate>) -> Option<Estimate> {
+                    all.and_then(of)
+                }
+                Self { time, $($field: by(measured, $of),)* }
+            }
+
+            /// Its quantities, but for the time.
+            #[must_use]
+            pub fn rows(&self) -> Vec<QuantityRow> {
+                let row = |(name, remark), value| QuantityRow { name, remark, value };
+                let all = [$(row($words, self.$field),)*];
+                all.into_iter().filter(|row| !row.name.is_empty()).collect()
             }
         }
     };
@@ -131,39 +168,43 @@ quantities! {
         /// First contact of L, s from the recording's first sample.
         time,
         /// Speed at first contact, m/s.
-        impact_velocity: "m/s",
+        impact_velocity: "m/s", ("impact velocity", "by the cask file") => |m| m.impact_m_s;
         /// From first contact to separation, s.
-        duration: "s",
+        duration: "s", ("contact lasts", "") => |m| m.separation.time_s - m.contact.time_s;
         /// Vertical velocity of L as it leaves the target, positive up, m/s   (22)
-        rebound_velocity: "m/s",
+        rebound_velocity: "m/s", ("rebound velocity", "vertical, up positive") => |m| m.rebound_m_s;
         /// ω after the impact, rad/s.
-        angular_velocity: "rad/s",
+        angular_velocity: "rad/s", ("angular velocity", "") => |m| m.separation.angular_velocity_rad_s;
     }
     /// The slap-down of R.
     SlapDown {
         /// First contact of R, s from the recording's first sample.
         time,
-        /// From separation of L to slap-down, s.
-        flight_time: "s",
         /// Magnitude of R's velocity just before it strikes, m/s   (24)
-        speed: "m/s",
+        speed: "m/s", ("speed", "just before the second end strikes") =>
+            |m| m.second_end_m_s.map(|(x, z)| x.hypot(z));
         /// Its vertical part, negative down, m/s.
-        vertical_velocity: "m/s",
+        vertical_velocity: "m/s", ("vertical velocity", "up positive") =>
+            |m| m.second_end_m_s.map(|(_, z)| z);
         /// Its horizontal part, m/s.
-        horizontal_velocity: "m/s",
+        horizontal_velocity: "m/s", ("horizontal velocity", "") => |m| m.second_end_m_s.map(|(x, _)| x);
         /// Inclination of the axis at slap-down, degrees.
-        angle: "deg",
+        angle: "deg", ("angle", "of the axis above the horizontal") =>
+            |m| m.slap_down.map(|s| s.angle_rad.to_degrees());
+        /// From separation of L to slap-down, s.
+        flight_time: "s", ("flight time", "from separation") =>
+            |m| m.slap_down.map(|s| s.time_s - m.separation.time_s);
         /// Height of R's corner above the target then, m: 0 within its interval where angle, height and
         /// scales fit the recording.
-        second_end_height: "m",
+        second_end_height: "m", ("", "") => |m| m.second_end_height_m;
     }
     beside {
         /// Restitution: −ż_L after the first impact over ż_L before   (23)
-        k: "1",
+        k: "1" => |m| m.rebound_m_s / m.impact_m_s;
         /// Horizontal velocity of L's corner as it leaves, m/s: 0 within its interval where it sticks.
-        slip_velocity: "m/s",
+        slip_velocity: "m/s" => |m| m.slip_m_s;
         /// I_x / I_z of the first contact: the friction that acted.
-        friction: "1",
+        friction: "1" => |m| m.impulse_ratio;
     }
 }
 
@@ -174,6 +215,9 @@ pub struct Contribution {
     pub input: String,
     /// Its standard uncertainty, with its unit.
     pub standard_uncertainty: String,
+    /// The key of `[tolerance]` that it is from; `None` where the recording gives it.
+    #[serde(skip)]
+    pub tolerance: Option<&'static str>,
     /// Change of the slap-down speed by it, m/s.
     pub speed_m_s: Option<f64>,
     /// Change of k by it.
@@ -196,7 +240,7 @@ pub struct Untested {
 }
 
 /// By how much a mistake moves the two numbers that a drop is made for; `None` where one is not stated.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct UntestedMoves {
     /// k.
     pub k: Option<f64>,

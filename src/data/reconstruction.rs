@@ -8,9 +8,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReconstructionRung {
-    /// Each channel integrated by itself and read off at the events, gravity left out between the impacts:
-    /// \[P\] Fig. 13.
-    Channels,
     /// Planar motion with gravity, each velocity step the mean over the flight.
     Planar,
     /// Planar motion, the flight fitted with bending modes and drift.
@@ -21,7 +18,7 @@ pub enum ReconstructionRung {
 
 impl ReconstructionRung {
     /// All, simplest first.
-    pub const ALL: [Self; 4] = [Self::Channels, Self::Planar, Self::Flight, Self::Joint];
+    pub const ALL: [Self; 3] = [Self::Planar, Self::Flight, Self::Joint];
 }
 
 /// What one rung says.

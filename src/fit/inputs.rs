@@ -2,25 +2,20 @@
 //! inputs with them moved.
 
 use super::FitData;
+use super::steps::u_step_m_s;
 use crate::data::planar::first_arm_m;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, MotionState, Setup,
-    Signal, StoodIn,
+    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, Motion, MotionState, Setup, StoodIn,
 };
-use crate::numerics::noise::integral_uncertainty_by;
-
-/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's
-/// amplitude; twice the periods leave half of it. On simulated drops a window of one period leaves half a
-/// percent, one of half a period two percent (docs/uncertainty.md).
-const RINGING_SHARE: f64 = 0.005;
-
-/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
-/// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
-/// the middle of such a half sine takes 0.1 π v0, one at its end next to none.
-const GAP_SHARE: f64 = 3.0;
 
 /// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
 const ROLL_RAD_S: f64 = 1.0;
+
+/// Remedies that more than one input has.
+pub(super) const REST: &str = "record the cask at rest before the release";
+pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
+const MEASURE: &str = "measure between the edges that strike";
+const FILM: &str = "high-speed video of the fall";
 
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
@@ -63,6 +58,11 @@ impl UncertainInput {
     pub(super) fn jumps(&self) -> bool {
         self.changes.iter().any(|change| matches!(change, InputShift::Friction { .. }))
     }
+
+    /// The key of `[tolerance]` that its uncertainty is from; `None` where the recording gives it.
+    pub(super) fn tolerance(&self, setup: &Setup) -> Option<&'static str> {
+        Some(self.changes.first()?.stated(setup)?.tolerance)
+    }
 }
 
 /// An event whose time is uncertain.
@@ -102,6 +102,77 @@ pub(super) enum InputShift {
     Section { by_m: f64 },
     AngularVelocity { by_rad_s: f64 },
     HorizontalVelocity { by_m_s: f64 },
+}
+
+/// The key of the cask file that states an input.
+#[derive(Clone, Copy)]
+pub(super) struct StatedKey {
+    /// The key of `[tolerance]` that says how well it is known.
+    pub tolerance: &'static str,
+    /// The key itself; of a channel without its table.
+    pub key: &'static str,
+    /// A mistake as a person makes it, and how many standard uncertainties of the input it is.
+    pub by: &'static str,
+    pub by_u: f64,
+    /// What would test it.
+    pub remedy: &'static str,
+}
+
+impl InputShift {
+    /// The key that states it; `None` where the recording itself gives it.
+    pub(super) fn stated(&self, setup: &Setup) -> Option<StatedKey> {
+        const DEGREE: f64 = std::f64::consts::PI / 180.0;
+        let row = |tolerance, key, by, mistake: f64, u: f64, remedy| {
+            Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
+        };
+        match *self {
+            Self::Step { .. } | Self::Event { .. } => None,
+            Self::Scale { share, .. } => {
+                row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
+            }
+            Self::Place { by_m, .. } => row("position_m", "position_m", "10 mm", 0.01, by_m, SECOND_SENSOR),
+            Self::Cross { share, .. } => {
+                row("cross_axis_percent", "axis", "1°", DEGREE, share, "check how the sensor sits")
+            }
+            // v0 is that of the root of the height.
+            Self::ImpactVelocity { share } if setup.is_of_fall => {
+                row("impact_velocity_percent", "drop.height_m", "1 %", 0.005, share, REST)
+            }
+            Self::ImpactVelocity { share } => {
+                row("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01, share, REST)
+            }
+            Self::Angle { by_rad } => {
+                let remedy = "an inclinometer on the rigged cask";
+                row("angle_deg", "drop.angle_deg", "1°", DEGREE, by_rad, remedy)
+            }
+            Self::CentreOfGravity { by_m } => {
+                row("cog_m", "cask.cog_m", "10 mm", 0.01, by_m, "weigh the cask on two supports")
+            }
+            Self::Inertia { share } => {
+                let remedy = "high-speed video of both ends";
+                row("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1, share, remedy)
+            }
+            Self::Friction { by, .. } => {
+                let remedy = "an axial sensor at the first end";
+                row("friction_percent", "contact.friction", "0.1", 0.1, by, remedy)
+            }
+            Self::Clock { share } => {
+                row("clock_percent", "tolerance.clock_percent", "1 %", 0.01, share, REST)
+            }
+            Self::Length { by_m } => {
+                row("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m, by_m, MEASURE)
+            }
+            Self::Section { by_m } => {
+                row("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m, by_m, MEASURE)
+            }
+            Self::AngularVelocity { by_rad_s } => {
+                row("angular_velocity_deg_s", "drop.angular_velocity_deg_s", "1°/s", DEGREE, by_rad_s, FILM)
+            }
+            Self::HorizontalVelocity { by_m_s } => {
+                row("horizontal_velocity_m_s", "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1, by_m_s, FILM)
+            }
+        }
+    }
 }
 
 impl Inputs {
@@ -330,58 +401,6 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
         let place = InputShift::Place { channel, by_m, gained_rad_s: omega };
         add("position", format!("{:.0} mm", 1e3 * by_m), place);
     }
-}
-
-/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form,
-/// the time in the contact at which a zero shift set in, the drift of the offset since the free fall,
-/// clipping, gaps.
-pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
-    let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
-    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
-    let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
-    let flight_s = measured.flight.to_s - measured.flight.from_s;
-    let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
-    let drift_m_s = if measured.flight.drift {
-        0.0
-    } else {
-        let length_s = pulse_s + flight_s / 2.0;
-        let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
-        // Without a spectrum the offset's own uncertainty is all that is known.
-        noise_m_s.max(signal.u_offset_m_s2 * length_s)
-    };
-    let ringing_m_s: f64 = measured
-        .flight
-        .modes
-        .iter()
-        .zip(&plateau.ringing_m_s)
-        .enumerate()
-        .map(|(i, (mode, (a, b)))| {
-            // What is no mode bends the plateau, which may lie anywhere along it.
-            if measured.flight.is_bend(i, measured.signals) {
-                return a.hypot(*b);
-            }
-            let periods = mode.frequency_hz * flight_s;
-            // A mode of which the flight shows less than a period looks like a bend of the plateau.
-            RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
-        })
-        .sum();
-    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
-}
-
-/// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
-fn lost_m_s(measured: &FitData, signal: &Signal) -> f64 {
-    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
-    let left_s = measured.events.separation_s().unwrap_or(contact_s);
-    let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
-    let missing = signal.missing_s(contact_s, left_s) / (left_s - contact_s).max(f64::MIN_POSITIVE);
-    let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;
-    clipped_m_s.hypot(gap_m_s)
-}
-
-/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and
-/// tests nothing.
-pub(super) fn has_lost_step(measured: &FitData) -> bool {
-    measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }
 
 /// Velocity of S along the body axes, m/s: transverse, axial.

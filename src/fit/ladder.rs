@@ -1,12 +1,13 @@
 //! What each rung of the reconstruction says, to the simplest one that explains the recording.
 
-use super::inputs::{Inputs, UncertainInput, has_lost_step};
+use super::inputs::{Inputs, UncertainInput};
 use super::propagate::{Model, Propagated};
+use super::steps::has_lost_step;
 use super::untested::{self, SilentMistake};
-use super::{COVERAGE, FitData, Reconstruct};
+use super::{FitData, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, Contribution, End, Estimate, FlightFit, MET_U, Quantities,
-    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung, Untested,
+    Closure, Contribution, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
+    ReconstructionChoice, ReconstructionRung, Untested,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -82,20 +83,12 @@ impl RungTaken {
 ///
 /// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
 #[must_use]
-pub fn ladder(
-    measured: &FitData,
-    plain: Option<&FlightFit>,
-    reading: Option<ChannelReading>,
-    reconstruct: Reconstruct,
-) -> Option<RungTaken> {
+pub fn ladder(measured: &FitData, plain: Option<&FlightFit>, reconstruct: Reconstruct) -> Option<RungTaken> {
     let model = Model::new(measured, reconstruct)?;
     let flight = model.by_stated_inputs()?;
     let joint = model.joint();
     let closures = model.closures(joint.as_ref());
     let mut steps = Vec::new();
-    if let (Some(reading), Some(plain)) = (reading, plain) {
-        steps.push(by_channels(measured, plain, reading, &flight));
-    }
     if let Some(plain) = plain {
         let measured = FitData { flight: plain, ..*measured };
         steps.extend(planar(&measured, reconstruct));
@@ -145,56 +138,7 @@ fn step(rung: ReconstructionRung, propagated: Propagated, consistent: bool, resi
     }
 }
 
-/// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the
-/// planar motion's.
-fn by_channels(
-    measured: &FitData,
-    plain: &FlightFit,
-    reading: ChannelReading,
-    by_motion: &Propagated,
-) -> RungStep {
-    let motion = by_motion.quantities;
-    let left_m_s = |end: End| {
-        let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
-        signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
-    };
-    let v0_m_s = measured.setup.impact_velocity_m_s;
-    let (first_left_m_s, second_left_m_s) = (left_m_s(End::First), left_m_s(End::Second));
-    let u_m_s = |value_m_s: f64, left_m_s: f64| {
-        let known = &measured.tolerances;
-        let by_scale = known.calibration.hypot(known.clock) / 2.0 * (value_m_s + v0_m_s);
-        left_m_s.hypot(by_scale).hypot(known.impact_velocity / 2.0 * v0_m_s)
-    };
-    // A sensor is not the corner, turns with the cask, and reads nothing of gravity: what that comes to is
-    // told by the planar motion.
-    let left_out_m_s = |value_m_s: f64, of: Option<Estimate>| of.map_or(0.0, |of| value_m_s - of.value);
-    let speed_left_out_m_s = reading.second_m_s.map_or(0.0, |v| left_out_m_s(v.abs(), motion.speed));
-    let first_left_out_m_s = left_out_m_s(reading.first_m_s, Some(motion.rebound_velocity));
-    let u_speed_m_s = reading.second_m_s.map_or(0.0, |v| u_m_s(v, second_left_m_s));
-    let u_first_m_s = u_m_s(reading.first_m_s, first_left_m_s);
-    let is_explained =
-        speed_left_out_m_s.abs() <= u_speed_m_s && first_left_out_m_s.abs() <= u_first_m_s && explains(plain);
-    let speed = reading
-        .second_m_s
-        .map(|v| Estimate::new(v.abs(), COVERAGE * u_speed_m_s.hypot(speed_left_out_m_s), "m/s"));
-    let u95_m_s = COVERAGE * u_first_m_s.hypot(first_left_out_m_s);
-    let quantities = Quantities {
-        speed,
-        vertical_velocity: reading.second_m_s.and(speed).map(|s| Estimate { value: -s.value, ..s }),
-        rebound_velocity: Estimate::new(reading.first_m_s, u95_m_s, "m/s"),
-        k: Estimate::new(reading.first_m_s / v0_m_s, u95_m_s / v0_m_s, "1"),
-        ..motion
-    };
-    let propagated = Propagated { quantities, budget: by_motion.budget.clone() };
-    let residual = format!(
-        "{:.2} m/s of ringing in the flight, {:.2} m/s of rotation and gravity left out",
-        first_left_m_s.max(second_left_m_s),
-        speed_left_out_m_s.abs().max(first_left_out_m_s.abs())
-    );
-    step(ReconstructionRung::Channels, propagated, is_explained, residual)
-}
-
-/// (b) Planar motion, each velocity step the mean over the flight.
+/// (a) Planar motion, each velocity step the mean over the flight.
 fn planar(measured: &FitData, reconstruct: Reconstruct) -> Option<RungStep> {
     let model = Model::new(measured, reconstruct)?;
     let propagated = model.by_stated_inputs()?;
@@ -205,7 +149,7 @@ fn planar(measured: &FitData, reconstruct: Reconstruct) -> Option<RungStep> {
     Some(step(ReconstructionRung::Planar, propagated, consistent, residual))
 }
 
-/// (c) The flight fitted with modes and drift.
+/// (b) The flight fitted with modes and drift.
 fn by_flight(measured: &FitData, propagated: Propagated, closures: &[Closure]) -> RungStep {
     let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
@@ -232,7 +176,7 @@ fn widened(closures: &[Closure], has_lost_step: bool) -> (f64, &'static str) {
     }
 }
 
-/// (d) Everything fitted within its tolerance.
+/// (c) Everything fitted within its tolerance.
 fn by_joint(
     propagated: Propagated,
     chi_square: f64,
@@ -291,7 +235,6 @@ fn stays(own: &ReconstructionCandidate, next: &ReconstructionCandidate) -> bool 
 
 fn words(rung: ReconstructionRung) -> &'static str {
     match rung {
-        ReconstructionRung::Channels => "each channel by itself",
         ReconstructionRung::Planar => "the planar motion with the mean of the flight",
         ReconstructionRung::Flight => "the planar motion with modes and drift fitted to the flight",
         ReconstructionRung::Joint => "the joint fit of all inputs within their tolerances",

@@ -5,15 +5,17 @@ mod closures;
 mod inputs;
 mod ladder;
 mod propagate;
+mod steps;
 mod untested;
 
 use crate::data::{
     AssumedFriction, ChannelSpec, Events, FlightFit, Motion, RestLevel, Setup, Signal, StoodIn, Tolerances,
 };
 
-pub use inputs::{Inputs, u_step_m_s};
+pub use inputs::Inputs;
 pub use ladder::{RungTaken, ladder};
 pub use propagate::{quantities, spread_by_draws};
+pub use steps::u_step_m_s;
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).
 pub const COVERAGE: f64 = 2.0;

@@ -95,7 +95,7 @@ impl<'a> Model<'a> {
     fn read(&self, inputs: &Inputs) -> Option<(Quantities<f64>, Vec<f64>)> {
         let motion = self.follow(inputs)?;
         let missed = self.observables.iter().map(|o| o.residual(self.measured, inputs, &motion));
-        Some((read_off(&motion, inputs), missed.collect::<Option<_>>()?))
+        Some((Quantities::of(&motion), missed.collect::<Option<_>>()?))
     }
 
     /// The same with the inputs moved by so many standard uncertainties.
@@ -168,15 +168,17 @@ impl<'a> Model<'a> {
 
     /// One line a datum: the inputs, then the observables; largest first.
     fn budget(&self, by_datum: &DMatrix<f64>, strikes: bool) -> Vec<Contribution> {
-        let inputs = self.inputs.iter().map(|i| (i.name.clone(), i.size.clone()));
-        let own = |o: &Observable| (o.name(), o.words(self.measured, &self.motion, 1.0).replace('+', ""));
+        let inputs =
+            self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), i.tolerance(self.measured.setup)));
+        let own =
+            |o: &Observable| (o.name(), o.words(self.measured, &self.motion, 1.0).replace('+', ""), None);
         let names = inputs.chain(self.observables.iter().map(own));
         let mut budget: Vec<Contribution> = names
             .zip(by_datum.column_iter())
-            .map(|((input, standard_uncertainty), column)| {
+            .map(|((input, standard_uncertainty, tolerance), column)| {
                 let change = Quantities::from_fn(|row| column[row].abs());
                 let speed_m_s = change.speed.filter(|_| strikes);
-                Contribution { input, standard_uncertainty, speed_m_s, k: Some(change.k) }
+                Contribution { input, standard_uncertainty, tolerance, speed_m_s, k: Some(change.k) }
             })
             .collect();
         budget.sort_by(|a, b| {
@@ -243,27 +245,5 @@ impl<'a> Model<'a> {
             .collect();
         moved.sort_by(|a, b| b.moved_in_u.abs().total_cmp(&a.moved_in_u.abs()));
         moved
-    }
-}
-
-/// The quantities of a motion: rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed =
-/// |v_R| (24), and the rest.
-fn read_off(motion: &Motion, inputs: &Inputs) -> Quantities<f64> {
-    let contact_s = inputs.events.first_contact_s().unwrap_or(f64::NAN);
-    let Motion { separation, slap_down, second_end_m_s, .. } = motion;
-    Quantities {
-        impact_velocity: inputs.setup.impact_velocity_m_s,
-        duration: separation.time_s - contact_s,
-        rebound_velocity: motion.rebound_m_s,
-        angular_velocity: separation.angular_velocity_rad_s,
-        k: motion.rebound_m_s / inputs.setup.impact_velocity_m_s,
-        slip_velocity: motion.slip_m_s,
-        friction: motion.impulse_ratio,
-        flight_time: slap_down.map(|s| s.time_s - separation.time_s),
-        speed: second_end_m_s.map(|(horizontal_m_s, vertical_m_s)| horizontal_m_s.hypot(vertical_m_s)),
-        vertical_velocity: second_end_m_s.map(|(_, vertical_m_s)| vertical_m_s),
-        horizontal_velocity: second_end_m_s.map(|(horizontal_m_s, _)| horizontal_m_s),
-        angle: slap_down.map(|s| s.angle_rad.to_degrees()),
-        second_end_height: motion.second_end_height_m,
     }
 }

@@ -1,10 +1,7 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
 use super::decimate::decimated;
-use super::{Integrated, Velocity};
-use crate::data::{
-    Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, MotionCurve, Setup, Signal,
-};
+use crate::data::{Axis, ChannelCurve, Events, FilterChoice, MotionCurve, Setup, Signal};
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
 use rayon::prelude::*;
@@ -136,23 +133,6 @@ pub fn channel_curves(
             }
         })
         .collect()
-}
-
-/// The channels by themselves, as \[P\] Fig. 13 has them: −v0 + ∫f dt from first contact, gravity left out
-/// between the impacts, read off as L leaves and as R strikes. `None` without a transverse channel on each
-/// end or without first contact and separation.
-#[must_use]
-pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) -> Option<ChannelReading> {
-    let left_s = events.separation_s()?;
-    let each = integrated.signals.iter().zip(&integrated.velocities);
-    let on = |end: End| each.clone().find(|(s, _)| s.axis == Axis::Transverse && s.end == end);
-    let at =
-        |(_, velocity): (&Signal, &Velocity), time_s: f64| velocity.at(time_s) - setup.impact_velocity_m_s;
-    let (first, second) = (on(End::First)?, on(End::Second)?);
-    Some(ChannelReading {
-        first_m_s: at(first, left_s),
-        second_m_s: events.slap_down_s().map(|struck_s| at(second, struck_s)),
-    })
 }
 
 /// The samples that are shown.

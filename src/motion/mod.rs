@@ -13,9 +13,7 @@ mod ringing;
 mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
-pub use curves::{
-    around, channel_curves, cutoff_hz, filter_name, filtered, read_channels, shown, usual_filters,
-};
+pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
 pub use late_blow::strike;
@@ -59,6 +57,12 @@ impl<'a> Integrated<'a> {
         };
         let (velocities, peaks_m_s2) = signals.par_iter().map(velocity_and_peak).unzip();
         Self { signals, contact_s, velocities, peaks_m_s2 }
+    }
+
+    /// What a signal has gained since shortly before first contact, m/s.
+    #[must_use]
+    pub fn gained_m_s(&self, signal: usize, time_s: f64) -> f64 {
+        self.velocities[signal].at(time_s)
     }
 
     /// The same with signals of its own.

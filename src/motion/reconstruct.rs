@@ -100,6 +100,7 @@ fn follow(
     Some(Motion {
         contact,
         separation,
+        impact_m_s: setup.impact_velocity_m_s,
         rebound_m_s,
         slip_m_s,
         impulse_ratio,

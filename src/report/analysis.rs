@@ -13,12 +13,12 @@ use super::settings;
 use super::table::{ReportTable, TableCell, TableShape};
 use super::tested::{TOLD, tested};
 use super::text::{
-    Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
-    verdict_style, verdict_word, yes,
+    Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
+    verdict_sentence, verdict_style, verdict_word, yes,
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Program,
+    Analysis, CaskFile, DropResult, Finding, FlightRegime, IssueCode, Prediction, Program, QuantityRow,
     STANDARD_GRAVITY_M_S2, Setting, Severity, TestRecord,
 };
 
@@ -59,12 +59,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             version: result.version.to_owned(),
             foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
             heading,
-            about: format!(
-                "{} m at {}° · {}",
-                plain(file.drop.height_m, 5),
-                plain(file.drop.angle_rad.to_degrees(), 5),
-                input.recording
-            ),
+            about: format!("{} · {}", dropped(&file.drop), input.recording),
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
                      the target. [P]: Analytical, Numerical and Experimental Investigations on the Impact \
@@ -116,14 +111,13 @@ fn signed(test: &TestRecord) -> Chapter {
 /// What was dropped, the verdict and its cause, the four numbers that a reader looks for first, and what they
 /// rest on.
 fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
-    let (cask, drop) = (&file.cask, &file.drop);
+    let cask = &file.cask;
     let section =
         if cask.height_m > 0.0 { format!(", h {} m", plain(cask.height_m, 5)) } else { String::new() };
     let what = format!(
-        "{} · drop {} m at {}° · {} kg, l {} m{section} · {} contact",
+        "{} · drop {} · {} kg, l {} m{section} · {} contact",
         cask.name,
-        plain(drop.height_m, 5),
-        plain(drop.angle_rad.to_degrees(), 5),
+        dropped(&file.drop),
         plain(cask.mass_kg, 6),
         plain(cask.length_m, 5),
         contact_words(file.contact)
@@ -160,8 +154,7 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
     let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
     let compared = result.comparison.as_ref();
     let figure = |name: &str, value: Option<String>, detail: String| {
-        let value = value.filter(|value| value != MISSING);
-        [name.to_owned(), value.unwrap_or_else(|| "not determined".to_owned()), detail]
+        [name.to_owned(), determined(value.unwrap_or_else(|| MISSING.to_owned())), detail]
     };
     vec![
         figure("Slap-down speed, measured", Some(interval(speed)), String::new()),
@@ -182,27 +175,11 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
 /// First impact, slap-down and k, each with its interval or with the reason why it is missing.
 fn quantities(result: &DropResult) -> Chapter {
     let (first, second) = (&result.first_impact, &result.slap_down);
-    let fact = |name: &str, value: &Option<Estimate>, note: &str| {
-        Fact::number(name, interval(value.as_ref())).note(note)
-    };
-    let of_impact = result.settings.iter().find(|setting| setting.name == "impact velocity");
-    let stated = of_impact.map_or_else(String::new, |setting| format!("from {}", setting.origin));
-    let first_impact = vec![
-        fact("first contact", &first.time, "after the first sample"),
-        fact("impact velocity", &first.impact_velocity, &stated),
-        fact("contact lasts", &first.duration, ""),
-        fact("rebound velocity", &first.rebound_velocity, "vertical, up positive"),
-        fact("angular velocity", &first.angular_velocity, ""),
-        fact("restitution k", &result.k, "rebound over impact velocity"),
-    ];
-    let slap_down = vec![
-        fact("speed", &second.speed, "just before the second end strikes"),
-        fact("vertical velocity", &second.vertical_velocity, "up positive"),
-        fact("horizontal velocity", &second.horizontal_velocity, ""),
-        fact("angle", &second.angle, "of the axis above the horizontal"),
-        fact("flight time", &second.flight_time, "from separation"),
-        fact("time", &second.time, "after the first sample"),
-    ];
+    let row = |name, remark, value| QuantityRow { name, remark, value };
+    let time = |name, value| [row(name, "after the first sample", value)].into_iter();
+    let k = row("restitution k", "rebound over impact velocity", result.k);
+    let first_impact = time("first contact", first.time).chain(first.rows()).chain([k]);
+    let slap_down = second.rows().into_iter().chain(time("time", second.time));
     Chapter::new(Words::or("Results, ± 95 %", "")).with(PartContent::Beside([
         estimates(result, "First impact", first_impact, &FIRST_IMPACT_CODES),
         estimates(result, "Slap-down", slap_down, &SLAP_DOWN_CODES),
@@ -210,7 +187,14 @@ fn quantities(result: &DropResult) -> Chapter {
 }
 
 /// Estimates; the reason for the missing ones stands once below them.
-fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[IssueCode]) -> Vec<ChapterPart> {
+fn estimates(
+    result: &DropResult,
+    caption: &str,
+    rows: impl Iterator<Item = QuantityRow>,
+    codes: &[IssueCode],
+) -> Vec<ChapterPart> {
+    let fact = |row: QuantityRow| Fact::number(row.name, interval(row.value.as_ref())).note(row.remark);
+    let facts: Vec<Fact> = rows.map(fact).collect();
     let is_missing = facts.iter().any(|fact| fact.value == MISSING);
     let why = || ChapterPart::note(format!("{MISSING} not determined: {}", reason(result, codes)));
     [ChapterPart::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()

@@ -2,10 +2,10 @@
 //! what limits them, and what nothing in the recording tests.
 
 use super::reconstruction::{defaults_that_weigh, largest, weighty_default_count};
-use super::rounding::{MISSING, interval, pair, percent, plain, significant};
+use super::rounding::{interval, pair, percent, significant};
 use super::text::{
-    Style, clamped, counted, distinct, json_word, printable, sentence, styled, styled_lines, tail,
-    verdict_sentence, verdict_style, verdict_word,
+    Style, clamped, counted, determined, distinct, dropped, json_word, printable, sentence, styled,
+    styled_lines, tail, verdict_sentence, verdict_style, verdict_word,
 };
 use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, LimitState, Severity, Untested};
 
@@ -105,18 +105,18 @@ fn findings(result: &DropResult) -> String {
     if all.is_empty() { "none".into() } else { all.join(", ") }
 }
 
+/// A line of the first screen, or as many as its words need and it may have.
+fn row(name: &str, words: &str, width: usize, most: usize) -> String {
+    let words = clamped(words, width, NAME_WIDTH, most);
+    format!("{name:<NAME_WIDTH$}{}", &words[NAME_WIDTH..])
+}
+
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
 #[must_use]
 pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
     let (result, file) = (&analysis.result, &analysis.cask_file);
-    let drop = &file.drop;
-    let title = format!(
-        "{} · {} m at {}° · {}",
-        file.cask.name,
-        plain(drop.height_m, 5),
-        plain(drop.angle_rad.to_degrees(), 5),
-        tail(&result.input.recording, 40),
-    );
+    let recording = tail(&result.input.recording, 40);
+    let title = format!("{} · {} · {recording}", file.cask.name, dropped(&file.drop));
     let word = verdict_word(result.verdict);
     let cause = cause(result).map(|said| sentence(&said)).unwrap_or_default();
     // Where nothing else is to be said the cause has room for its remedy.
@@ -124,34 +124,29 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, most);
     let head = styled_lines(Style::Bold, &clamped(&title, width, 0, 1))
         + &format!("{}{}", styled(verdict_style(result.verdict), word), &said[word.len()..]);
-    let row = |name: &str, words: &str, most: usize| {
-        let words = clamped(words, width, NAME_WIDTH, most);
-        format!("{name:<NAME_WIDTH$}{}", &words[NAME_WIDTH..])
-    };
-    let number = |estimate| match interval(estimate) {
-        text if text == MISSING => "not determined".to_owned(),
-        text => text,
-    };
-    let limits = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
-    let is_limited = !limits.is_empty() && (result.k.is_some() || result.slap_down.speed.is_some());
-    let holds = if result.slap_down.speed.is_some() { "  (± holds 95 %)" } else { "" };
-    let numbers = [
-        row("Slap-down speed", &(number(result.slap_down.speed.as_ref()) + holds), 1),
-        row("Restitution k", &number(result.k.as_ref()), 1),
-        compared(result).map_or_else(String::new, |words| row("Predicted speed", &words, 1)),
-        if is_limited { row("Interval", &limits, 2) } else { String::new() },
+    let speed = result.slap_down.speed.as_ref();
+    let holds = if speed.is_some() { "  (± holds 95 %)" } else { "" };
+    let interval_by = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
+    let is_number = result.k.is_some() || speed.is_some();
+    let limits = result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state)));
+    let rows = [
+        ("Slap-down speed", Some(determined(interval(speed)) + holds), 1),
+        ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
+        ("Predicted speed", compared(result), 1),
+        ("Interval", Some(interval_by).filter(|_| is_number), 2),
+        ("Limits", Some(limits.collect::<Vec<_>>().join(", ")), 1),
     ];
-    let foot = row("Findings", &findings(result), 1)
+    let said = rows.into_iter().filter_map(|(name, words, most)| Some((name, words?, most)));
+    let numbers = said.filter(|(_, words, _)| !words.is_empty());
+    let before =
+        head + &numbers.map(|(name, words, most)| row(name, &words, width, most)).collect::<String>();
+    let foot = row("Findings", &findings(result), width, 1)
         // A path is whole, however long.
         + &report.map_or_else(String::new, |page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
-    let limits: Vec<String> =
-        result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state))).collect();
-    let limits = if limits.is_empty() { String::new() } else { row("Limits", &limits.join(", "), 1) };
-    let before = head + &numbers.concat() + &limits;
     let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
-        let remedies = row("To test them", &remedies, 2);
+        let remedies = row("To test them", &remedies, width, 2);
         let taken = [&before, &remedies, &foot].map(|text| text.lines().count()).iter().sum();
-        row("Nothing tests", &named, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
+        row("Nothing tests", &named, width, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
     });
     before + &tested + &foot
 }

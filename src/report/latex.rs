@@ -1,26 +1,19 @@
 //! A result to a table for LaTeX: what a paper or a test report quotes of it.
 
 use super::rounding::{MISSING, interval};
-use crate::data::{DropResult, Estimate};
+use crate::data::{DropResult, Estimate, QuantityRow};
 
 /// `results.tex`: a `tabular` of two columns, to be taken in with `\input`; needs no package.
 pub(super) fn table(result: &DropResult) -> Vec<u8> {
-    let (first, second) = (&result.first_impact, &result.slap_down);
-    let rows = [
-        ("Impact velocity", first.impact_velocity),
-        ("Duration of the first contact", first.duration),
-        ("Rebound velocity", first.rebound_velocity),
-        ("Angular velocity after the first impact", first.angular_velocity),
-        ("Coefficient of restitution $k$", result.k),
-        ("Flight time", second.flight_time),
-        ("Angle at slap-down", second.angle),
-        ("Slap-down speed", second.speed),
-        ("Vertical velocity at slap-down", second.vertical_velocity),
-        ("Horizontal velocity at slap-down", second.horizontal_velocity),
-        ("Slap-down speed over impact velocity", result.amplification),
-    ];
-    let line = |(name, value): &(_, Option<Estimate>)| format!("{name} & {} \\\\\n", cell(value.as_ref()));
-    let lines = rows.iter().map(line).collect::<Vec<String>>().concat();
+    let own = |impact: &'static str, rows: Vec<QuantityRow>| {
+        rows.into_iter().map(move |row| (format!("{impact}: {}", row.name), row.value))
+    };
+    let rows = own("First impact", result.first_impact.rows())
+        .chain([("Coefficient of restitution $k$".to_owned(), result.k)])
+        .chain(own("Slap-down", result.slap_down.rows()))
+        .chain([("Slap-down speed over impact velocity".to_owned(), result.amplification)]);
+    let line = |(name, value): (String, Option<_>)| format!("{name} & {} \\\\\n", cell(value.as_ref()));
+    let lines = rows.map(line).collect::<Vec<String>>().concat();
     let head = format!(
         "% dropcheck {}, SHA-256 of the recording: {}",
         result.version, result.input.recording_sha256

@@ -3,7 +3,7 @@
 use super::document::{Chapter, ChapterPart, PartContent};
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
-use super::settings::{to_state, tolerance_of};
+use super::settings::to_state;
 use super::table::{ReportTable, TableCell};
 use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
@@ -174,7 +174,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .class("")
         .chosen(Option::is_none)
         .head("Input", |c| c.map_or(all, |c| &c.input[..]))
-        .text("Known from", |c| c.map_or_else(|| "".into(), |c| known_from(&c.input, result, file)))
+        .text("Known from", |c| c.map_or_else(|| "".into(), |c| known_from(c, result, file)))
         .number("Standard uncertainty", |c| c.map_or("", |c| &c.standard_uncertainty[..]))
         .number("Slap-down speed, m/s", |c| {
             c.map_or_else(|| sum(|c| c.speed_m_s, 3), |c| optional_fixed(c.speed_m_s, 3))
@@ -185,9 +185,6 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
          interval is twice their root. {}",
         largest(budget)
     );
-    let is_planar = result.reconstruction.as_ref().is_none_or(|r| r.rung != ReconstructionRung::Channels);
-    let single = "Speed and k were read off single channels, with the intervals given there: this table is \
-                  that of the planar motion.";
     let untested = ReportTable::of(&result.untested)
         .class("")
         .caption(
@@ -202,11 +199,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .number("and k by", |i| optional(i.moves.k, 2))
         .text("What would test it", |i| i.remedy);
     let untested = (!result.untested.is_empty()).then(|| ChapterPart::from(untested));
-    chapter
-        .with(ChapterPart::lead(lead))
-        .with(table)
-        .with_all((!is_planar).then(|| ChapterPart::note(single)))
-        .with_all(untested)
+    chapter.with(ChapterPart::lead(lead)).with(table).with_all(untested)
 }
 
 /// A default that carries more than a tenth of the variance of the speed, or of k where there is no speed.
@@ -223,7 +216,7 @@ fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyD
     all.retain(|share| share.percent > WEIGHS_PERCENT);
     all.sort_by(|a, b| b.percent.total_cmp(&a.percent));
     all.into_iter()
-        .filter_map(|share| Some(WeightyDefault { key: to_state(file, share.input)?, share }))
+        .filter_map(|share| Some(WeightyDefault { key: to_state(file, share.of)?, share }))
         .collect()
 }
 
@@ -231,7 +224,7 @@ fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyD
 pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
     let all = weighty_defaults(result, file);
     let named: Vec<String> =
-        all.iter().map(|d| format!("{} {:.0} %", d.share.input, d.share.percent)).collect();
+        all.iter().map(|d| format!("{} {:.0} %", d.share.of.input, d.share.percent)).collect();
     let of_what = if result.slap_down.speed.is_some() { "the speed" } else { "k" };
     // Keys of one table stand behind its name once.
     let mut keys: Vec<&str> = Vec::new();
@@ -253,7 +246,7 @@ pub(super) fn weighty_default_count(result: &DropResult, file: &CaskFile) -> usi
 
 /// An input, and how much of the variance of a quantity it carries.
 struct VarianceShare<'a> {
-    input: &'a str,
+    of: &'a Contribution,
     percent: f64,
 }
 
@@ -262,14 +255,14 @@ fn shares(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>
     let square = |c: &Contribution| change(c).map(|x| x * x);
     let sum: f64 = budget.iter().filter_map(square).sum();
     let known = budget.iter().filter(|_| sum > 0.0);
-    known.filter_map(|c| Some(VarianceShare { input: &c.input, percent: 100.0 * square(c)? / sum })).collect()
+    known.filter_map(|c| Some(VarianceShare { of: c, percent: 100.0 * square(c)? / sum })).collect()
 }
 
 /// Which input weighs most, in the speed and in k.
 pub(super) fn largest(budget: &[Contribution]) -> String {
     let words = |change: fn(&Contribution) -> Option<f64>| {
         let largest = shares(budget, change).into_iter().max_by(|a, b| a.percent.total_cmp(&b.percent))?;
-        Some(format!("{} ({:.0} % of the variance)", largest.input, largest.percent))
+        Some(format!("{} ({:.0} % of the variance)", largest.of.input, largest.percent))
     };
     match (words(|c| c.speed_m_s), words(|c| c.k)) {
         (Some(speed), Some(k)) => format!("The largest for the speed is {speed}, for k {k}."),
@@ -280,14 +273,14 @@ pub(super) fn largest(budget: &[Contribution]) -> String {
 }
 
 /// Whether the recording tells an input's uncertainty, the cask file states it, or it is a default.
-fn known_from(input: &str, result: &DropResult, file: &CaskFile) -> TableCell {
+fn known_from(input: &Contribution, result: &DropResult, file: &CaskFile) -> TableCell {
     let is_closure =
-        result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input));
-    match tolerance_of(input) {
+        result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input.input));
+    match input.tolerance {
         _ if is_closure => "closure".into(),
         Some(_) if to_state(file, input).is_some() => TableCell::marked("", "default"),
         Some(_) => "cask file".into(),
-        None if input.is_empty() => MISSING.into(),
+        None if input.input.is_empty() => MISSING.into(),
         None => "recording".into(),
     }
 }
@@ -303,7 +296,8 @@ mod tests {
     }
 
     fn contribution(input: &str, speed_m_s: Option<f64>, k: f64) -> Contribution {
-        Contribution { input: input.into(), standard_uncertainty: "0.5 %".into(), speed_m_s, k: Some(k) }
+        let standard_uncertainty = "0.5 %".into();
+        Contribution { input: input.into(), standard_uncertainty, tolerance: None, speed_m_s, k: Some(k) }
     }
 
     #[test]
@@ -331,7 +325,11 @@ mod tests {
     #[test]
     fn a_tolerance_says_where_it_is_from() {
         let analysis = sample::analysis();
-        let known = |input: &str| known_from(input, &analysis.result, &analysis.cask_file);
+        let known = |input: &str| {
+            let own = analysis.result.budget.iter().find(|own| own.input == input).cloned();
+            let own = own.unwrap_or_else(|| contribution(input, None, 0.0));
+            known_from(&own, &analysis.result, &analysis.cask_file)
+        };
         let from = |input: &str| known(input).words.on(Medium::Page).to_owned();
         assert_eq!(known("calibration of A2").mark, "default");
         assert_eq!(from("drop angle"), "cask file");

@@ -26,13 +26,6 @@ pub(super) fn choice() -> ReconstructionChoice {
             .into(),
         candidates: vec![
             candidate(
-                ReconstructionRung::Channels,
-                (19.8, 1.3),
-                (0.61, 0.11),
-                false,
-                "0.61 m/s of ringing in the flight",
-            ),
-            candidate(
                 ReconstructionRung::Planar,
                 (20.9, 1.2),
                 (0.55, 0.10),
@@ -90,18 +83,20 @@ fn closures() -> Vec<Closure> {
 
 /// Contributions whose squares add up to the sample's intervals of speed and k.
 pub(super) fn budget() -> Vec<Contribution> {
-    let contribution = |input: &str, standard_uncertainty: &str, speed_m_s, k| Contribution {
-        input: input.into(),
-        standard_uncertainty: standard_uncertainty.into(),
-        speed_m_s: Some(speed_m_s),
-        k: Some(k),
-    };
+    let contribution =
+        |input: &str, standard_uncertainty: &str, tolerance: &'static str, speed_m_s, k| Contribution {
+            input: input.into(),
+            standard_uncertainty: standard_uncertainty.into(),
+            tolerance: Some(tolerance).filter(|key| !key.is_empty()),
+            speed_m_s: Some(speed_m_s),
+            k: Some(k),
+        };
     vec![
-        contribution("calibration of A2", "0.50 %", 0.035, 0.0001),
-        contribution("velocity step of A2", "0.024 m/s", 0.030, 0.0001),
-        contribution("cross axis of A1", "1.00 %", 0.025, 0.0040),
-        contribution("drop angle", "0.20°", 0.017, 0.0030),
-        contribution("position of A1", "5 mm", 0.003, 0.0010),
+        contribution("calibration of A2", "0.50 %", "calibration_percent", 0.035, 0.0001),
+        contribution("velocity step of A2", "0.024 m/s", "", 0.030, 0.0001),
+        contribution("cross axis of A1", "1.00 %", "cross_axis_percent", 0.025, 0.0040),
+        contribution("drop angle", "0.20°", "angle_deg", 0.017, 0.0030),
+        contribution("position of A1", "5 mm", "position_m", 0.003, 0.0010),
     ]
 }
 

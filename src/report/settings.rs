@@ -1,12 +1,7 @@
 //! A cask file's tolerances and corrections to lines of the settings.
 
 use super::rounding::plain;
-use crate::data::{CaskFile, Contact, Setting, TOLERANCES, Tolerance};
-
-/// The tolerance that an input of the budget is: "calibration of A2" is the "calibration of a channel".
-pub(super) fn tolerance_of(input: &str) -> Option<&'static Tolerance> {
-    TOLERANCES.iter().find(|known| input.starts_with(known.name.split(" a ").next().unwrap_or(known.name)))
-}
+use crate::data::{CaskFile, Contact, Contribution, Setting, TOLERANCES};
 
 /// Whether the cask file leaves this key of `[tolerance]` to its default.
 pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
@@ -15,13 +10,13 @@ pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
 
 /// The key to state in place of a default that an input of the budget rests on; `None` where it rests on
 /// none.
-pub(super) fn to_state(file: &CaskFile, input: &str) -> Option<String> {
-    let own = tolerance_of(input)?;
+pub(super) fn to_state(file: &CaskFile, input: &Contribution) -> Option<String> {
+    let key = input.tolerance?;
     // Nobody knows a part of a friction that nobody states.
-    if own.key == "friction_percent" && file.contact == Contact::Unknown {
+    if key == "friction_percent" && file.contact == Contact::Unknown {
         return Some("[contact] friction".to_owned());
     }
-    is_default(file, own.key).then(|| format!("[tolerance] {}", own.key))
+    is_default(file, key).then(|| format!("[tolerance] {key}"))
 }
 
 /// The tolerances, and the corrections that are switched off; without what `said` says already.

@@ -1,7 +1,8 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR
 //! codes.
 
-use crate::data::{DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
+use super::rounding::{MISSING, plain};
+use crate::data::{Drop, DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
 
 /// Each of `items` once, in the order of first appearance.
 pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -210,10 +211,19 @@ pub(super) fn true_minus(text: &str) -> String {
     out
 }
 
+/// A number as it stands alone, where a dash would say nothing.
+pub(super) fn determined(number: String) -> String {
+    if number == MISSING { "not determined".to_owned() } else { number }
+}
+
+/// "9 m at 15°".
+pub(super) fn dropped(drop: &Drop) -> String {
+    format!("{} m at {}°", plain(drop.height_m, 5), plain(drop.angle_rad.to_degrees(), 5))
+}
+
 /// A rung of the reconstruction as a table names it.
 pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
     match rung {
-        ReconstructionRung::Channels => "each channel by itself",
         ReconstructionRung::Planar => "planar motion, mean of the flight",
         ReconstructionRung::Flight => "planar motion, flight fitted with modes and drift",
         ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",

@@ -9,6 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 /// So many damages of each fixture where nobody asks for more by `DROPCHECK_DAMAGES`: a few seconds in all.
@@ -94,15 +95,20 @@ impl Subject {
     }
 }
 
-/// The result without what names the file, or the message.
+/// The result without what names the file, or the message. Its threads are its own: one that waits among
+/// those of all tests takes up the work of another test, minutes of it.
 fn in_process(path: &Path, stem: &str) -> Result<Value, String> {
+    static THREADS: LazyLock<rayon::ThreadPool> =
+        LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads"));
     let begun = Instant::now();
-    let answer = catch_unwind(AssertUnwindSafe(|| {
-        let file = ingest::cask_file(&fixture(&format!("{stem}.toml"))).expect("a cask file");
-        let recording = ingest::read(path, &file, &|_| ()).map_err(|error| error.to_string())?;
-        let bytes = report::result_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
-        Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
-    }));
+    let answer = THREADS.install(|| {
+        catch_unwind(AssertUnwindSafe(|| {
+            let file = ingest::cask_file(&fixture(&format!("{stem}.toml"))).expect("a cask file");
+            let recording = ingest::read(path, &file, &|_| ()).map_err(|error| error.to_string())?;
+            let bytes = report::result_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
+            Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
+        }))
+    });
     assert!(begun.elapsed() < HANG, "{}: took {:?}", path.display(), begun.elapsed());
     answer.unwrap_or_else(|_| panic!("{} makes the library panic", path.display()))
 }

@@ -6,7 +6,7 @@ use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
 use super::prediction;
 use crate::analysis::{analyze, flight_search, sticking};
 use crate::data::{
-    AssumedFriction, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
+    AssumedFriction, At, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
 };
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};
@@ -60,10 +60,10 @@ const WORKINGS: [(&str, Working); 7] = [
     (TAKEN, |recording, file| Some(Answer::of(&analyze(recording, file).result))),
     ("filter first, CFC 60", |recording, file| filter_first(60.0, recording, file)),
     ("filter first, CFC 180", |recording, file| filter_first(180.0, recording, file)),
-    ("single channels (paper)", |recording, file| alone(ReconstructionRung::Channels, recording, file)),
-    ("planar alone", |recording, file| alone(ReconstructionRung::Planar, recording, file)),
-    ("flight alone", |recording, file| alone(ReconstructionRung::Flight, recording, file)),
-    ("joint alone", |recording, file| alone(ReconstructionRung::Joint, recording, file)),
+    ("single channels (paper)", |recording, file| alone(None, recording, file)),
+    ("planar alone", |recording, file| alone(Some(ReconstructionRung::Planar), recording, file)),
+    ("flight alone", |recording, file| alone(Some(ReconstructionRung::Flight), recording, file)),
+    ("joint alone", |recording, file| alone(Some(ReconstructionRung::Joint), recording, file)),
 ];
 
 /// As one reads it off filtered curves: both channels filtered, integrated, the speed at the foot of the
@@ -93,8 +93,9 @@ fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<An
     Some(Answer::bare(Some(v0_m_s - falling[foot]), free.map(|free| mean(free) / v0_m_s - 1.0)))
 }
 
-/// One rung of the reconstruction, without the others, the checks and the prediction.
-fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Option<Answer> {
+/// One rung of the reconstruction, without the others, the checks and the prediction; none is each channel by
+/// itself, as \[P\] Fig. 13 has it: −v0 + ∫f dt, gravity left out, read off as L leaves and as R strikes.
+fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
@@ -121,12 +122,19 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
         Answer::bare(speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s))
     };
     match rung {
-        ReconstructionRung::Channels => motion::read_channels(&integrated, &events, &setup).map(|read| {
-            Answer::bare(read.second_m_s.map(f64::abs), Some(read.first_m_s / setup.impact_velocity_m_s))
-        }),
-        ReconstructionRung::Planar => moved(&plain()?, &events, &setup).map(of_motion),
-        ReconstructionRung::Flight => moved(&flight, &events, &setup).map(of_motion),
-        ReconstructionRung::Joint => {
+        None => {
+            let v0_m_s = setup.impact_velocity_m_s;
+            let read_m_s = |end: End, at: At| {
+                let own = signals.iter().position(|s| s.axis == Axis::Transverse && s.end == end)?;
+                Some(integrated.gained_m_s(own, at.time_s) - v0_m_s)
+            };
+            let struck_m_s = events.slap_down.and_then(|at| read_m_s(End::Second, at));
+            let left_m_s = read_m_s(End::First, found.separation)?;
+            Some(Answer::bare(struck_m_s.map(f64::abs), Some(left_m_s / v0_m_s)))
+        }
+        Some(ReconstructionRung::Planar) => moved(&plain()?, &events, &setup).map(of_motion),
+        Some(ReconstructionRung::Flight) => moved(&flight, &events, &setup).map(of_motion),
+        Some(ReconstructionRung::Joint) => {
             let ratio = moved(&flight, &events, &setup)?.impulse_ratio;
             let u = file.tolerances.friction / 2.0 * ratio.abs();
             let basis = fit::FitData {
@@ -142,7 +150,7 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
                 fall_s: None,
                 stood_in: None,
             };
-            let said = fit::ladder(&basis, None, None, &moved)?.choice.candidates;
+            let said = fit::ladder(&basis, None, &moved)?.choice.candidates;
             let of_joint = |c: &ReconstructionCandidate| Answer { speed: c.speed, k: c.k };
             said.iter().find(|c| c.rung == ReconstructionRung::Joint).map(of_joint)
         }

@@ -1,0 +1,67 @@
+//! What is known of a channel's velocity step to its standard uncertainty.
+
+use super::FitData;
+use crate::data::{MOST_LOST_M_S, Signal};
+use crate::numerics::noise::integral_uncertainty_by;
+
+/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's
+/// amplitude; twice the periods leave half of it. On simulated drops a window of one period leaves half a
+/// percent, one of half a period two percent (docs/uncertainty.md).
+const RINGING_SHARE: f64 = 0.005;
+
+/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
+/// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
+/// the middle of such a half sine takes 0.1 π v0, one at its end next to none.
+const GAP_SHARE: f64 = 3.0;
+
+/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form,
+/// the time in the contact at which a zero shift set in, the drift of the offset since the free fall,
+/// clipping, gaps.
+pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
+    let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
+    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
+    let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
+    let flight_s = measured.flight.to_s - measured.flight.from_s;
+    let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
+    let drift_m_s = if measured.flight.drift {
+        0.0
+    } else {
+        let length_s = pulse_s + flight_s / 2.0;
+        let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+        // Without a spectrum the offset's own uncertainty is all that is known.
+        noise_m_s.max(signal.u_offset_m_s2 * length_s)
+    };
+    let ringing_m_s: f64 = measured
+        .flight
+        .modes
+        .iter()
+        .zip(&plateau.ringing_m_s)
+        .enumerate()
+        .map(|(i, (mode, (a, b)))| {
+            // What is no mode bends the plateau, which may lie anywhere along it.
+            if measured.flight.is_bend(i, measured.signals) {
+                return a.hypot(*b);
+            }
+            let periods = mode.frequency_hz * flight_s;
+            // A mode of which the flight shows less than a period looks like a bend of the plateau.
+            RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
+        })
+        .sum();
+    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
+}
+
+/// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
+fn lost_m_s(measured: &FitData, signal: &Signal) -> f64 {
+    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
+    let left_s = measured.events.separation_s().unwrap_or(contact_s);
+    let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
+    let missing = signal.missing_s(contact_s, left_s) / (left_s - contact_s).max(f64::MIN_POSITIVE);
+    let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;
+    clipped_m_s.hypot(gap_m_s)
+}
+
+/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and
+/// tests nothing.
+pub(super) fn has_lost_step(measured: &FitData) -> bool {
+    measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
+}
