@@ -64,7 +64,7 @@ pub mod stages {
     pub use crate::condition::{Reach, condition};
     pub use crate::data::keys::{Allowed, INNER_TABLES, TABLES, Takes};
     pub use crate::events::Changes;
-    pub use crate::fit::{FitData, ladder, quantities, spread_by_draws};
+    pub use crate::fit::{FitData, ladder};
     pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};
     pub use crate::numerics::filter::ZeroPhaseLowPass;
     pub use crate::numerics::spectrum::magnitude;

@@ -56,6 +56,13 @@ impl RungTaken {
         untested::untested(&self.silent, &self.base, &self.inputs, finds)
     }
 
+    /// The inputs as stated, each moved by so many of its standard uncertainties.
+    #[must_use]
+    pub fn drawn(&self, mut by_u: impl FnMut() -> f64) -> Inputs {
+        let by_u: Vec<f64> = self.inputs.iter().map(|_| by_u()).collect();
+        self.base.moved(&self.inputs, &by_u)
+    }
+
     /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved
     /// inputs and for as many further ones, independent of all others, in their standard uncertainties, as
     /// are asked for. `None` where it fails near the inputs taken.

@@ -14,7 +14,6 @@ use crate::data::{
 
 pub use inputs::Inputs;
 pub use ladder::{RungTaken, ladder};
-pub use propagate::{quantities, spread_by_draws};
 pub use steps::u_step_m_s;
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).

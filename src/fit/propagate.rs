@@ -21,41 +21,11 @@ const SLOPE_STEPS: usize = 50;
 /// Moves below this many standard uncertainties are not worth a line.
 const NOTABLE_MOVE: f64 = 0.05;
 
-/// Reads the quantities off the motion and propagates the inputs' standard uncertainties to them (GUM,
-/// 5.1.2); `None` where the motion cannot be had.
-#[must_use]
-pub fn quantities(measured: &FitData, reconstruct: Reconstruct) -> Option<Quantities> {
-    Some(Model::new(measured, reconstruct)?.by_stated_inputs()?.quantities)
-}
-
 /// The quantities, and what each datum contributes to their uncertainty.
 pub(super) struct Propagated {
     pub quantities: Quantities,
     /// Largest contribution first.
     pub budget: Vec<Contribution>,
-}
-
-/// Standard deviations of speed, m/s, and k over the given draws of the inputs, each a list of standard
-/// normal deviates that is repeated over the inputs: what the linear propagation is checked against (JCGM
-/// 101).
-#[must_use]
-pub fn spread_by_draws(
-    measured: &FitData,
-    reconstruct: Reconstruct,
-    draws: &mut dyn FnMut(usize) -> Option<Vec<f64>>,
-) -> Option<(f64, f64)> {
-    let model = Model::new(measured, reconstruct)?;
-    let (mut n, mut sums) = (0.0, [0.0; 4]);
-    while let Some(draw) = draws(model.inputs.len()) {
-        let values = model.values(&draw)?;
-        n += 1.0;
-        for (i, value) in [values.speed.unwrap_or_default(), values.k].into_iter().enumerate() {
-            sums[2 * i] += value;
-            sums[2 * i + 1] += value * value;
-        }
-    }
-    let deviation = |sum: f64, squares: f64| (squares / n - (sum / n).powi(2)).max(0.0).sqrt();
-    (n > 1.0).then(|| (deviation(sums[0], sums[1]), deviation(sums[2], sums[3])))
 }
 
 /// The reconstruction as a function of its inputs' moves.
@@ -146,7 +116,7 @@ impl<'a> Model<'a> {
         fit(self.inputs.len(), &|by_u| self.residuals(by_u), &|at_u| self.slopes_of_residuals(at_u))
     }
 
-    /// The quantities by the inputs as they are stated.
+    /// The quantities by the inputs as they are stated, their uncertainty propagated (GUM, 5.1.2).
     pub fn by_stated_inputs(&self) -> Option<Propagated> {
         self.propagate(&PriorFit::of_priors(self.inputs.len()), 1.0)
     }

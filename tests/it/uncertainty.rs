@@ -36,17 +36,23 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     };
     let integrated = stages::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
-    let linear = stages::quantities(&measured, &moved).expect("quantities");
-    let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);
-    let mut draw = |count: usize| {
-        left = left.checked_sub(1)?;
-        Some((0..count).map(|_| StandardNormal.sample(&mut chance)).collect())
+    let ladder = stages::ladder(&measured, None, &moved).expect("quantities");
+    let linear = ladder.choice.candidates.iter().find(|c| c.rung == ReconstructionRung::Flight).expect("one");
+    let mut chance = ChaCha8Rng::seed_from_u64(4);
+    let mut drawn = || {
+        let inputs = ladder.drawn(|| StandardNormal.sample(&mut chance));
+        let motion = moved(&inputs.flight, &inputs.events, &inputs.setup).expect("a motion");
+        let (x, z) = motion.second_end_m_s.expect("a slap-down");
+        [x.hypot(z), motion.rebound_m_s / inputs.setup.impact_velocity_m_s]
     };
-    let (speed_m_s, k) = stages::spread_by_draws(&measured, &moved, &mut draw).expect("draws");
+    let draws: Vec<[f64; 2]> = (0..DRAWS).map(|_| drawn()).collect();
+    let deviation = |i: usize| {
+        let mean = |of: &dyn Fn(f64) -> f64| draws.iter().map(|d| of(d[i])).sum::<f64>() / DRAWS as f64;
+        (mean(&|x| x * x) - mean(&|x| x).powi(2)).sqrt()
+    };
     // Four standard deviations of the draws' own scatter; what bends over ± 3 u adds less.
-    for (by_draws, by_slopes) in
-        [(speed_m_s, linear.speed.expect("a slap-down").u95 / 2.0), (k, linear.k.u95 / 2.0)]
-    {
+    for (i, by_slopes) in [linear.speed, linear.k].into_iter().enumerate() {
+        let (by_draws, by_slopes) = (deviation(i), by_slopes.expect("a number").u95 / 2.0);
         assert!((by_draws / by_slopes - 1.0).abs() < 0.045, "{by_draws} by draws, {by_slopes} by slopes");
     }
 }
