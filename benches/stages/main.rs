@@ -150,6 +150,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         rests: &[],
         fall_s: None,
         stood_in: None,
+        second: None,
     };
     let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {

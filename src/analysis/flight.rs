@@ -4,7 +4,7 @@ use super::flight_search;
 use super::impact::Impact;
 use super::impacts::{self, Tabulated};
 use super::second_impact::SecondImpact;
-use super::setup::{MIDDLE, U_UNKNOWN, sticking};
+use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Events,
     Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
@@ -129,16 +129,23 @@ fn moved(
         rests: &impact.rests,
         stood_in: impact.stand_in.as_ref().and_then(|s| s.stood_in(signals)),
         fall_s: impact.fall_s.as_ref().map(|fall_s| fall_s.end - fall_s.start),
+        second: None,
     };
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
-    let second = || {
-        let stated = motion::outcome(integrated, &flight, events, &setup)?;
-        SecondImpact::find(file, &integrated.signals, &stated, &measured)
-    };
-    let ladder = || fit::ladder(&measured, plain.as_ref(), &moved);
-    let (taken, second) = rayon::join(ladder, second);
-    let taken = taken?;
+    let stated = motion::outcome(integrated, &flight, events, &setup)?;
+    let second = SecondImpact::find(file, &integrated.signals, &stated, &measured);
+    let of_second = second.as_ref().map(|second| (second.inputs(), second));
+    let turned_beyond_rad_s =
+        |inputs: &_, first: &_| of_second.as_ref()?.1.turned_beyond_rad_s(inputs, first);
+    let contact = of_second.as_ref().map(|(inputs, second)| fit::SecondContact {
+        inputs,
+        turned_beyond_rad_s: &turned_beyond_rad_s,
+        turned_rad_s: second.turned_rad_s(),
+    });
+    let with_second = fit::FitData { second: contact, ..measured };
+    let taken = fit::ladder(&with_second, plain.as_ref(), &moved)
+        .or_else(|| fit::ladder(&measured, plain.as_ref(), &moved))?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
@@ -165,22 +172,8 @@ fn contact(
     // What sticking needs; more friction than that does nothing.
     let needed =
         motion::outcome(integrated, flight, events, &sticking).map_or(0.0, |motion| motion.impulse_ratio);
-    let sliding = |friction: f64| AxialClosure::Sliding { friction };
-    let share_u = file.tolerances.friction / 2.0;
-    let (axial, ratio, u) = match file.contact {
-        Contact::Rough => (AxialClosure::Sticking, needed, share_u * needed),
-        Contact::Smooth => (sliding(0.0), 0.0, share_u * needed),
-        Contact::Coulomb(mu) if mu < needed.abs() => {
-            let friction = mu * needed.signum();
-            (sliding(friction), friction, share_u * mu)
-        }
-        Contact::Coulomb(mu) => {
-            let short = (needed.abs() - (1.0 - 2.0 * share_u) * mu).max(0.0);
-            (AxialClosure::Sticking, needed, short / 2.0)
-        }
-        Contact::Unknown => (sliding(MIDDLE * needed), MIDDLE * needed, U_UNKNOWN * needed),
-    };
-    (Setup { axial, ..sticking }, Some(AssumedFriction { ratio, u: u.abs() }))
+    let (axial, friction) = by_law(file.contact, needed, file.tolerances.friction / 2.0);
+    (Setup { axial, ..sticking }, Some(friction))
 }
 
 /// What the slap-down speed would be with L stuck and without friction, where nothing tells which.

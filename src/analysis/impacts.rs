@@ -3,8 +3,9 @@
 use super::flight_search;
 use super::second_impact::SecondImpact;
 use crate::data::{
-    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, DropFinding, DropResult, End, Estimate, Events, Finding,
-    ForceOverCrush, ImpactNumbers, ImpactTable, Motion, RigidBodyDeceleration, Signal,
+    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
+    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Motion, RigidBodyDeceleration,
+    Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
@@ -16,9 +17,6 @@ const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
 
-/// A rotation that is off the impulse of one contact at R by so many standard uncertainties is that of two,
-/// or of none.
-const MISSED_U: f64 = 3.5;
 /// No end is thrown back faster than it came, nor drawn in.
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
 /// Points of the curve of force over crush.
@@ -122,8 +120,14 @@ pub(super) fn tabulated(
 ) -> Option<Tabulated> {
     let both = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
     let known = both.known(taken)?;
-    let (first, after) = both.courses(&taken.taken, &both.unmoved(), ForceCourse::Rotation)?;
-    let of_second = known.get(1).filter(|numbers| is_one_contact(numbers));
+    let (first, after) = both.courses(&taken.taken, ForceCourse::Rotation)?;
+    // What turned the cask was one contact at R that a passive end can give.
+    let mut turning = taken.choice.closures.iter().filter(|c| c.kind == ClosureKind::SecondTurning);
+    let is_one = turning.all(|closure| closure.miss_in_u.abs() <= MISSED_U);
+    let is_passive = |numbers: &&ImpactNumbers<(f64, f64)>| {
+        RESTITUTION_RANGE.contains(&numbers.restitution.0) && numbers.duration.0 > 0.0
+    };
+    let of_second = known.get(1).filter(|_| is_one).filter(is_passive);
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
         tables: [
@@ -134,11 +138,6 @@ pub(super) fn tabulated(
 }
 
 impl BothImpacts<'_> {
-    /// The second impact's own inputs as they are.
-    fn unmoved(&self) -> Vec<f64> {
-        vec![0.0; self.second.map_or(0, SecondImpact::further)]
-    }
-
     /// Θ/m, m².
     fn inertia_m2(&self, inputs: &Inputs) -> f64 {
         let cask = &self.file.cask;
@@ -146,23 +145,22 @@ impl BothImpacts<'_> {
     }
 
     /// The first contact and the second.
-    fn courses(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<(Course, Option<Course>)> {
-        let inertia_m2 = self.inertia_m2(inputs);
+    fn courses(&self, inputs: &Inputs, by: ForceCourse) -> Option<(Course, Option<Course>)> {
         let (motion, states) =
             motion::with_states(self.integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
-        let contact = ContactCourse::of((&motion, &states), &inputs.setup, inertia_m2, by)?;
+        let contact = ContactCourse::of(&states, &inputs.setup, by)?;
         let mut after = None;
         if let Some(second) = self.second {
-            let (motion, contact) = second.course((inputs, &motion), by_u, (inertia_m2, by))?;
+            let (motion, contact) = second.course(inputs, &motion, by)?;
             after = Some(Course { motion, contact });
         }
         Some((Course { motion, contact }, after))
     }
 
     /// The numbers of the first contact, then those of the second.
-    fn numbers(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<Vec<ImpactNumbers<f64>>> {
+    fn numbers(&self, inputs: &Inputs, by: ForceCourse) -> Option<Vec<ImpactNumbers<f64>>> {
         let inertia_m2 = self.inertia_m2(inputs);
-        let (first, second) = self.courses(inputs, by_u, by)?;
+        let (first, second) = self.courses(inputs, by)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
         let numbers = |course: &Course| {
             let read = read_off(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
@@ -178,12 +176,11 @@ impl BothImpacts<'_> {
     /// These with their standard uncertainties: what else could have told the course of the force says how
     /// well that is known.
     fn known(&self, taken: &RungTaken) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
-        let unmoved = self.unmoved();
-        let flat = |inputs: &Inputs, by_u: &[f64]| {
-            let numbers = self.numbers(inputs, by_u, ForceCourse::Rotation)?;
+        let flat = |inputs: &Inputs| {
+            let numbers = self.numbers(inputs, ForceCourse::Rotation)?;
             Some(numbers.into_iter().flat_map(ImpactNumbers::into_array).collect())
         };
-        let spread = taken.spread(unmoved.len(), &flat)?;
+        let spread = taken.spread(&flat)?;
         let by_name = |contact: &[(f64, f64)]| ImpactNumbers::from_fn(|i| contact[i]);
         let mut known: Vec<_> = spread.chunks_exact(ImpactNumbers::COUNT).map(by_name).collect();
         let flights = [Some(&taken.taken.flight), self.second.map(|second| &second.flight)];
@@ -195,7 +192,7 @@ impl BothImpacts<'_> {
             }
         }
         for (by, share) in OTHER_COURSES {
-            let others = self.numbers(&taken.taken, &unmoved, by)?;
+            let others = self.numbers(&taken.taken, by)?;
             for (own, mut other) in known.iter_mut().zip(others) {
                 for ((value, u), other) in own.of_course().into_iter().zip(other.of_course()) {
                     *u = u.hypot(share * (*other - *value));
@@ -224,14 +221,6 @@ impl BothImpacts<'_> {
     }
 }
 
-/// Whether what turned the cask was one contact at R that a passive end can give.
-fn is_one_contact(numbers: &ImpactNumbers<(f64, f64)>) -> bool {
-    let (turned, u) = numbers.turned_beyond;
-    turned.abs() <= MISSED_U * u
-        && RESTITUTION_RANGE.contains(&numbers.restitution.0)
-        && numbers.duration.0 > 0.0
-}
-
 /// The numbers of one contact, all over the mass where it belongs to them; the ratios need the first contact
 /// too, and are 0 here.
 fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> ImpactNumbers<f64> {
@@ -258,7 +247,6 @@ fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64)
         force_peak,
         at_cog,
         at_struck_end,
-        turned_beyond: contact.turned_beyond_m2_s,
     }
 }
 

@@ -2,10 +2,10 @@
 //! strikes.
 
 use super::flight_search;
-use super::setup::{MIDDLE, U_UNKNOWN};
+use super::setup::by_law;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Drop, Events, FlightFit, Motion, MotionState,
-    Setup, Signal,
+    AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Contact, Drop, Events, FlightFit, Motion,
+    MotionState, Setup, Signal,
 };
 use crate::fit;
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
@@ -14,9 +14,12 @@ use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
 const LEAST_FLIGHT: f64 = 1.0;
 /// A fit of it that leaves more than this share of the speed at which R strikes has not explained it.
 const MOST_LEFT: f64 = 0.015;
+/// A rotation that is off by more than this share of itself is not that of one contact at R: L strikes
+/// meanwhile. A length off by 5 % makes 0.1.
+const OF_TWO_CONTACTS: f64 = 0.2;
 /// Standard uncertainty of a velocity step of R's contact over what its flight says of it: with it the
 /// intervals of what R gains hold 19 of 20 simulated drops.
-const STEPS: f64 = 2.0;
+const STEPS: f64 = 1.0;
 
 /// The impact of R, seen in a mirror: what strikes is its first end.
 pub(super) struct SecondImpact {
@@ -27,11 +30,22 @@ pub(super) struct SecondImpact {
     pub left: At,
     axial: AxialClosure,
     friction: Option<AssumedFriction>,
+    /// Whether that is measured or stated.
+    is_known: bool,
     u_steps_m_s: Vec<f64>,
+    /// Its length as stated, m, from which its channels count.
+    length_m: f64,
     /// What S gains along the axis, and R across it, m/s; and the rotation, rad/s.
     along_m_s: f64,
     across_m_s: f64,
     gained_rad_s: f64,
+}
+
+/// The mirror after a first impact with moved inputs.
+struct MovedMirror {
+    setup: Setup,
+    flight: FlightFit,
+    times: Events,
 }
 
 /// The drop in a mirror, from the state in which R strikes; `None` where it does not.
@@ -74,20 +88,9 @@ fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
     let most_left_m_s = MOST_LEFT * file.drop.impact_velocity_m_s;
     let is_told = pulse_s > 0.0
         && flight.to_s - flight.from_s > LEAST_FLIGHT * pulse_s
-        && flight.is_told_apart()
         && flight.resolves_modes()
         && flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
     is_told.then_some((left, flight))
-}
-
-/// How R slides as far as the channels tell: nobody states it, and it may be anything from none to what
-/// sticking needs, `needed`.
-fn sliding(signals: &[Signal], needed: f64) -> (AxialClosure, Option<AssumedFriction>) {
-    if signals.iter().any(|s| s.axis == Axis::Axial) {
-        return (AxialClosure::Measured, None);
-    }
-    let (ratio, u) = (MIDDLE * needed, (U_UNKNOWN * needed).abs());
-    (AxialClosure::Sliding { friction: ratio }, Some(AssumedFriction { ratio, u }))
 }
 
 impl SecondImpact {
@@ -108,8 +111,12 @@ impl SecondImpact {
         let (left, flight) = told(&in_mirror(file, &setup), &integrated)?;
         let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };
         let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
-        let (axial, friction) = sliding(&signals, needed);
-        setup.axial = axial;
+        let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
+        // What sticks at L may slide at R, and what slides there may turn round or stick here.
+        let law = if file.contact == Contact::Smooth { Contact::Smooth } else { Contact::Unknown };
+        let friction = (!is_measured).then(|| by_law(law, needed, file.tolerances.friction / 2.0));
+        let is_known = is_measured || law != Contact::Unknown;
+        setup.axial = friction.map_or(AxialClosure::Measured, |(axial, _)| axial);
         let basis =
             fit::FitData { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
@@ -119,40 +126,76 @@ impl SecondImpact {
         };
         let u_steps_m_s = (0..flight.plateaus.len()).map(u_step_m_s).collect();
         let moved = motion::outcome(&integrated, &flight, &times, &setup)?;
+        let turned_rad_s = moved.separation.angular_velocity_rad_s - moved.contact.angular_velocity_rad_s;
+        let by_impulse_rad_s = moved.angular_impulse_m2_s * file.cask.mass_kg / file.cask.inertia_kg_m2;
+        let is_one = (turned_rad_s - by_impulse_rad_s).abs() < OF_TWO_CONTACTS * turned_rad_s.abs();
         let along = |s: &MotionState| {
             s.horizontal_velocity_m_s * s.angle_rad.cos() + s.vertical_velocity_m_s * s.angle_rad.sin()
         };
         let along_m_s = along(&moved.separation) - along(&moved.contact);
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
         let gained_rad_s = motion::rotation_rad_s(&signals, &flight);
-        Some(Self {
+        is_one.then_some(Self {
             integrated,
             flight,
             left,
-            axial,
-            friction,
+            axial: setup.axial,
+            friction: friction.map(|(_, assumed)| assumed),
+            is_known,
             u_steps_m_s,
+            length_m: first.length_m,
             along_m_s,
             across_m_s,
             gained_rad_s,
         })
     }
 
-    /// How many uncertain inputs it has beside those of the first impact and the flight.
-    pub fn further(&self) -> usize {
-        self.u_steps_m_s.len() + 2
+    /// Its uncertain inputs beside those of the first impact and the flight, each with its standard
+    /// uncertainty.
+    pub fn inputs(&self) -> Vec<[String; 2]> {
+        let own = |what: &str, size: String| [format!("{what} of the second impact"), size];
+        let steps = self.integrated.signals.iter().zip(&self.u_steps_m_s);
+        let steps = steps.map(|(s, u)| own(&format!("velocity step of {}", s.name), format!("{u:.3} m/s")));
+        let u = self.friction.map_or(0.0, |friction| friction.u);
+        let left = own("end", format!("{:.3} ms", 1e3 * self.left.u_s));
+        steps.chain([left, own("friction", format!("{u:.3}"))]).collect()
     }
 
-    /// The contact of R after a first impact with these inputs and this motion; its further inputs moved by
-    /// so many standard uncertainties.
+    /// The rotation that it gives, rad/s, where its friction is known.
+    pub fn turned_rad_s(&self) -> Option<f64> {
+        self.is_known.then_some(self.gained_rad_s)
+    }
+
+    /// By how much the rotation is more than its impulse gives, rad/s, after a first impact with these inputs
+    /// and this motion   (32)
+    pub fn turned_beyond_rad_s(&self, inputs: &fit::Inputs, first: &Motion) -> Option<f64> {
+        let inertia_m2 = inputs.inertia_m2?;
+        let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
+        let motion = motion::outcome(&self.integrated, &flight, &times, &setup)?;
+        Some(
+            motion.separation.angular_velocity_rad_s
+                - motion.contact.angular_velocity_rad_s
+                - motion.angular_impulse_m2_s / inertia_m2,
+        )
+    }
+
+    /// The contact of R after a first impact with these inputs and this motion.
     pub fn course(
         &self,
-        (inputs, first): (&fit::Inputs, &Motion),
-        by_u: &[f64],
-        (inertia_m2, by): (f64, ForceCourse),
+        inputs: &fit::Inputs,
+        first: &Motion,
+        by: ForceCourse,
     ) -> Option<(Motion, ContactCourse)> {
+        let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
+        let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;
+        let course = ContactCourse::of(&states, &setup, by)?;
+        Some((motion, course))
+    }
+
+    /// Setup, flight and times of the mirror after a first impact with these inputs and this motion.
+    fn moved(&self, inputs: &fit::Inputs, first: &Motion) -> Option<MovedMirror> {
         let mut setup = mirrored(&inputs.setup, first, self.axial)?;
-        let (steps, rest) = by_u.split_at_checked(self.u_steps_m_s.len())?;
+        let (steps, rest) = inputs.second_u.split_at_checked(self.u_steps_m_s.len())?;
         let [by_left, by_friction] = *rest.first_chunk()?;
         if let Some(AssumedFriction { ratio, u }) = self.friction {
             setup.axial = AxialClosure::Sliding { friction: ratio + by_friction * u };
@@ -163,12 +206,12 @@ impl SecondImpact {
         let mut flight = self.flight.clone();
         let moved = |i: usize, plateau: &mut crate::data::Plateau| {
             let of_channel = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
-            // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being
-            // farther from L.
+            // Farther from R by δ a sensor in the mirror reads −ω δ more; so do all in a cask that is longer
+            // than stated.
+            let farther_m = inputs.setup.length_m - self.length_m - of_channel(&inputs.places_m);
             let across = self.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
-                self.along_m_s * of_channel(&inputs.crosses)
-                    - self.gained_rad_s * of_channel(&inputs.places_m)
+                self.along_m_s * of_channel(&inputs.crosses) + self.gained_rad_s * farther_m
             } else {
                 self.across_m_s * of_channel(&inputs.crosses)
             };
@@ -177,8 +220,6 @@ impl SecondImpact {
                 + of_channel(steps) * of_channel(&self.u_steps_m_s);
         };
         flight.plateaus.iter_mut().enumerate().for_each(|(i, plateau)| moved(i, plateau));
-        let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;
-        let course = ContactCourse::of((&motion, &states), &setup, inertia_m2, by)?;
-        Some((motion, course))
+        Some(MovedMirror { setup, flight, times })
     }
 }

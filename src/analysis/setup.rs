@@ -1,12 +1,32 @@
 //! A cask file to geometry and initial motion.
 
-use crate::data::{AxialClosure, CONTACT_STEPS, CaskFile, Setup};
+use crate::data::{AssumedFriction, AxialClosure, CONTACT_STEPS, CaskFile, Contact, Setup};
 
 /// A friction that nobody states lies between none and what sticking needs, and more than that does as much:
 /// in the middle of what 0.1 and more give, as a share of what sticking needs, and with a standard
 /// uncertainty that takes both ends in.
-pub(super) const MIDDLE: f64 = 0.6;
-pub(super) const U_UNKNOWN: f64 = 0.33;
+const MIDDLE: f64 = 0.6;
+const U_UNKNOWN: f64 = 0.33;
+
+/// How the axial velocity of a contact is had without an axial channel: by its law, of which the friction is
+/// known to `share_u`, where sticking needs a friction of `needed`, more than which does nothing.
+pub(super) fn by_law(contact: Contact, needed: f64, share_u: f64) -> (AxialClosure, AssumedFriction) {
+    let sliding = |friction: f64| AxialClosure::Sliding { friction };
+    let (axial, ratio, u) = match contact {
+        Contact::Rough => (AxialClosure::Sticking, needed, share_u * needed),
+        Contact::Smooth => (sliding(0.0), 0.0, share_u * needed),
+        Contact::Coulomb(mu) if mu < needed.abs() => {
+            let friction = mu * needed.signum();
+            (sliding(friction), friction, share_u * mu)
+        }
+        Contact::Coulomb(mu) => {
+            let short = (needed.abs() - (1.0 - 2.0 * share_u) * mu).max(0.0);
+            (AxialClosure::Sticking, needed, short / 2.0)
+        }
+        Contact::Unknown => (sliding(MIDDLE * needed), MIDDLE * needed, U_UNKNOWN * needed),
+    };
+    (axial, AssumedFriction { ratio, u: u.abs() })
+}
 
 /// Geometry and initial motion of a cask file, L sticking to the target.
 #[must_use]

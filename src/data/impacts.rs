@@ -43,10 +43,6 @@ named_numbers! {
         /// Largest deceleration at the end that strikes, m/s², likewise.
         #[serde(skip)]
         at_struck_end: "m/s^2",
-        /// By how much the rotation is more than the angular impulse of one contact gives it, over the mass,
-        /// m²/s: tells one contact from two.
-        #[serde(skip)]
-        turned_beyond: "m^2/s",
     }
     may_be_missing {}
 }

@@ -45,6 +45,8 @@ pub enum ClosureKind {
     /// The impulse of the first impact turns the cask: the channels against each other and against the mass
     /// properties.
     Turning,
+    /// The impulse of the second impact turns the cask.
+    SecondTurning,
     /// A channel at rest reads gravity: its scale.
     Rest,
     /// The fall lasts as long as the impact velocity needs: height and clock.
@@ -88,8 +90,17 @@ pub struct Closure {
     pub miss: String,
     /// That, over its standard uncertainty from all inputs.
     pub miss_in_u: f64,
-    /// What the joint fit leaves of it, over the observable's own standard uncertainty.
-    pub left_in_u: f64,
+    /// The same with all other closures met: what two of them contradict each other by, though an uncertain
+    /// input hides it from each.
+    pub beside_others_in_u: f64,
+}
+
+impl Closure {
+    /// The larger of both misses.
+    #[must_use]
+    pub fn most_in_u(&self) -> f64 {
+        self.miss_in_u.abs().max(self.beside_others_in_u.abs())
+    }
 }
 
 /// One input as the joint fit moved it.

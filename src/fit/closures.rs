@@ -17,6 +17,8 @@ pub(super) enum Observable {
     Height,
     /// The angular impulse about S is Θ ω.
     Turning { u_rad_s: f64 },
+    /// The angular impulse of the second impact about S is Θ times what it changes ω by.
+    SecondTurning { u_rad_s: f64 },
     /// A channel at rest reads g cos φ.
     Rest { channel: usize, name: String, is_axial: bool, rest_m_s2: f64, u_m_s2: f64 },
     /// The fall lasts v0 / g.
@@ -28,6 +30,7 @@ impl Observable {
         match self {
             Self::Height => ClosureKind::Height,
             Self::Turning { .. } => ClosureKind::Turning,
+            Self::SecondTurning { .. } => ClosureKind::SecondTurning,
             Self::Rest { .. } => ClosureKind::Rest,
             Self::Fall { .. } => ClosureKind::Fall,
         }
@@ -45,6 +48,7 @@ impl Observable {
         match self {
             Self::Height => "height of the second end at slap-down".into(),
             Self::Turning { .. } => "rotation against the impulse of the first impact".into(),
+            Self::SecondTurning { .. } => "rotation against the impulse of the second impact".into(),
             Self::Rest { name, .. } => format!("rest level of {name}"),
             Self::Fall { .. } => "time of the free fall".into(),
         }
@@ -52,7 +56,7 @@ impl Observable {
 
     /// By how much the motion misses it, in the unit of [`Self::u`]; `None` where the motion does not show
     /// it.
-    fn miss(&self, inputs: &Inputs, motion: &Motion) -> Option<f64> {
+    fn miss(&self, measured: &FitData, inputs: &Inputs, motion: &Motion) -> Option<f64> {
         let setup = &inputs.setup;
         let g = setup.gravity_m_s2;
         match self {
@@ -64,6 +68,7 @@ impl Observable {
                     - motion.contact.angular_velocity_rad_s
                     - motion.angular_impulse_m2_s / inputs.inertia_m2?,
             ),
+            Self::SecondTurning { .. } => (measured.second?.turned_beyond_rad_s)(inputs, motion),
             // (1 + e) f_rest − χ g sin φ' = g cos φ' across the axis, the other way round along it; φ' before
             // the fall   (34)
             Self::Rest { channel, is_axial, rest_m_s2, .. } => {
@@ -82,7 +87,7 @@ impl Observable {
     fn u(&self, measured: &FitData) -> f64 {
         match self {
             Self::Height => U_HEIGHT_M,
-            Self::Turning { u_rad_s } => *u_rad_s,
+            Self::Turning { u_rad_s } | Self::SecondTurning { u_rad_s } => *u_rad_s,
             Self::Rest { u_m_s2, .. } => *u_m_s2,
             Self::Fall { .. } => measured.setup.gravity_m_s2 * U_RELEASE_S,
         }
@@ -90,7 +95,7 @@ impl Observable {
 
     /// The miss over its own standard uncertainty.
     pub fn residual(&self, measured: &FitData, inputs: &Inputs, motion: &Motion) -> Option<f64> {
-        self.miss(inputs, motion).map(|miss| miss / self.u(measured))
+        self.miss(measured, inputs, motion).map(|miss| miss / self.u(measured))
     }
 
     /// A miss of `residual` own standard uncertainties as a person reads it.
@@ -100,6 +105,10 @@ impl Observable {
             Self::Height => format!("{:+.0} mm", 1e3 * miss),
             Self::Turning { .. } => {
                 format!("{:+.1} % of ω", 100.0 * miss / motion.separation.angular_velocity_rad_s.abs())
+            }
+            Self::SecondTurning { .. } => {
+                let turned_rad_s = measured.second.and_then(|second| second.turned_rad_s).unwrap_or(f64::NAN);
+                format!("{:+.1} % of the rotation that it gives", 100.0 * miss / turned_rad_s.abs())
             }
             Self::Rest { is_axial, rest_m_s2, .. } => {
                 let function = if *is_axial { "sin" } else { "cos" };
@@ -121,6 +130,10 @@ pub(super) fn observables(measured: &FitData, motion: &Motion) -> Vec<Observable
     let u_rad_s = U_TURNING * motion.separation.angular_velocity_rad_s.abs();
     if u_rad_s > 0.0 && measured.inertia_m2.is_some() {
         all.push(Observable::Turning { u_rad_s });
+    }
+    let turned_rad_s = measured.second.and_then(|second| second.turned_rad_s);
+    if let Some(turned_rad_s) = turned_rad_s.filter(|_| measured.inertia_m2.is_some()) {
+        all.push(Observable::SecondTurning { u_rad_s: U_TURNING * turned_rad_s.abs() });
     }
     for rest in measured.rests {
         if let Some(channel) = measured.signals.iter().position(|s| s.name == rest.channel) {

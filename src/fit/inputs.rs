@@ -37,6 +37,8 @@ pub struct Inputs {
     pub places_m: Vec<f64>,
     /// Θ / m, m².
     pub inertia_m2: Option<f64>,
+    /// Inputs of the second impact alone, in their standard uncertainties.
+    pub second_u: Vec<f64>,
     /// The channel that stands in for an end without one, and the channel it is derived from: their errors
     /// are equal.
     stood_in: Option<StoodIn>,
@@ -102,6 +104,7 @@ pub(super) enum InputShift {
     Section { by_m: f64 },
     AngularVelocity { by_rad_s: f64 },
     HorizontalVelocity { by_m_s: f64 },
+    OfSecondImpact { input: usize },
 }
 
 /// The key of the cask file that states an input.
@@ -126,7 +129,7 @@ impl InputShift {
             Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
         };
         match *self {
-            Self::Step { .. } | Self::Event { .. } => None,
+            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } => None,
             Self::Scale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
             }
@@ -186,6 +189,7 @@ impl Inputs {
             crosses: vec![0.0; channels],
             places_m: vec![0.0; channels],
             inertia_m2: measured.inertia_m2,
+            second_u: vec![0.0; measured.second.map_or(0, |second| second.inputs.len())],
             stood_in: measured.stood_in,
         }
     }
@@ -260,6 +264,7 @@ impl Inputs {
                 }
             }
             InputShift::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
+            InputShift::OfSecondImpact { input } => self.second_u[input] += by,
         }
     }
 }
@@ -316,6 +321,9 @@ pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput>
     );
     let share = known.clock / 2.0;
     add("recorder's clock", format!("{:.3} %", 100.0 * share), InputShift::Clock { share });
+    for (input, [name, size]) in measured.second.iter().flat_map(|second| second.inputs).enumerate() {
+        add(name, size.clone(), InputShift::OfSecondImpact { input });
+    }
     all
 }
 

@@ -22,8 +22,21 @@ pub const COVERAGE: f64 = 2.0;
 /// The measured motion as a function of its inputs, such as `motion::outcome` of the integrated channels.
 pub type Reconstruct<'a> = &'a (dyn Fn(&FlightFit, &Events, &Setup) -> Option<Motion> + Sync);
 
+/// The second impact, whose rotation must follow from its impulse as that of the first does   (32)
+#[derive(Clone, Copy)]
+pub struct SecondContact<'a> {
+    /// The uncertain inputs of its own: what each is, and its standard uncertainty.
+    pub inputs: &'a [[String; 2]],
+    /// By how much the rotation is more than the impulse gives, rad/s, with these inputs and this motion
+    /// before it.
+    pub turned_beyond_rad_s: &'a (dyn Fn(&Inputs, &Motion) -> Option<f64> + Sync),
+    /// Rotation that it gives, rad/s; `None` where nobody knows its friction: the one that meets the closure
+    /// is then as good as any.
+    pub turned_rad_s: Option<f64>,
+}
+
 /// What the propagation starts from.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct FitData<'a> {
     /// The conditioned channels.
     pub signals: &'a [Signal],
@@ -47,6 +60,8 @@ pub struct FitData<'a> {
     pub fall_s: Option<f64>,
     /// The channel that stands in for an end without one.
     pub stood_in: Option<StoodIn>,
+    /// The second impact, where the record tells it.
+    pub second: Option<SecondContact<'a>>,
 }
 
 impl FitData<'_> {

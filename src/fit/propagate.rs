@@ -158,42 +158,40 @@ impl<'a> Model<'a> {
         budget
     }
 
-    /// By how much the stated inputs miss each observable, over the uncertainty that all inputs give it, and
-    /// how much of the miss a fit leaves.
-    pub fn closures(&self, fit: Option<&PriorFit>) -> Vec<Closure> {
+    /// By how much the stated inputs miss each observable, over the uncertainty that all inputs give it.
+    pub fn closures(&self) -> Vec<Closure> {
         let start = vec![0.0; self.inputs.len()];
         let (Some(misses), Some(slopes)) = (self.residuals(&start), self.slopes_of_residuals(&start)) else {
             return Vec::new();
         };
-        let left = |i: usize| fit.and_then(|f| f.left.get(i)).copied();
-        self.observables
-            .iter()
-            .zip(misses)
-            .enumerate()
-            .map(|(i, (observable, miss))| Closure {
-                name: observable.name(),
-                kind: observable.kind(),
-                channel: observable.channel().map(str::to_owned),
-                miss: observable.words(self.measured, &self.motion, miss),
-                miss_in_u: miss / slopes.row(i).norm().hypot(1.0),
-                left_in_u: left(i).unwrap_or(miss),
-            })
-            .collect()
+        let in_u = MissesInU::of(&slopes);
+        let beside = in_u.beside_others(&misses);
+        let closure = |(i, observable): (usize, &Observable)| Closure {
+            name: observable.name(),
+            kind: observable.kind(),
+            channel: observable.channel().map(str::to_owned),
+            miss: observable.words(self.measured, &self.motion, misses[i]),
+            miss_in_u: misses[i] / in_u.u[i],
+            beside_others_in_u: beside[i],
+        };
+        self.observables.iter().enumerate().map(closure).collect()
     }
 
     /// What each input, were it stated wrong by a standard uncertainty, does to the quantities at a fit, and
     /// to the closures of the inputs as they are stated.
     pub fn influences(&self, fit: &PriorFit) -> Option<Vec<Influence>> {
         let count = self.inputs.len();
-        let misses = self.slopes_of_residuals(&vec![0.0; count])?;
+        let slopes = self.slopes_of_residuals(&vec![0.0; count])?;
+        let in_u = MissesInU::of(&slopes);
         let quantities = self.slopes_of_quantities(&fit.unknowns)? * fit.response.columns(0, count);
-        let in_u = |row: usize, input: usize| misses[(row, input)].abs() / misses.row(row).norm().hypot(1.0);
         let strikes = self.motion.slap_down.is_some();
         let influence = |input: usize| {
             let by = Quantities::from_fn(|row| quantities[(row, input)]);
+            let misses: Vec<f64> = slopes.column(input).iter().copied().collect();
+            let own = misses.iter().zip(&in_u.u).map(|(miss, u)| miss / u);
             Influence {
                 quantities: Quantities { speed: by.speed.filter(|_| strikes), ..by },
-                miss_in_u: (0..self.observables.len()).map(|row| in_u(row, input)).fold(0.0, f64::max),
+                miss_in_u: own.chain(in_u.beside_others(&misses)).map(f64::abs).fold(0.0, f64::max),
             }
         };
         Some((0..count).map(influence).collect())
@@ -215,5 +213,30 @@ impl<'a> Model<'a> {
             .collect();
         moved.sort_by(|a, b| b.moved_in_u.abs().total_cmp(&a.moved_in_u.abs()));
         moved
+    }
+}
+
+/// How far the closures may miss by chance: their covariance by all inputs is JJᵀ + 1   (31)
+struct MissesInU {
+    /// Standard uncertainty of each, over its own.
+    u: Vec<f64>,
+    /// Inverse of the covariance.
+    weights: DMatrix<f64>,
+}
+
+impl MissesInU {
+    fn of(slopes: &DMatrix<f64>) -> Self {
+        let count = slopes.nrows();
+        let covariance = DMatrix::identity(count, count) + slopes * slopes.transpose();
+        let u = covariance.diagonal().iter().map(|square| square.sqrt()).collect();
+        let weights = covariance.cholesky().map_or_else(|| DMatrix::identity(count, count), |c| c.inverse());
+        Self { u, weights }
+    }
+
+    /// Each miss less what the others let expect of it, over the standard uncertainty that they leave it
+    /// (W m)_i / √W_ii.
+    fn beside_others(&self, misses: &[f64]) -> Vec<f64> {
+        let all = &self.weights * nalgebra::DVector::from_column_slice(misses);
+        all.iter().zip(self.weights.diagonal().iter()).map(|(miss, weight)| miss / weight.sqrt()).collect()
     }
 }

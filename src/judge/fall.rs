@@ -50,7 +50,7 @@ pub fn judge_fall_time(
         channel: None,
         miss: format!("{:+.1} % of v0", 100.0 * (fallen_m_s / v0_m_s - 1.0)),
         miss_in_u,
-        left_in_u: miss_in_u,
+        beside_others_in_u: miss_in_u,
     };
     (miss_in_u.abs() > MISSED_U && !found.iter().any(is_of_fall))
         .then(|| closures::missed(&closure, drop, events))
@@ -197,7 +197,7 @@ mod tests {
                 channel: Some("A1".into()),
                 miss: "-5.0 %".into(),
                 miss_in_u: -9.0,
-                left_in_u: -9.0,
+                beside_others_in_u: -9.0,
             };
             let missed = closures::missed(&closure, &drop, &events);
             judge_slowed(vec![missed], &drop, &rests, &events, &Tolerances::default()).remove(0).message

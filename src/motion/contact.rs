@@ -3,7 +3,7 @@
 
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
-use crate::data::{Motion, MotionState, Setup, Signal};
+use crate::data::{MotionState, Setup, Signal};
 use crate::numerics::filter::ZeroPhaseLowPass;
 use std::f64::consts::PI;
 
@@ -26,22 +26,14 @@ pub struct ContactCourse {
     /// How far the struck corner of the undeformed cask lies below where it touched, m, in the middle of each
     /// step.
     pub crush_m: Vec<f64>,
-    /// By how much the rotation is more than the angular impulse gives it, over the inertia's share: Θ Δω/m −
-    /// ∫ (32), m²/s; 0 for one contact.
-    pub turned_beyond_m2_s: f64,
     step_s: f64,
 }
 
 impl ContactCourse {
-    /// From the states of a contact that `motion` ends, by the one force that it is of; Θ/m in m². `None` of
-    /// fewer than two states, and of a contact that gives nothing.
+    /// From the states of a contact by the one force that it is of; `None` of fewer than two states, and of a
+    /// contact that gives nothing.
     #[must_use]
-    pub fn of(
-        (motion, measured): (&Motion, &[MotionState]),
-        setup: &Setup,
-        inertia_m2: f64,
-        by: ForceCourse,
-    ) -> Option<Self> {
+    pub fn of(measured: &[MotionState], setup: &Setup, by: ForceCourse) -> Option<Self> {
         let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
         let ends = [*states.first()?, *states.last()?];
         #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
@@ -71,8 +63,6 @@ impl ContactCourse {
             at_cog_m_s2: component(1),
             at_end_m_s2: component(2),
             crush_m,
-            turned_beyond_m2_s: inertia_m2 * gained(|s| s.angular_velocity_rad_s)
-                - motion.angular_impulse_m2_s,
             ends,
             step_s,
         })

@@ -20,7 +20,7 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
             "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken \
              that noise and tolerances explain \
              and whose answer the next would neither change by more than the narrower interval nor know \
-             better by a quarter.",
+             better by a tenth.",
         )
         .chosen(|c| c.rung == choice.rung)
         .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), taken_mark(c.rung == choice.rung)))
@@ -37,7 +37,7 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
 
 /// The closure that is missed most.
 fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
-    let worst = choice.closures.iter().max_by(|a, b| a.miss_in_u.abs().total_cmp(&b.miss_in_u.abs()))?;
+    let worst = choice.closures.iter().max_by(|a, b| a.most_in_u().total_cmp(&b.most_in_u()))?;
     let which = match choice.closures.len() {
         1 => "The one closure".to_owned(),
         n => format!("Of {n} closures the worst"),
@@ -46,7 +46,7 @@ fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
         "{which}, {}, is missed by {}, {} standard uncertainties.",
         worst.name,
         true_minus(&worst.miss),
-        fixed(worst.miss_in_u.abs(), 1)
+        fixed(worst.most_in_u(), 1)
     ))
 }
 
@@ -60,8 +60,8 @@ fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
         .head("Closure", |c| &c.name[..])
         .number("Missed by", |c| true_minus(&c.miss))
         .number("in u", |c| fixed(c.miss_in_u, 1))
-        .number("Left by the joint fit, in u of the closure", |c| fixed(c.left_in_u, 2))
-        .if_any(choice.chi_square.is_some());
+        .number("with the others met, in u", |c| fixed(c.beside_others_in_u, 1))
+        .if_any(choice.closures.len() > 1);
     (!choice.closures.is_empty()).then(|| table.into())
 }
 

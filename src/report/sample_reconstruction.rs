@@ -61,13 +61,13 @@ pub(super) fn choice() -> ReconstructionChoice {
 }
 
 fn closures() -> Vec<Closure> {
-    let closure = |name: &str, kind, miss: &str, miss_in_u, left_in_u| Closure {
+    let closure = |name: &str, kind, miss: &str, miss_in_u, beside_others_in_u| Closure {
         name: name.into(),
         kind,
         channel: None,
         miss: miss.into(),
         miss_in_u,
-        left_in_u,
+        beside_others_in_u,
     };
     vec![
         closure("height of the second end at slap-down", ClosureKind::Height, "+5 mm", 0.22, 0.03),

@@ -1,8 +1,12 @@
 //! A set-up stated wrongly to the slip that is named, and recordings that no slip explains to none.
 
 use crate::run::fixture;
-use dropcheck::data::{Axis, CaskFile, Channel, Finding, IssueCode, Recording, Samples, Verdict};
-use dropcheck::{analyze, ingest};
+use dropcheck::data::{
+    Axis, CaskFile, Channel, Closure, ClosureKind, Finding, IssueCode, Recording, Samples, Severity, Verdict,
+};
+use dropcheck::lab::data::{SceneFile, SceneNumber};
+use dropcheck::lab::{campaign, in_memory, synth};
+use dropcheck::{analyze, ingest, stages};
 use std::mem::swap;
 use std::path::Path;
 
@@ -194,4 +198,33 @@ fn the_free_fall_is_the_one_that_is_recorded() {
             "{late:?}"
         );
     }
+}
+
+#[test]
+fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_there() {
+    let drawn = (0..140).map(|n| campaign::scene(20261202, SceneNumber::Undamaged(n), true));
+    let is_axial = |file: &SceneFile| file.stated.channels.iter().any(|c| c.axis == Axis::Axial);
+    let is_told = |c: &Closure| c.kind == ClosureKind::SecondTurning;
+    let (mut told, mut found, mut held) = (0, 0, 0);
+    for (file, recording) in drawn.filter(|(file, _)| is_axial(file)) {
+        let read = in_memory::synthetic(&recording, &file.stated).expect("a recording");
+        let result = stages::measure(&read, &file.stated).result;
+        if result.reconstruction.is_none_or(|choice| !choice.closures.iter().any(is_told)) {
+            continue;
+        }
+        assert_eq!(result.verdict, Verdict::Pass);
+        let mut longer = file.stated.clone();
+        longer.cask.length_m *= 1.05;
+        let result = stages::measure(&read, &longer).result;
+        told += 1;
+        if result.quality.iter().any(|f| f.severity == Severity::Warning && f.message.contains("length")) {
+            found += 1;
+            continue;
+        }
+        let truth_m_s = synth::simulate(&file.scene).truth.speed.expect("R strikes");
+        let speed = result.slap_down.speed.expect("a number");
+        held += usize::from((speed.value - truth_m_s).abs() < 2.0 * speed.u95);
+    }
+    // Six of twelve stand 3 u and more out of what the other closures and all tolerances explain.
+    assert!(told >= 10 && 2 * found >= told && found + held + 2 >= told, "{found} and {held} of {told}");
 }

@@ -33,6 +33,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         rests: &[],
         fall_s: None,
         stood_in: None,
+        second: None,
     };
     let integrated = stages::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);

@@ -138,9 +138,9 @@ pub enum DropFinding {
     SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity },
     /// All closures together are missed by more than chance.
     #[error("what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for \
-             {degrees}): {}; check angle, height, scales, positions and mass properties of the cask \
-             file", joined(.closures, |c| format!("{} by {} ({:.1} \
-                                                   u)", c.name, c.miss, c.miss_in_u.abs()), ", "))]
+             {degrees}): {}; check angle, height, length, scales, positions and mass properties of the \
+             cask file", joined(.closures, |c| format!("{} by {} ({:.1} \
+                                                   u)", c.name, c.miss, c.most_in_u()), ", "))]
     AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
     /// With a usual slip put right everything is consistent; with either of two where nothing tells which.
     #[error("{}: check this first; it has not been applied", joined(.cures, Cure::words, "; "))]
@@ -176,7 +176,7 @@ impl DropFinding {
             Self::ObservedApart { severity, .. } => (Code::Observed, *severity),
             Self::Missed { closure, is_gross, .. } => {
                 let code = match closure.kind {
-                    ClosureKind::Height | ClosureKind::Fall => Code::Geometry,
+                    ClosureKind::Height | ClosureKind::Fall | ClosureKind::SecondTurning => Code::Geometry,
                     ClosureKind::Turning => Code::NotRigid,
                     ClosureKind::Rest => Code::Scale,
                 };
@@ -250,8 +250,13 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
         ),
         ClosureKind::Turning => format!(
             "the measured rotation differs by {how_far} from what the first impact would give a rigid body \
-             of this section, centre of gravity and inertia: check each channel's scale and position, and \
-             state `inertia_kg_m2` and `cog_m`"
+             of this section, centre of gravity and inertia: check the length and each channel's scale and \
+             position, and state `inertia_kg_m2` and `cog_m`"
+        ),
+        ClosureKind::SecondTurning => format!(
+            "the rotation that the second impact gives differs by {how_far} from what its impulse would give \
+             a rigid body of this length and inertia: check `length_m`, scales and positions; or the second \
+             end struck twice, or the first end stood on the target meanwhile"
         ),
         ClosureKind::Rest => format!(
             "{} is off by {how_far} at rest before the release: check its sensitivity, unit and the angle",

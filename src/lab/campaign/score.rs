@@ -26,7 +26,7 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
     let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
     let result = analysis.map(|a| &a.result);
     let choice = result.and_then(|r| r.reconstruction.as_ref());
-    let misses_u = choice.into_iter().flat_map(|c| &c.closures).map(|c| c.miss_in_u.abs());
+    let misses_u = choice.into_iter().flat_map(|c| &c.closures).map(crate::data::Closure::most_in_u);
     let rungs = choice.into_iter().flat_map(|choice| &choice.candidates).map(|c| RungSaid {
         rung: c.rung,
         consistent: c.consistent,

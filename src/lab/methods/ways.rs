@@ -149,6 +149,7 @@ fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFil
                 rests: &[],
                 fall_s: None,
                 stood_in: None,
+                second: None,
             };
             let said = fit::ladder(&basis, None, &moved)?.choice.candidates;
             let of_joint = |c: &ReconstructionCandidate| Answer { speed: c.speed, k: c.k };
