@@ -20,6 +20,7 @@ use crate::{ingest, judge};
 use comparison::Measured;
 use flight::Flown;
 use impact::Impact;
+use impacts::Tabulated;
 use progress::Reached;
 
 /// From a recording and a cask file to everything that can be said of the drop.
@@ -88,8 +89,9 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         Some(flown) => match Measured::of(&flown, &impact, &events, file, &mut findings) {
             None => Reached::Flown(Box::new(flown)),
             Some(measured) => {
-                let untold = flown.tabulated.as_ref().and_then(|t| t.untold(impact.recorded(), &events));
-                findings.extend(untold);
+                let tabulated = flown.tabulated.as_ref();
+                findings.extend(tabulated.and_then(|t| t.untold(impact.recorded(), &events)));
+                findings.extend(tabulated.and_then(Tabulated::two_maxima));
                 Reached::Measured(Box::new(flown), measured)
             }
         },

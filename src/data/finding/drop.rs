@@ -69,6 +69,11 @@ pub enum DropFinding {
              ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or \
              state `friction`", .taken.value, .taken.u95)]
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
+    /// The force of the first contact falls to this share of the lower of two maxima around it.
+    #[error("the force of the first impact falls to {:.0} % between two maxima: the first end touched twice, \
+             or a mode rings as fast as the contact lasts; all was taken as one contact, and k is that of the \
+             whole", 100.0 * .dip.max(0.0))]
+    TwoMaxima { dip: f64 },
     /// L would sink so far below where it left the target.
     #[error("the first end would sink {:.0} mm below where it left the target before the second end strikes: \
              it touched again, and the flight was not free", 1e3 * .depth_m)]
@@ -172,6 +177,7 @@ impl DropFinding {
                 (Code::SecondContact, Warning)
             }
             Self::SecondUntold { .. } => (Code::SecondImpact, Note),
+            Self::TwoMaxima { .. } => (Code::SecondContact, Note),
             Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
             Self::ObservedApart { severity, .. } => (Code::Observed, *severity),
             Self::Missed { closure, is_gross, .. } => {
