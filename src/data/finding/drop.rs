@@ -71,7 +71,7 @@ pub enum DropFinding {
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
     /// The force of the first contact falls to this share of the lower of two maxima around it.
     #[error("the force of the first impact falls to {:.0} % between two maxima: the first end touched twice, \
-             or a mode rings as fast as the contact lasts; all was taken as one contact, and k is that of the \
+             or a mode rings as fast as the contact lasts; it was taken as one contact, and k is that of the \
              whole", 100.0 * .dip.max(0.0))]
     TwoMaxima { dip: f64 },
     /// L would sink so far below where it left the target.
