@@ -202,7 +202,7 @@ fn the_free_fall_is_the_one_that_is_recorded() {
 
 #[test]
 fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_there() {
-    let drawn = (0..140).map(|n| campaign::scene(20261202, SceneNumber::Undamaged(n), true));
+    let drawn = (0..140).map(|n| campaign::scene(20_261_202, SceneNumber::Undamaged(n), true));
     let is_axial = |file: &SceneFile| file.stated.channels.iter().any(|c| c.axis == Axis::Axial);
     let is_told = |c: &Closure| c.kind == ClosureKind::SecondTurning;
     let (mut told, mut found, mut held) = (0, 0, 0);

@@ -9,7 +9,7 @@ use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Draws: the standard deviation of 4000 is known to 1/√8000 = 1.1 %.
-const DRAWS: usize = 4000;
+const DRAWS: u32 = 4000;
 
 #[test]
 fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
@@ -48,7 +48,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     };
     let draws: Vec<[f64; 2]> = (0..DRAWS).map(|_| drawn()).collect();
     let deviation = |i: usize| {
-        let mean = |of: &dyn Fn(f64) -> f64| draws.iter().map(|d| of(d[i])).sum::<f64>() / DRAWS as f64;
+        let mean = |of: &dyn Fn(f64) -> f64| draws.iter().map(|d| of(d[i])).sum::<f64>() / f64::from(DRAWS);
         (mean(&|x| x * x) - mean(&|x| x).powi(2)).sqrt()
     };
     // Four standard deviations of the draws' own scatter; what bends over ± 3 u adds less.
