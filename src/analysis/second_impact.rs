@@ -17,9 +17,6 @@ const MOST_LEFT: f64 = 0.015;
 /// A rotation that is off by more than this share of itself is not that of one contact at R: L strikes
 /// meanwhile. A length off by 5 % makes 0.1.
 const OF_TWO_CONTACTS: f64 = 0.2;
-/// Standard uncertainty of a velocity step of R's contact over what its flight says of it: with it the
-/// intervals of what R gains hold 19 of 20 simulated drops.
-const STEPS: f64 = 1.0;
 
 /// The impact of R, seen in a mirror: what strikes is its first end.
 pub(super) struct SecondImpact {
@@ -121,9 +118,8 @@ impl SecondImpact {
             fit::FitData { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
-        let u_step_m_s = |i: usize| {
-            STEPS * fit::u_step_m_s(&basis, i).hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i))
-        };
+        let u_step_m_s =
+            |i: usize| fit::u_step_m_s(&basis, i).hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i));
         let u_steps_m_s = (0..flight.plateaus.len()).map(u_step_m_s).collect();
         let moved = motion::outcome(&integrated, &flight, &times, &setup)?;
         let turned_rad_s = moved.separation.angular_velocity_rad_s - moved.contact.angular_velocity_rad_s;
