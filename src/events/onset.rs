@@ -161,7 +161,11 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or
     // far before it.
     let reach = (as_f64(high) - crossing).max(1.0);
-    let position = extrapolated.clamp(crossing - reach, crossing);
+    // Far before it where the first stage yields: there the rise to twice the foot tells how long the foot took.
+    let doubled = (low..=high).find(|&i| sign * force[i] >= 2.0 * foot).map_or(crossing, as_f64);
+    let earliest =
+        if extrapolated < crossing - reach { crossing - (doubled - crossing).max(1.0) } else { extrapolated };
+    let position = earliest.clamp(0.0, crossing);
     // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets
     // zero later.
     let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
