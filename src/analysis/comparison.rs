@@ -28,12 +28,22 @@ impl Measured {
     ) -> Option<Self> {
         let Flown { flight, reconstruction, quantities, .. } = flown;
         findings.extend(judge::judge_coupling(&impact.signals, flight, file));
-        findings.extend(judge::judge_rigid(&impact.signals, flight, &file.tolerances, &file.drop));
+        findings.extend(judge::judge_rigid(
+            judge::places(&impact.signals),
+            flight,
+            &file.tolerances,
+            &file.drop,
+        ));
         let known = (quantities.k, quantities.speed);
         let contact_s = impact.contact.time_s;
         let mut is_told = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
         if !findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
-            findings.extend(of_motion(flown, impact, events, file));
+            let of_motion = of_motion(flown, impact, events, file);
+            // What follows from a flight that is none is not said beside it.
+            match judge::judge_pressed(flight, &of_motion) {
+                Some(pressed) => findings.push(pressed),
+                None => findings.extend(of_motion),
+            }
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
                 findings.extend(judge::judge_blows(impact.recorded(), flight, events, findings));
@@ -67,7 +77,7 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
-    found.extend(judge::judge_touch(motion, quantities, touched_m_s, file.cask.length_m));
+    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask));
     found
 }
 

@@ -64,7 +64,7 @@ fn fitted(
     events: &mut Events,
     findings: &mut Vec<Finding>,
 ) -> Option<FlightFit> {
-    let found = flight_search::find(file, integrated)?;
+    let found = flight_search::find(file, integrated, impact.patience)?;
     let signals: &[Signal] = &integrated.signals;
     let is_made = |end| impact.stand_in.as_ref().is_some_and(|s| s.end == end);
     let shows_slap_down = !is_made(End::Second);
@@ -152,7 +152,7 @@ fn moved(
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.untested(&|flight| {
-        judge::judge_rigid(&impact.signals, flight, &file.tolerances, &file.drop).is_some()
+        judge::judge_rigid(judge::places(&impact.signals), flight, &file.tolerances, &file.drop).is_some()
     });
     let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
     Some(Flown { flight, setup, motion, quantities, budget, reconstruction, untested, tabulated })

@@ -79,6 +79,15 @@ struct Search<'a> {
     to_target: bool,
 }
 
+/// How long a flight is sought.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Patience {
+    /// From one beginning after the other, until one explains it.
+    EachBeginning,
+    /// From the first beginning alone: one of many trials, which the right one passes so.
+    OneBeginning,
+}
+
 /// The signals of both ends, free of ringing as far as it is known.
 type Ends = (motion::RingingRemoved, motion::RingingRemoved);
 
@@ -98,8 +107,9 @@ struct Attempt {
 
 /// Finds separation, slap-down and flight; of several beginnings the first that explains the flight and
 /// brings R to the target, else the best. `None` without transverse channels on both ends.
-pub fn find(file: &CaskFile, integrated: &Integrated) -> Option<FoundFlight> {
-    let mut found = searched(file, integrated, true)?;
+pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Option<FoundFlight> {
+    let beginnings = if patience == Patience::OneBeginning { 1 } else { FIRST_ENDS.len() };
+    let mut found = searched(file, integrated, true, beginnings)?;
     if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
@@ -109,10 +119,15 @@ pub fn find(file: &CaskFile, integrated: &Integrated) -> Option<FoundFlight> {
 
 /// The same where nothing is asked of what comes after the flight.
 pub fn find_open(file: &CaskFile, integrated: &Integrated) -> Option<FoundFlight> {
-    searched(file, integrated, false)
+    searched(file, integrated, false, 1)
 }
 
-fn searched(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<FoundFlight> {
+fn searched(
+    file: &CaskFile,
+    integrated: &Integrated,
+    to_target: bool,
+    beginnings: usize,
+) -> Option<FoundFlight> {
     let &Integrated { ref signals, contact_s, .. } = integrated;
     let drop = &file.drop;
     let descent_m = file.cask.length_m * drop.angle_rad.sin().max(0.0);
@@ -139,15 +154,16 @@ fn searched(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option
     // A contact in stages may last beyond the clearance: first where its impulse has been given.
     let given_s = events::impulse_given(ends.0.signal(), contact_s, before_s)
         .filter(|given_s| !is_hopeless && *given_s > cleared_s(contact_s, before_s));
-    let shares = FIRST_ENDS.into_iter().take(if is_hopeless || !to_target { 1 } else { FIRST_ENDS.len() });
+    let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { beginnings });
     let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
     for beginning in given.into_iter().chain(shares.map(|share| (share, None))) {
         let attempt = search.attempt(&mut ends, struck, beginning);
         let cost = search.cost(&attempt);
+        let is_settled = cost < 1.0 || attempt.flight.as_ref().is_some_and(is_clearly_explained);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, attempt));
         }
-        if cost < 1.0 {
+        if is_settled {
             break;
         }
     }
@@ -162,7 +178,7 @@ fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
 /// What the cask turns by from first contact to separation, rad.
 pub fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
     let integrated = Integrated::over(signals, contact_s);
-    let moved = find(file, &integrated)?.moved(file, &integrated)?;
+    let moved = find(file, &integrated, Patience::EachBeginning)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
 
@@ -326,4 +342,10 @@ impl Search<'_> {
 
 fn is_explained(flight: &FlightFit) -> bool {
     flight.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S)
+}
+
+/// Whether the flight is explained by modes that it shows for long enough: another beginning would end there
+/// too, and what it misses is not the flight's.
+fn is_clearly_explained(flight: &FlightFit) -> bool {
+    is_explained(flight) && flight.is_told_apart() && flight.resolves_modes()
 }

@@ -1,7 +1,8 @@
 //! A recording to its first impact: the conditioned signals, when L touches, and what the time before it
 //! shows.
 
-use super::{flight_search, missing_end};
+use super::flight_search::{self, Patience};
+use super::missing_end;
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
     Finding, FindingKind, Recording, RestLevel, Severity, Signal,
@@ -29,6 +30,8 @@ pub(super) struct Impact {
     pub sought_to_s: f64,
     pub is_record_end: bool,
     pub goes_on: bool,
+    /// How long the flight after it is sought.
+    pub patience: Patience,
 }
 
 impl Impact {
@@ -38,6 +41,7 @@ impl Impact {
         recording: &Recording,
         file: &CaskFile,
         farther: bool,
+        patience: Patience,
         findings: &mut Vec<Finding>,
     ) -> Option<Self> {
         let drop = &file.drop;
@@ -94,6 +98,7 @@ impl Impact {
             sought_to_s: sought_to_s.min(record_end_s),
             is_record_end: record_end_s <= sought_to_s,
             goes_on,
+            patience,
         };
         findings.extend(judge::judge_fall(drop, &impact.events()));
         Some(impact)

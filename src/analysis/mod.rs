@@ -19,6 +19,7 @@ use crate::data::{Analysis, CaskFile, Events, Finding, Recording};
 use crate::{ingest, judge};
 use comparison::Measured;
 use flight::Flown;
+use flight_search::Patience;
 use impact::Impact;
 use impacts::Tabulated;
 use progress::Reached;
@@ -45,7 +46,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 #[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    rayon::scope(|_| second_look::leave_one_out(recording, cask_file, analyzed(recording, cask_file)))
+    let whole = || analyzed(recording, cask_file, Patience::EachBeginning);
+    rayon::scope(|_| second_look::leave_one_out(recording, cask_file, whole()))
 }
 
 /// A first impact with the events and the flight that follow it.
@@ -57,20 +59,25 @@ struct AfterImpact {
 
 /// The first impact and the flight after it, with what was found about them; `farther` as [`Impact::find`]
 /// takes it.
-fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>, Option<AfterImpact>) {
+fn flown(
+    recording: &Recording,
+    file: &CaskFile,
+    farther: bool,
+    patience: Patience,
+) -> (Vec<Finding>, Option<AfterImpact>) {
     let mut findings = recording.issues.clone();
-    let struck = Impact::find(recording, file, farther, &mut findings).map(|impact| {
+    let struck = Impact::find(recording, file, farther, patience, &mut findings).map(|impact| {
         let (events, flown) = flight::flown(&impact, file, &mut findings);
         AfterImpact { impact, events, flown }
     });
     (findings, struck)
 }
 
-fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
-    let (mut findings, mut found) = flown(recording, file, false);
+fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {
+    let (mut findings, mut found) = flown(recording, file, false, patience);
     // From steep angles a cask may strike later than its angle has it.
     if found.as_ref().is_some_and(|f| f.events.slap_down.is_none() && f.impact.goes_on) {
-        let farther = flown(recording, file, true);
+        let farther = flown(recording, file, true, patience);
         if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
             (findings, found) = farther;
         }

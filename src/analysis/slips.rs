@@ -2,12 +2,14 @@
 //! everything closes.
 
 use super::analyzed;
+use super::flight_search::Patience;
 use super::second_look::{CLEARLY, Doubt, add, closes, is_too_large};
 use crate::data::{
-    Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, Finding, FindingKind,
-    IssueCode, MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G, Severity, Slip,
+    Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, DropResult, Finding,
+    FindingKind, FlightFit, IssueCode, MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G,
+    Samples, Severity, Slip,
 };
-use crate::judge;
+use crate::judge::{self, TransversePlace};
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
@@ -36,12 +38,14 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
     let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
     let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
     let mut tried: Vec<(Doubt, Cure)> = Vec::new();
-    for slips in hypotheses(recording, file) {
+    let steps = of_steps(recording, &found.result);
+    let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
+    for slips in hypotheses(recording, file).into_iter().filter(may_cure) {
         let (mut other, mut stated) = (recording.clone(), file.clone());
         for slip in &slips {
             put_right(slip, &mut other, &mut stated);
         }
-        let analysis = analyzed(&other, &stated);
+        let analysis = analyzed(&other, &stated, Patience::OneBeginning);
         if is_cured(&analysis) {
             let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
             tried.push((Doubt::of(&analysis), Cure { slips, speed, k }));
@@ -197,6 +201,37 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
     }
 }
 
+/// The velocity steps of the flight, as a recording of two samples a channel, the step and its standard
+/// uncertainty: what a slip put right makes of them is told without a whole analysis.
+///
+/// One body has them in any stretch of time that all channels share; what the fit leaves counts as uncertain.
+fn of_steps(recording: &Recording, result: &DropResult) -> Option<(Recording, FlightFit)> {
+    let flight = result.flight.clone()?;
+    let mut steps = recording.clone();
+    for channel in &mut steps.channels {
+        let own = flight.plateau(&channel.name).map(|p| [p.velocity_step_m_s, p.u_m_s.hypot(p.residual_m_s)]);
+        let in_unit = own.unwrap_or([f64::NAN; 2]).map(|x| x / channel.scale_m_s2);
+        channel.samples = Samples::F64(in_unit.to_vec());
+    }
+    Some((steps, flight))
+}
+
+/// Whether these steps may be those of one rigid body with these slips put right.
+fn is_rigid(slips: &[Slip], of_steps: &(Recording, FlightFit), file: &CaskFile) -> bool {
+    let (mut steps, mut flight) = of_steps.clone();
+    let mut stated = file.clone();
+    slips.iter().for_each(|slip| put_right(slip, &mut steps, &mut stated));
+    for channel in &steps.channels {
+        let own = flight.plateaus.iter_mut().find(|p| p.channel == channel.name);
+        if let (Some(own), &[step_m_s, u_m_s]) = (own, &channel.force_m_s2(0, 2)[..]) {
+            (own.velocity_step_m_s, own.u_m_s) = (step_m_s, u_m_s.abs());
+        }
+    }
+    let across = steps.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    let places = across.map(|c| TransversePlace { name: &c.name, position_m: c.position_m });
+    judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop).is_none()
+}
+
 /// The samples of two channels change places, and what the cask file says of each channel stays, its polarity
 /// too.
 fn exchange<'a>(mut both: impl Iterator<Item = &'a mut Channel>) {
@@ -226,7 +261,7 @@ fn closing_angle_deg(recording: &Recording, file: &CaskFile, found: &Analysis) -
     for _ in 0..STEPS {
         let mut stated = file.clone();
         stated.drop.angle_rad = (last_rad + step_rad).clamp(0.0, FRAC_PI_2);
-        let analysis = analyzed(recording, &stated);
+        let analysis = analyzed(recording, &stated, Patience::OneBeginning);
         let now = miss(&analysis)?;
         if now.abs() < MET {
             return is_cured(&analysis).then_some(stated.drop.angle_rad.to_degrees());

@@ -113,6 +113,8 @@ pub struct Motion {
     /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no
     /// curve was asked for.
     pub lowest_first_end_m: f64,
+    /// The same height as R strikes.
+    pub last_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,
 }

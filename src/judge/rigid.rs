@@ -9,6 +9,21 @@ const SURE: f64 = 4.0;
 /// step.
 const LEAST_M_S: f64 = 0.1;
 
+/// Where a transverse channel sits along the cask.
+#[derive(Debug, Clone, Copy)]
+pub struct TransversePlace<'a> {
+    /// The channel.
+    pub name: &'a str,
+    /// From the first end, m.
+    pub position_m: f64,
+}
+
+/// The places of the transverse signals.
+pub fn places(signals: &[Signal]) -> impl Iterator<Item = TransversePlace<'_>> {
+    let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
+    across.map(|s| TransversePlace { name: &s.name, position_m: s.position_m })
+}
+
 /// One channel's step: position, m, step and its standard uncertainty, m/s.
 struct Reading<'a> {
     name: &'a str,
@@ -22,28 +37,28 @@ struct Reading<'a> {
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
 /// named.
 #[must_use]
-pub fn judge_rigid(
-    signals: &[Signal],
+pub fn judge_rigid<'a>(
+    transverse: impl Iterator<Item = TransversePlace<'a>>,
     flight: &FlightFit,
     tolerances: &Tolerances,
     drop: &Drop,
 ) -> Option<Finding> {
+    let places: Vec<TransversePlace> = transverse.collect();
     // The axial velocity changes by about this much: where L sticks, its corner is thrown straight up.
     let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
     let axial_m_s = first_m_s * drop.angle_rad.tan();
-    let turning_rad_s = turning_rad_s(signals, flight);
-    let steps: Vec<Reading> = signals
+    let turning_rad_s = turning_rad_s(&places, flight);
+    let steps: Vec<Reading> = places
         .iter()
-        .filter(|s| s.axis == Axis::Transverse)
-        .filter_map(|s| {
-            let plateau = flight.plateau(&s.name)?;
+        .filter_map(|&TransversePlace { name, position_m }| {
+            let plateau = flight.plateau(name)?;
             let step_m_s = plateau.velocity_step_m_s;
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s =
                 (tolerances.calibration * step_m_s).hypot(tolerances.cross_axis * axial_m_s) / 2.0;
             let u_place_m_s = tolerances.position_m / 2.0 * turning_rad_s;
             let u_m_s = plateau.u_m_s.hypot(u_scale_m_s).hypot(u_place_m_s);
-            Some(Reading { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
+            Some(Reading { name, position_m, step_m_s, u_m_s })
         })
         .collect();
     let (worst, off_m_s, u_m_s) = steps
@@ -63,12 +78,10 @@ pub fn judge_rigid(
 
 /// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10
 /// mm off its stated place reads 0.06 m/s more or less.
-fn turning_rad_s(signals: &[Signal], flight: &FlightFit) -> f64 {
-    let mut steps: Vec<(f64, f64)> = signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse)
-        .filter_map(|s| flight.plateau(&s.name).map(|p| (s.position_m, p.velocity_step_m_s)))
-        .collect();
+fn turning_rad_s(places: &[TransversePlace], flight: &FlightFit) -> f64 {
+    let step =
+        |place: &TransversePlace| flight.plateau(place.name).map(|p| (place.position_m, p.velocity_step_m_s));
+    let mut steps: Vec<(f64, f64)> = places.iter().filter_map(step).collect();
     steps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let ends = steps.first().zip(steps.last()).filter(|(a, b)| b.0 - a.0 > 1e-3);
     ends.map_or(0.0, |(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs())
@@ -121,7 +134,7 @@ mod tests {
         };
         let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
         let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, angle_rad) };
-        judge_rigid(&signals, &flight, &Tolerances::default(), &drop).and_then(|i| i.channel)
+        judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop).and_then(|i| i.channel)
     }
 
     #[test]

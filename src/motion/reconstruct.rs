@@ -35,6 +35,7 @@ pub fn reconstruct(
         record(&state);
         let above_m = corner_height_m(setup, &state, setup.cog_m) - left_m;
         motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
+        motion.last_first_end_m = above_m;
     }
     motion.curve = uniform(&curve);
     Some(motion)
@@ -109,6 +110,7 @@ fn follow(
         second_end_m_s: slap_down.map(|s| corner(setup, &s, behind_m)),
         second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, behind_m)),
         lowest_first_end_m: f64::INFINITY,
+        last_first_end_m: f64::INFINITY,
         curve: MotionCurve::default(),
     })
 }

@@ -83,11 +83,23 @@ pub enum DropFinding {
              left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, \
              and the flight leaves it out", 1e3 * .depth_m)]
     Settles { depth_m: f64, effect_m_s: f64 },
+    /// L may land as R strikes.
+    #[error("the first end comes down again as the second end strikes: by the motion it is then {:.0} ± {:.0} mm \
+             above where it left, and a landing before that changes the slap-down speed by up to \
+             {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
+    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 },
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
              slap-down speed are not determined", .step_m_s.abs(), 1e3 * .after_s)]
     Blow { step_m_s: f64, after_s: f64 },
+    /// L is still pressed as R strikes.
+    #[error(
+        "between first contact and the strike of the second end the velocities bend as in no free flight \
+             ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
+             on the target as the second end strikes; contacts that overlap are not followed"
+    )]
+    Pressed { frequency_hz: f64, periods: f64 },
     /// The target pushes L through the flight.
     #[error(
         "in the flight every transverse channel goes on gaining what it gained in the first impact, \
@@ -165,7 +177,7 @@ impl DropFinding {
             Self::MissingEnd { .. } => (Code::MissingChannel, Error),
             Self::EndsEarly { .. } => (Code::EndsEarly, Error),
             Self::NoSlapDown { .. } => (Code::NoSlapDown, Error),
-            Self::ShortFlight => (Code::FlightFit, Error),
+            Self::ShortFlight | Self::Pressed { .. } => (Code::FlightFit, Error),
             Self::NoFlight { .. } | Self::Unresolved { .. } => (Code::FlightFit, Warning),
             Self::SeveralDrops { .. } => (Code::SeveralDrops, Warning),
             Self::SoftTouch { .. } | Self::AllMissed { .. } => (Code::Geometry, Warning),
@@ -173,9 +185,11 @@ impl DropFinding {
             Self::TurnsTheWrongWay => (Code::EndsExchanged, Error),
             Self::Slides { .. } => (Code::Friction, Warning),
             Self::OpenContact { .. } => (Code::Friction, Note),
-            Self::Sinks { .. } | Self::Settles { .. } | Self::Blow { .. } | Self::Carried { .. } => {
-                (Code::SecondContact, Warning)
-            }
+            Self::Sinks { .. }
+            | Self::Settles { .. }
+            | Self::MayLand { .. }
+            | Self::Blow { .. }
+            | Self::Carried { .. } => (Code::SecondContact, Warning),
             Self::SecondUntold { .. } => (Code::SecondImpact, Note),
             Self::TwoMaxima { .. } => (Code::SecondContact, Note),
             Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),

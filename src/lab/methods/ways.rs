@@ -4,7 +4,8 @@
 use super::drops::{CALM, DropClass, NOISY, ONE_MODE, SLOW_MODE, conditioned};
 use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
 use super::prediction;
-use crate::analysis::{analyze, flight_search, sticking};
+use crate::analysis::flight_search::{self, Patience};
+use crate::analysis::{analyze, sticking};
 use crate::data::{
     AssumedFriction, At, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
 };
@@ -99,7 +100,7 @@ fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFil
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
-    let found = flight_search::find(file, &integrated)?;
+    let found = flight_search::find(file, &integrated, Patience::EachBeginning)?;
     let events = Events {
         first_contact: Some(contact),
         separation: Some(found.separation),
