@@ -6,10 +6,10 @@ use super::impacts::{self, Tabulated};
 use super::second_impact::SecondImpact;
 use super::setup::{by_law, sticking};
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Events,
-    Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
+    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
+    Events, Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
 };
-use crate::motion::{self, Integrated};
+use crate::motion::{self, Integrated, Ringing};
 use crate::{events, fit, judge};
 
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only
@@ -26,6 +26,8 @@ pub(super) struct Flown {
     pub reconstruction: ReconstructionChoice,
     pub untested: Vec<Untested>,
     pub tabulated: Option<Tabulated>,
+    /// The speed of R's corner, ringing and swinging included.
+    pub local_speed: Option<Estimate>,
 }
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes
@@ -154,8 +156,31 @@ fn moved(
     let untested = taken.untested(&|flight| {
         judge::judge_rigid(judge::places(&impact.signals), flight, &file.tolerances, &file.drop).is_some()
     });
+    let ringing = events
+        .slap_down
+        .and_then(|at| motion::ringing_of_second_end(integrated, moved, &window, at, as_taken));
+    let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
     let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
-    Some(Flown { flight, setup, motion, quantities, budget, reconstruction, untested, tabulated })
+    Some(Flown {
+        flight,
+        setup,
+        motion,
+        quantities,
+        budget,
+        reconstruction,
+        untested,
+        tabulated,
+        local_speed,
+    })
+}
+
+/// The speed of R's corner where ringing adds to that of the rigid body   (44)
+fn of_corner(motion: &Motion, rigid: Estimate, ringing: Ringing) -> Option<Estimate> {
+    let ((x_m_s, z_m_s), at) = motion.second_end_m_s.zip(motion.slap_down)?;
+    let (sin, cos) = at.angle_rad.sin_cos();
+    let local_m_s = (x_m_s - ringing.velocity_m_s * sin).hypot(z_m_s + ringing.velocity_m_s * cos);
+    let u95_m_s = rigid.u95.hypot(fit::COVERAGE * ringing.u_m_s);
+    Some(Estimate::new(local_m_s, u95_m_s, "m/s"))
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.

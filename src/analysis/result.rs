@@ -78,6 +78,7 @@ pub(super) fn of(
             result.model = measured.model;
             result.comparison = measured.comparison;
             result.budget = flown.budget;
+            result.slap_down.local_speed = flown.local_speed;
             result.untested = flown.untested;
             result.flight = Some(flown.flight);
             motion = Some(flown.motion.curve);

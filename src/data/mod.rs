@@ -38,7 +38,7 @@ pub use analysis::{
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE,
-    MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2,
+    MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, SLOWEST_BENDING_HZ, Source, Unit, block_inertia_kg_m2,
 };
 pub use cask_file::CaskFile;
 pub(crate) use channel::is_number;

@@ -96,6 +96,7 @@ macro_rules! quantities {
         $(#[$second_about:meta])*
         SlapDown {
             $(#[$strike_about:meta])* time,
+            $(#[$local_about:meta])* local_speed: $local_words:expr,
             $(
                 $(#[$second_field:meta])*
                 $second:ident: $second_unit:literal, $second_words:expr => $second_by:expr;
@@ -127,18 +128,21 @@ macro_rules! quantities {
             }
         }
 
-        quantities!(part $(#[$first_about])* FirstImpact $(#[$contact_about])* time
+        quantities!(part $(#[$first_about])* FirstImpact { $(#[$contact_about])* time: ("", "") }
             { $($(#[$first_field])* $first: $first_words => |all| all.$first.into();)* });
-        quantities!(part $(#[$second_about])* SlapDown $(#[$strike_about])* time
+        quantities!(part $(#[$second_about])* SlapDown
+            { $(#[$strike_about])* time: ("", ""), $(#[$local_about])* local_speed: $local_words }
             { $($(#[$second_field])* $second: $second_words => |all| all.$second;)* });
     };
-    (part $(#[$about:meta])* $name:ident $(#[$time_about:meta])* time
+    (part $(#[$about:meta])* $name:ident
+        { $(#[$time_about:meta])* time: $time_words:expr $(, $(#[$beside_about:meta])* $beside:ident: $beside_words:expr)* }
         { $($(#[$field_about:meta])* $field:ident: $words:expr => $of:expr;)* }) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Default, Serialize)]
         pub struct $name {
             $(#[$time_about])* pub time: Option<Estimate>,
             $($(#[$field_about])* pub $field: Option<Estimate>,)*
+            $($(#[$beside_about])* pub $beside: Option<Estimate>,)*
         }
 
         impl $name {
@@ -148,14 +152,14 @@ macro_rules! quantities {
                 fn by(all: Option<&Quantities>, of: fn(&Quantities) -> Option<Estimate>) -> Option<Estimate> {
                     all.and_then(of)
                 }
-                Self { time, $($field: by(measured, $of),)* }
+                Self { time, $($field: by(measured, $of),)* $($beside: None,)* }
             }
 
             /// Its quantities, but for the time.
             #[must_use]
             pub fn rows(&self) -> Vec<QuantityRow> {
                 let row = |(name, remark), value| QuantityRow { name, remark, value };
-                let all = [$(row($words, self.$field),)*];
+                let all = [$(row($words, self.$field),)* $(row($beside_words, self.$beside),)*];
                 all.into_iter().filter(|row| !row.name.is_empty()).collect()
             }
         }
@@ -180,6 +184,8 @@ quantities! {
     SlapDown {
         /// First contact of R, s from the recording's first sample.
         time,
+        /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s   (44)
+        local_speed: ("speed of its corner", "with ringing and swinging"),
         /// Magnitude of R's velocity just before it strikes, m/s   (24)
         speed: "m/s", ("speed", "just before the second end strikes") =>
             |m| m.second_end_m_s.map(|(x, z)| x.hypot(z));

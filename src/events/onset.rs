@@ -160,12 +160,11 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or
     // far before it.
-    let reach = (as_f64(high) - crossing).max(1.0);
-    // Far before it where the first stage yields: there the rise to twice the foot tells how long the foot took.
+    // Where the first stage yields, a line through all of the rise meets zero far too soon: a straight rise takes
+    // as long to the foot as from there to twice the foot.
     let doubled = (low..=high).find(|&i| sign * force[i] >= 2.0 * foot).map_or(crossing, as_f64);
-    let earliest =
-        if extrapolated < crossing - reach { crossing - (doubled - crossing).max(1.0) } else { extrapolated };
-    let position = earliest.clamp(0.0, crossing);
+    let reach = 2.0 * (doubled - crossing).max(1.0);
+    let position = extrapolated.clamp((crossing - reach).max(0.0), crossing);
     // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets
     // zero later.
     let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
@@ -250,6 +249,22 @@ mod tests {
         };
         let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
         Signal { force_m_s2, noise_m_s2, ..plain }
+    }
+
+    #[test]
+    fn a_pulse_that_yields_in_its_first_stage_begins_where_that_does() {
+        // 300 m/s² within 2 ms, from there to 1500 within 25: a line through all of it meets zero 4 ms too soon.
+        let plain = signal(End::First, 5e3, 0.037, 1.0);
+        let force = |i: usize| match plain.time_s(i) - 0.03 {
+            t if (0.0..0.002).contains(&t) => 1.5e5 * t,
+            t if (0.002..0.027).contains(&t) => 300.0 + 4.8e4 * (t - 0.002),
+            _ => 0.0,
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        let coarse = CoarseEvent { near_s: 0.03, spread_s: 0.025, velocity_step_m_s: 20.0 };
+        let found = first_contact(&[Signal { force_m_s2, ..plain }], &coarse).expect("an onset");
+        // Two samples.
+        assert!((found.time_s - 0.03).abs() < 4.1e-4, "{found:?}");
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
-    Finding, FlightFit, GRAZE_SHARE, Motion, Observed, ObservedBeside, Plateau, Quantities, Severity, Signal,
-    planar,
+    Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
+    SLOWEST_BENDING_HZ, Severity, Signal, planar,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -18,9 +18,8 @@ const SMALL_BEND_M_S: f64 = 0.5;
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
-/// No cask of a few metres bends more slowly, Hz; a contact that lasts through what was taken for a flight looks
-/// like less than so many periods of a mode. Of 16 simulated drops with such contacts 10 do.
-const SLOWEST_BENDING_HZ: f64 = 25.0;
+/// A contact that lasts through what was taken for a flight looks like less than so many periods of a mode that
+/// is slower than a cask bends. Of 16 simulated drops with such contacts 10 do.
 const PRESSED_PERIODS: f64 = 1.3;
 /// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
 /// to which corner and target are even.
@@ -80,7 +79,8 @@ pub fn judge_motion(
 pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Finding> {
     let periods = flight.periods();
     let frequency_hz = periods / (flight.to_s - flight.from_s);
-    let is_contradicted = of_motion.iter().any(|f| f.severity > Severity::Note);
+    let is_contradicted =
+        of_motion.iter().any(|f| f.severity > Severity::Note && f.code != IssueCode::Swings);
     let found = DropFinding::Pressed { frequency_hz, periods };
     (is_contradicted && frequency_hz < SLOWEST_BENDING_HZ && periods < PRESSED_PERIODS)
         .then(|| Finding::from(found).between(flight.from_s, flight.to_s))
@@ -145,6 +145,7 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities) ->
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
     findings.extend(bends(flight, signals, v0_m_s));
+    findings.extend(swings(flight, signals, v0_m_s));
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
@@ -194,12 +195,24 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
     (0..flight.modes.len()).filter_map(of_mode).collect()
 }
 
+/// The slowest mode where a cask that bends has none, and both ends go along.
+fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Option<Finding> {
+    let frequency_hz = flight.modes.first().map(|m| m.frequency_hz).filter(|hz| *hz < SLOWEST_BENDING_HZ)?;
+    let across = signals.iter().zip(&flight.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
+    let sizes_m_s = across.filter_map(|(_, p)| p.ringing_m_s.first()).map(|(a, b)| a.hypot(*b));
+    let size_m_s = sizes_m_s.fold(0.0, f64::max);
+    let found = DropFinding::Swings { frequency_hz, size_m_s };
+    (size_m_s > LARGE_BEND * v0_m_s && !flight.is_bend(0, signals))
+        .then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+}
+
 /// What was observed otherwise beside the same of a result.
 #[must_use]
 pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
     let (first, second) = (&result.first_impact, &result.slap_down);
     let (of, unit) = match seen.name {
-        "slap_down_speed_m_s" => (second.speed, "m/s"),
+        // What is seen of the corner rings and swings.
+        "slap_down_speed_m_s" => (second.local_speed.or(second.speed), "m/s"),
         "angular_velocity_rad_s" => (first.angular_velocity, "rad/s"),
         "angle_deg" => (second.angle, "deg"),
         "flight_time_s" => (second.flight_time, "s"),
@@ -233,4 +246,41 @@ pub fn judge_comparison(comparison: &Comparison) -> Option<Finding> {
     let e_n = (measured - predicted).abs() / measured_u95.hypot(predicted_u95);
     let severity = if e_n > CHANCE_E_N { Severity::Warning } else { Severity::Note };
     (!comparison.agrees).then(|| DropFinding::Disagreement { comparison: *comparison, e_n, severity }.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Mode, example};
+
+    /// A flight of 50 ms whose slowest mode both ends show with 1.2 m/s.
+    fn flight(frequency_hz: f64) -> (FlightFit, Vec<Signal>) {
+        let plateau = |name: &str| Plateau { ringing_m_s: vec![(1.2, 0.0)], ..example::plateau(name, 10.0) };
+        let signal = |name: &str, end| Signal { name: name.into(), end, ..example::signal(1e4, vec![]) };
+        let modes = vec![Mode { frequency_hz, damping: 0.02, amplitude_m_s: 1.2 }];
+        let fit = example::flight(0.1, 0.15, vec![plateau("A1"), plateau("A2")]);
+        (FlightFit { modes, ..fit }, vec![signal("A1", End::First), signal("A2", End::Second)])
+    }
+
+    #[test]
+    fn what_moves_more_slowly_than_a_cask_bends_swings() {
+        let found = |frequency_hz, v0_m_s| {
+            let (flight, signals) = flight(frequency_hz);
+            swings(&flight, &signals, v0_m_s).map(|f| f.code)
+        };
+        assert_eq!(found(15.0, 13.3), Some(IssueCode::Swings));
+        assert_eq!(found(30.0, 13.3), None);
+        // A hundredth of the speed of the fall is within the interval.
+        assert_eq!(found(15.0, 130.0), None);
+    }
+
+    #[test]
+    fn a_slow_bend_that_the_motion_contradicts_is_a_first_end_still_pressed() {
+        let contradicted = [Finding::from(DropFinding::TurnsTheWrongWay)];
+        assert!(judge_pressed(&flight(15.0).0, &contradicted).is_some());
+        assert!(judge_pressed(&flight(15.0).0, &[]).is_none());
+        assert!(judge_pressed(&flight(60.0).0, &contradicted).is_none());
+        let swings = [DropFinding::Swings { frequency_hz: 15.0, size_m_s: 1.2 }.into()];
+        assert!(judge_pressed(&flight(15.0).0, &swings).is_none(), "swinging contradicts nothing");
+    }
 }

@@ -242,7 +242,7 @@ pub(super) fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
     }
 }
 
-fn centrifugal_m_s2(signal: &Signal, window: &Window, cog_m: f64) -> f64 {
+pub(super) fn centrifugal_m_s2(signal: &Signal, window: &Window, cog_m: f64) -> f64 {
     let turning = window.angular_velocity_rad_s;
     -turning * turning.abs() * centrifugal_arm_m(signal, cog_m)
 }

@@ -2,6 +2,7 @@
 
 pub mod damped_modes;
 pub mod filter;
+pub mod free_beam;
 pub mod linear_prediction;
 pub mod noise;
 pub mod pooled;

@@ -111,6 +111,13 @@ fn row(name: &str, words: &str, width: usize, most: usize) -> String {
     format!("{name:<NAME_WIDTH$}{}", &words[NAME_WIDTH..])
 }
 
+/// The speed of the corner that strikes where its ringing moves it off the interval of the rigid body's.
+fn of_corner(result: &DropResult) -> Option<String> {
+    let (local, rigid) = result.slap_down.local_speed.zip(result.slap_down.speed)?;
+    let is_apart = (local.value - rigid.value).abs() > rigid.u95;
+    is_apart.then(|| interval(Some(&local)) + ", ringing and swinging included")
+}
+
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
 #[must_use]
 pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
@@ -131,6 +138,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let limits = result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state)));
     let rows = [
         ("Slap-down speed", Some(determined(interval(speed)) + holds), 1),
+        ("Of its corner", of_corner(result), 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
         ("Predicted speed", compared(result), 1),
         ("Interval", Some(interval_by).filter(|_| is_number), 2),

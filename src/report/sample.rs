@@ -100,6 +100,7 @@ fn result() -> DropResult {
             horizontal_velocity: estimate(2.18, 0.14, "m/s"),
             angle: estimate(-5.04, 0.22, "deg"),
             second_end_height: estimate(0.012, 0.09, "m"),
+            local_speed: estimate(20.71, 0.13, "m/s"),
         },
         k: estimate(0.5588, 0.0102, "1"),
         reconstruction: Some(sample_reconstruction::choice()),

@@ -92,6 +92,7 @@ class SlapDown(Record):
     vertical_velocity: Quantity | None
     horizontal_velocity: Quantity | None
     angle: Quantity | None
+    local_speed: Quantity | None
 
 
 class Finding(Record):

@@ -69,6 +69,7 @@ issue_codes! {
     SeveralDrops, "Drop": "the recording has another drop, which was not analysed";
     NoSlapDown, "Drop": "the second end shows no slap-down";
     SecondContact, "Drop": "the first end touches again, or something strikes the cask in the flight";
+    Swings, "Drop": "the cask swings as a whole, on its contents or mounts";
     SecondImpact, "Drop": "the recording after the slap-down does not determine the second end's impact";
     Geometry, "Drop": "angle, height or the recorded fall contradict the motion";
     Friction, "Drop": "the sliding of the first end contradicts the cask file, or nothing shows it";

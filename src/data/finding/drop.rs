@@ -93,6 +93,13 @@ pub enum DropFinding {
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
              slap-down speed are not determined", .step_m_s.abs(), 1e3 * .after_s)]
     Blow { step_m_s: f64, after_s: f64 },
+    /// A mode slower than a cask bends.
+    #[error(
+        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, more slowly than it bends: contents \
+             or mounts move in it; the slap-down speed and k are those of all that moves, `local_speed` is that of the \
+             corner that strikes"
+    )]
+    Swings { frequency_hz: f64, size_m_s: f64 },
     /// L is still pressed as R strikes.
     #[error(
         "between first contact and the strike of the second end the velocities bend as in no free flight \
@@ -190,6 +197,7 @@ impl DropFinding {
             | Self::MayLand { .. }
             | Self::Blow { .. }
             | Self::Carried { .. } => (Code::SecondContact, Warning),
+            Self::Swings { .. } => (Code::Swings, Warning),
             Self::SecondUntold { .. } => (Code::SecondImpact, Note),
             Self::TwoMaxima { .. } => (Code::SecondContact, Note),
             Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
