@@ -18,7 +18,6 @@ pub mod synth;
 use crate::lab::data::{Scene, SyntheticRecording};
 
 /// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
-#[must_use]
 pub fn synthesise(scene: &Scene) -> SyntheticRecording {
     synth::record(scene, &synth::simulate(scene))
 }

@@ -112,7 +112,6 @@ fn row(name: &str, words: &str, width: usize, most: usize) -> String {
 }
 
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
-#[must_use]
 pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let recording = tail(&result.input.recording, 40);
@@ -152,7 +151,6 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
 }
 
 /// Why a formal report cannot rest on this result, beside its verdict; `None` where it can.
-#[must_use]
 pub fn not_strict(analysis: &Analysis) -> Option<String> {
     let result = &analysis.result;
     let open = result.limits.iter().filter(|limit| limit.state != LimitState::Kept).count();

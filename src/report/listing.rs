@@ -9,7 +9,6 @@ use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
-#[must_use]
 pub fn table(listing: &Listing, width: usize) -> String {
     super::as_text::text(&document(listing), width)
 }

@@ -95,7 +95,6 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
 
 /// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
 /// where no terminal shows it.
-#[must_use]
 pub fn table(analysis: &Analysis, width: usize) -> String {
     as_text::text(&analysis::document(analysis), width)
 }

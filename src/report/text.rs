@@ -62,7 +62,6 @@ pub(super) fn styled(style: Style, text: &str) -> String {
 }
 
 /// `text` without control and direction characters, which a file could use to write elsewhere on a terminal.
-#[must_use]
 pub fn printable(text: &str) -> String {
     text.chars()
         .filter_map(|c| match c {

@@ -13,7 +13,6 @@ use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
 
 /// The whole as Markdown.
-#[must_use]
 pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally), None)
 }

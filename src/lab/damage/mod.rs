@@ -79,7 +79,6 @@ impl DamageKind {
     }
 
     /// Whether it is no damage: its drops should pass, and their intervals hold.
-    #[must_use]
     pub fn is_sound(&self) -> bool {
         self.of == "sound"
     }

@@ -16,7 +16,6 @@ const TABLE: &str = include_str!("../limits.tsv");
 type Found = (Option<f64>, String);
 
 /// Every limit beside what was found: those of the table, then a site's own recordings.
-#[must_use]
 pub fn limits(
     points: &[TrialPoint],
     maps: &[TrialMap],

@@ -26,7 +26,6 @@ type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
 pub const FAMILIES: [(&str, Trying); 2] = [("ways", ways::points), ("prediction", prediction::points)];
 
 /// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
-#[must_use]
 pub fn trial(
     request: TrialRequest,
     machine: TrialMachine,

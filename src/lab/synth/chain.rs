@@ -25,7 +25,6 @@ struct SensedDrop<'a> {
 }
 
 /// What the recorder of `scene` writes of `motion`. The same scene gives the same bits.
-#[must_use]
 pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     let force =
         |channel: &SceneChannel, times_s: &[f64]| super::specific_force_m_s2(scene, motion, channel, times_s);

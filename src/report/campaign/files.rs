@@ -100,7 +100,6 @@ impl<'a> CampaignFiles<'a> {
     }
 
     /// `campaign.html` and its pictures.
-    #[must_use]
     pub fn page(&self) -> Vec<(String, Vec<u8>)> {
         let drawn = self.series.iter().take(MOST_SERIES);
         let pictures: Vec<_> = drawn.enumerate().flat_map(|(i, series)| series.pictures(i + 1)).collect();

@@ -15,7 +15,6 @@ const CASK_AND_ANGLE: usize = 32;
 
 impl Batch {
     /// The table, `width` columns wide; below it what was found, reasons of failures, and the sum.
-    #[must_use]
     pub fn table(&self, width: usize) -> String {
         crate::report::as_text::text(&self.document(width), width)
     }
