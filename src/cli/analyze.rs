@@ -15,16 +15,8 @@ use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-Examples:
-  dropcheck analyze drop.mcap --cask cask.toml
-  dropcheck analyze drop.csv --cask cask.toml --out report
-  dropcheck analyze drop.h5 --cask cask.toml --json - | jq .k
-  dropcheck analyze drop.mcap --cask cask.toml --without zero_shift,hum
-  dropcheck analyze drop.mcap --from report/result.json";
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("help/analyze.txt"))]
 #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
 pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content

@@ -29,20 +29,8 @@ use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-A NAME.toml beside NAME.mcap goes before --cask. A manifest is a CSV with the columns recording, cask and id;
-columns named like a key of the cask file (drop.angle_deg, channel.A1.polarity) override it, others are \
-carried along.
-
-Examples:
-  dropcheck batch tests/*.mcap --cask cask.toml --out campaign
-  dropcheck init tests > runs.csv
-  dropcheck batch --manifest runs.csv --out campaign --resume
-  dropcheck batch --manifest runs.csv --shard 0/3 --jsonl shard-0.jsonl
-  dropcheck merge shard-*.jsonl --out campaign";
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("help/batch.txt"))]
 pub struct Arguments {
     /// Recordings, folders of them, and patterns; each counted once
     #[arg(required_unless_present = "manifest", conflicts_with = "manifest", value_name = "PATHS")]

@@ -10,31 +10,8 @@ use crate::{lab, report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not
-(exit status 1): speed against accuracy, what becomes of damages, and every limit beside what
-was found. --quick takes a minute. reference.toml has a table a recording:
-
-  ["drop7.mcap"]               # beside it drop7.toml, or cask = "anf18.toml"
-  verdict = "pass"
-  slap_down_speed_m_s = 20.44  # the stated interval must hold it
-  k = { value = 0.51, within = 0.02 }
-
-Undamaged scenes are U0, U1 …, those of other kinds D0,
-    D1 …: with its seed a number names the same scene for ever.
-
-Examples:
-  dropcheck validate --quick --out validation
-  dropcheck validate --quick --reference our-drops --out validation
-  dropcheck validate --out docs/measured/trial --into docs/measured/trial.md
-  dropcheck validate --campaign 2000
-  dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
-  dropcheck validate --campaign 2000 --into docs/measured/campaign.md
-  dropcheck validate --campaign 100000 --shard 0/8 --jsonl shard-0.jsonl   # and 1/8 … elsewhere; then
-  dropcheck merge shard-*.jsonl --out campaign
-  dropcheck validate --scene D17 --out scene"#;
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("../help/validate.txt"))]
 #[command(group = clap::ArgGroup::new("what").args(["campaign", "scene"]))]
 pub struct Arguments {
     /// Analyse N random undamaged scenes and N of other kinds, with one damage each or none
