@@ -88,17 +88,11 @@ fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result
 /// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
 fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     let both = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
-    let swept_k = swept(&arguments.sweep, SweepVariable::K).and_then(ends);
-    let swept_friction = swept(&arguments.sweep, SweepVariable::Friction).and_then(ends);
-    let ks = match (arguments.k, swept_k) {
-        (Some(k), _) => Some(vec![k]),
-        (None, swept) => swept.map(both),
-    };
-    let contacts = match (arguments.contact, swept_friction) {
-        (Some(contact), _) => Some(vec![contact]),
-        (None, swept) => swept.map(|ends| both(ends).into_iter().map(Contact::Coulomb).collect()),
-    };
-    match (contacts, ks) {
+    let swept = |variable| swept(&arguments.sweep, variable).and_then(ends).map(both);
+    let rubbed = |coefficients: Vec<f64>| coefficients.into_iter().map(Contact::Coulomb).collect();
+    let ks = arguments.k.map(|k| vec![k]).or_else(|| swept(SweepVariable::K));
+    let contacts = arguments.contact.map(|contact| vec![contact]);
+    match (contacts.or_else(|| swept(SweepVariable::Friction).map(rubbed)), ks) {
         (Some(contacts), Some(ks)) => (contacts, ks),
         (Some(contacts), None) => (contacts, vec![0.0, 1.0]),
         // A prediction needs one: the borderline case that the paper found.
