@@ -54,7 +54,7 @@ pub use template::cask_file as cask_file_template;
 pub use text::printable;
 
 use crate::data::{Analysis, ChannelCurve};
-use crate::numerics::spectrum::magnitude;
+use crate::numerics::{as_f64, spectrum::magnitude};
 
 /// Why a part of the report could not be made.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -88,8 +88,7 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     let (Some(first_s), Some(last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
         return (Vec::new(), Vec::new());
     };
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let sample_rate_hz = (curve.time_s.len().max(2) - 1) as f64 / (last_s - first_s);
+    let sample_rate_hz = as_f64(curve.time_s.len().max(2) - 1) / (last_s - first_s);
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 

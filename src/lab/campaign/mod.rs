@@ -12,7 +12,7 @@ mod tally;
 pub use lines::{SCHEMA, ScenePlace, line, read};
 pub use score::csv;
 pub(super) use score::written;
-pub(super) use statistics::{half_widths_between, half_widths_off, is_missed, quantile};
+pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;
 pub use tally::Tally;

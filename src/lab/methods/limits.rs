@@ -3,10 +3,11 @@
 use super::points::ALL_CLASSES;
 use super::references::{self, References};
 use crate::data::Verdict;
-use crate::lab::campaign::{half_widths_off, is_missed, quantile};
+use crate::lab::campaign::{half_widths_off, is_missed};
 use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
+use crate::numerics::robust::quantile;
 use std::f64::consts::PI;
 
 /// What is measured, least, most, unit, why.

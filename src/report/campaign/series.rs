@@ -3,8 +3,8 @@
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
-use crate::numerics::as_f64;
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
+use crate::numerics::{as_f64, whole};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -207,13 +207,11 @@ pub(super) fn is_usable(row: &BatchRow) -> bool {
 
 /// Both quantities at every angle, and k of all angles.
 fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
-    let mut by_angle: BTreeMap<i64, Vec<&'a BatchRow>> = BTreeMap::new();
+    let mut by_angle: BTreeMap<usize, Vec<&'a BatchRow>> = BTreeMap::new();
     // One recording is one drop, however often it is listed.
     for row in rows.iter().filter(|row| row.same_recording_as.is_none()) {
-        #[allow(clippy::cast_possible_truncation, reason = "0 to 90 degrees in millionths")]
-        let angle = row.at.angle_deg.map(|angle| (angle * 1e6).round() as i64);
-        if let Some(angle) = angle {
-            by_angle.entry(angle).or_default().push(row);
+        if let Some(angle_deg) = row.at.angle_deg {
+            by_angle.entry(whole((angle_deg * 1e6).round())).or_default().push(row);
         }
     }
     let of_angle = by_angle.values().flat_map(|rows| {

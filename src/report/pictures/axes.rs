@@ -4,6 +4,7 @@ use super::decimate::runs;
 use super::legend::{self, LEFT, RIGHT, point, width_of};
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
+use crate::numerics::{as_f64, nanoseconds};
 use std::ops::Range;
 
 /// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the
@@ -26,10 +27,9 @@ pub(super) fn height(panel: &Panel, width: f64) -> f64 {
 }
 
 /// Height of what stands above the axes.
-#[allow(clippy::cast_precision_loss, reason = "rows are few")]
 fn head(panel: &Panel, width: f64) -> f64 {
     let rows = mark_rows(panel, width).iter().max().map_or(0, |row| row + 1);
-    legend::height(panel, width) + MARK_ROW * rows as f64
+    legend::height(panel, width) + MARK_ROW * as_f64(rows)
 }
 
 fn bottom(panel: &Panel) -> f64 {
@@ -207,13 +207,12 @@ impl PlotFrame<'_> {
         }
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
     fn mark(&self, svg: &mut Svg, mark: &Mark, row: usize, (left, right): (f64, f64)) {
         if !(self.x.start..=self.x.end).contains(&mark.at) {
             return;
         }
         let (x, _) = self.place()((mark.at, self.y.end));
-        let top = -MARK_ROW * row as f64;
+        let top = -MARK_ROW * as_f64(row);
         let dashed = Curve { opacity: 0.55, stroke: 2, ..Curve::new(INK, vec![(x, top), (x, self.height)]) };
         svg.line(&dashed.broken(Dash::Marked));
         let half = width_of(&mark.label, 7.0);
@@ -274,9 +273,10 @@ fn tick(value: f64, axis: &PanelAxis) -> String {
 }
 
 /// The date of a day since 1970.
-#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
 fn date_of_day(day: f64) -> Option<String> {
-    Some(jiff::Timestamp::from_second((day * 86_400.0) as i64).ok()?.strftime("%F").to_string())
+    Some(
+        jiff::Timestamp::from_nanosecond(nanoseconds(day * 86_400.0).into()).ok()?.strftime("%F").to_string(),
+    )
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::panel::{AxisScale, Panel, WIDTH};
 use super::svg::{Anchor, Svg};
 use super::{axes, live};
+use crate::numerics::as_f64;
 
 /// One picture.
 pub(crate) struct Picture {
@@ -109,8 +110,7 @@ fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut svg = Svg::default();
     let mut top = 0.0;
     for row in &rows {
-        #[allow(clippy::cast_precision_loss, reason = "columns are few")]
-        let width = WIDTH / row.len() as f64;
+        let width = WIDTH / as_f64(row.len());
         let mut left = 0.0;
         for panel in row {
             svg.from((left, top), |svg| axes::draw(svg, panel, width));

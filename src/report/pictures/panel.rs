@@ -1,6 +1,7 @@
 //! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the
 //! size, so that its whole-pixel coordinates stay fine.
 
+use crate::numerics::as_f64;
 use std::ops::Range;
 
 /// Width of a picture in drawing units.
@@ -314,9 +315,8 @@ impl Panel {
     }
 
     /// The middle of a row, counted from the top one.
-    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
     pub(crate) fn row_middle(&self, row: usize) -> f64 {
-        self.y_range().end - 0.5 - row as f64
+        self.y_range().end - 0.5 - as_f64(row)
     }
 
     /// With room beside the first and the last of what is drawn: this share of the way between them.
