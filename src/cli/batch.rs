@@ -23,6 +23,7 @@ use crate::ingest::bytes_of;
 use crate::report::Batch;
 use crate::{ingest, report};
 use clap::Args;
+use miette::miette;
 use plan::CampaignPlan;
 use planned::PlannedTest;
 use serde_json::{Value, json};
@@ -131,14 +132,12 @@ fn open_record(
         (Some(path), _) => path,
         (None, Some(out)) => {
             let made = std::fs::create_dir_all(out);
-            made.map_err(|source| miette::miette!("{} cannot be made: {source}", out.display()))?;
+            made.map_err(|source| miette!("{} cannot be made: {source}", out.display()))?;
             out.join(plan.record_name())
         }
         (None, None) if arguments.resume => {
-            return Err(miette::miette!(
-                help = "name the --out or the --jsonl FILE of the run that is to go on",
-                "--resume does not know what is done"
-            ));
+            let mend = "name the --out or the --jsonl FILE of the run that is to go on";
+            return Err(miette!(help = mend, "--resume does not know what is done"));
         }
         (None, None) => return Ok(None),
     };
@@ -185,9 +184,8 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
         let curves = report::in_a_line(&report::drop_curves(&analysis))?;
         Ok(format!("\"curves\":{curves},{}", &report::in_a_line(&analysis.result)?[1..]))
     }));
-    let made = made.unwrap_or_else(|_| {
-        Err(miette::miette!("{}: the program has a fault here; please report it", test.shown))
-    });
+    let fault = |_| Err(miette!("{}: the program has a fault here; please report it", test.shown));
+    let made = made.unwrap_or_else(fault);
     match made {
         Ok(result) => format!("{head}{result}\n"),
         Err(complaint) => {
@@ -220,7 +218,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     let Some(cask) = &test.cask else {
         // Without its name all recordings that have none say the same.
         let mend = "put NAME.toml beside NAME.mcap, or name one by --cask or in the manifest";
-        return Err(miette::miette!(help = mend, "there is no cask file for the recording"));
+        return Err(miette!(help = mend, "there is no cask file for the recording"));
     };
     let inputs = [test.recording.as_path(), cask];
     let folder = arguments

@@ -4,7 +4,7 @@ use super::Ending;
 use crate::data::{CaskFile, DropResult, Program, shortened};
 use crate::ingest::bytes_of;
 use crate::{ingest, report};
-use miette::{IntoDiagnostic, WrapErr};
+use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::path::Path;
@@ -74,10 +74,8 @@ impl EarlierResult {
         if result["schema"] == "dropcheck.result/1" && result["cask_text"].is_string() {
             return Ok(Self { result, name });
         }
-        Err(miette::miette!(
-            help = "name a result.json that `analyze --json` or `--out` wrote",
-            "{name} is no result of dropcheck that holds its cask file"
-        ))
+        let mend = "name a result.json that `analyze --json` or `--out` wrote";
+        Err(miette!(help = mend, "{name} is no result of dropcheck that holds its cask file"))
     }
 
     /// The cask file.

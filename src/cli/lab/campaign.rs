@@ -8,7 +8,7 @@ use super::document::MarkedDocument;
 use crate::lab::campaign::{self, ScenePlace, Tally};
 use crate::lab::data::{CampaignRequest, CampaignRow};
 use clap::Args;
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -94,11 +94,9 @@ fn own_number(place: ScenePlace, own: &[usize], path: &Path, line: &Value) -> mi
         own.binary_search(number).is_ok() && is_said
     };
     number.filter(is_own).ok_or_else(|| {
-        miette::miette!(
-            help = "name another file, or leave out --resume to begin anew",
-            "{} holds lines of another campaign, of another shard of it, or of another build of dropcheck",
-            path.display()
-        )
+        let (mend, path) = ("name another file, or leave out --resume to begin anew", path.display());
+        let other = "another campaign, of another shard of it, or of another build of dropcheck";
+        miette!(help = mend, "{path} holds lines of {other}")
     })
 }
 

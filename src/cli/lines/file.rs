@@ -3,7 +3,7 @@
 
 use super::super::output::{JsonTarget, replace_by};
 use crate::ingest::opened;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -79,8 +79,7 @@ impl LineFiles {
     /// Hands over all lines by number.
     pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
         for number in self.numbers() {
-            let line =
-                self.text(number).ok_or_else(|| miette::miette!("the lines were changed meanwhile"))?;
+            let line = self.text(number).ok_or_else(|| miette!("the lines were changed meanwhile"))?;
             take(line.as_bytes())?;
         }
         Ok(())
@@ -201,7 +200,7 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
     if !file.metadata().is_ok_and(|there| there.is_file()) {
         let help = "name a file; --jsonl - writes to standard output";
-        return Err(miette::miette!(help = help, "{} is a pipe or a device", path.display()));
+        return Err(miette!(help = help, "{} is a pipe or a device", path.display()));
     }
     // What a killed run had begun to start may hold it for a moment longer.
     let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
@@ -211,7 +210,7 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     };
     if is_held() && (0..TRIES).all(|_| waits()) {
         let help = "wait for it, or end it";
-        return Err(miette::miette!(help = help, "another run is writing {}", path.display()));
+        return Err(miette!(help = help, "another run is writing {}", path.display()));
     }
     Ok(file)
 }

@@ -4,6 +4,7 @@ use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name, rounded};
 use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use crate::predict;
+use miette::miette;
 
 /// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
@@ -48,10 +49,8 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
     for (i, sweep) in sweeps.iter().enumerate() {
         let called = name(sweep.variable);
         if sweeps[..i].iter().any(|other| other.variable == sweep.variable) {
-            return Err(miette::miette!(
-                help = "one --sweep for each variable; for two ranges of one variable run predict twice",
-                "--sweep {called} is given twice"
-            ));
+            let mend = "one --sweep for each variable; for two ranges of one variable run predict twice";
+            return Err(miette!(help = mend, "--sweep {called} is given twice"));
         }
         let option = match sweep.variable {
             SweepVariable::Angle => arguments.angle.map(|_| "--angle"),
@@ -60,10 +59,8 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
             SweepVariable::Length | SweepVariable::DropHeight => None,
         };
         if let Some(option) = option {
-            return Err(miette::miette!(
-                help = format!("leave out {option} to sweep, or --sweep {called} to have the one value"),
-                "{option} and --sweep {called} both say what {called} is"
-            ));
+            let mend = format!("leave out {option} to sweep, or --sweep {called} to have the one value");
+            return Err(miette!(help = mend, "{option} and --sweep {called} both say what {called} is"));
         }
     }
     Ok(())
@@ -72,17 +69,16 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
 /// A section longer than the cask is refused here as in the cask file.
 fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result<()> {
     let section_m = file.cask.height_m;
-    match swept(sweeps, SweepVariable::Length).and_then(ends) {
-        Some((shortest_m, _)) if shortest_m < section_m => Err(miette::miette!(
-            help = format!(
-                "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {}",
-                file.path.display()
-            ),
-            "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask \
-             is longer than its section"
-        )),
-        _ => Ok(()),
-    }
+    let shortest_m = swept(sweeps, SweepVariable::Length).and_then(ends).map(|(from_m, _)| from_m);
+    let Some(shortest_m) = shortest_m.filter(|from_m| *from_m < section_m) else { return Ok(()) };
+    let path = file.path.display();
+    Err(miette!(
+        help = format!(
+            "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {path}"
+        ),
+        "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask is \
+         longer than its section"
+    ))
 }
 
 /// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
@@ -168,7 +164,7 @@ fn few_enough(request: &StudyRequest, file: &CaskFile) -> miette::Result<()> {
         .collect();
     let longest = request.sweeps.iter().max_by_key(|sweep| sweep.values.len());
     let longest = longest.map_or("", |sweep| name(sweep.variable));
-    Err(miette::miette!(
+    Err(miette!(
         help = format!("take a larger STEP or a shorter range for {longest}, or give --k and --contact"),
         "{} = {predictions} predictions are too many; at most {MOST_PREDICTIONS}",
         product.join(" × ")
