@@ -1,7 +1,6 @@
 //! Whole ways of working and damages that grow to what is accepted: speed, accuracy, failure.
 
 mod drops;
-mod front;
 mod limits;
 mod map;
 mod points;
@@ -38,7 +37,7 @@ pub fn trial(
         progress(as_f64(done) / as_f64(3 * FAMILIES.len()));
         points.extend(tried(&request));
     }
-    front::mark_front(&mut points);
+    points::mark_front(&mut points);
     let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
     let drops = CampaignRequest {
         scenes: request.either(100, 600),
