@@ -204,7 +204,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             ));
         }
     }
-    json.write(|| report::result_json(&analysis.result))?;
+    json.write(|| report::pretty_json(&analysis.result))?;
     if json.is_standard_output() {
         // It holds the JSON alone.
         let _ = write!(anstream::stderr(), "{same}{otherwise}");

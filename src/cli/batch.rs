@@ -94,7 +94,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     })?;
     let out = arguments.out.as_deref().filter(|_| plan.is_whole());
     if let Some((record, out)) = output.record.as_ref().zip(out) {
-        campaign::write(out, &batch, record.lines(), &inputs)?;
+        campaign::write(out, &batch, &record.lines, &inputs)?;
     }
     if !output.is_standard_output {
         print(&batch.table(columns()))?;
@@ -209,8 +209,7 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     let (recording, cask) = (&test.shown, test.cask_shown.as_deref().unwrap_or("FILE"));
     Some(report::printable(&format!(
         "{recording} or its cask file lies in another folder, so that what is wrong with it is not written \
-         here; \
-         `dropcheck analyze {recording} --cask {cask}` says it"
+         here; `dropcheck analyze {recording} --cask {cask}` says it"
     )))
 }
 

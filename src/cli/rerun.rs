@@ -105,7 +105,7 @@ impl EarlierResult {
         }
         let words = self.result["command"].as_array().into_iter().flatten();
         result.command = words.filter_map(|word| word.as_str().map(str::to_owned)).collect();
-        let now: Value = serde_json::from_slice(&report::result_json(result)?).into_diagnostic()?;
+        let now: Value = serde_json::from_slice(&report::pretty_json(&result)?).into_diagnostic()?;
         let mut found = Vec::new();
         compare("", [&self.result, &now], 0.0, &mut found);
         found.retain(|(_, line)| !line.starts_with("analysed:"));

@@ -2,7 +2,6 @@
 //! reason.
 
 mod columns;
-mod compared;
 mod drop_curves;
 mod files;
 mod page;

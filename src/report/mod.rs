@@ -36,7 +36,6 @@ mod scratch;
 mod settings;
 pub(crate) mod table;
 mod template;
-mod tested;
 pub(crate) mod text;
 mod words;
 
@@ -47,7 +46,7 @@ pub use campaign::{
 };
 pub use curves_csv::in_german;
 pub use first_screen::{first_screen, not_strict};
-pub use json::{in_a_line, listing as listing_json, result as result_json};
+pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;
@@ -128,7 +127,7 @@ pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError>
         || rayon::join(|| curves_h5::bytes(analysis), || pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
-    let (result, table) = (json::result(&analysis.result)?, latex::table(&analysis.result));
+    let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));
     let bytes = [page, result, table, curves_csv?, curves_h5?, curves_mcap?];
     let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
     Ok(FILE_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())

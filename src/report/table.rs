@@ -93,11 +93,6 @@ impl TableCell {
         Self { mark, ..words.into().into() }
     }
 
-    /// Words that lead somewhere.
-    pub(crate) fn linked(words: impl Into<Words>, link: String) -> Self {
-        Self { link, ..words.into().into() }
-    }
-
     /// Words in a colour.
     pub(crate) fn toned(style: Style, words: impl Into<Words>) -> Self {
         Self { style: Some(style), ..words.into().into() }

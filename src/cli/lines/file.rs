@@ -92,7 +92,8 @@ pub struct LineRecord {
     path: PathBuf,
     file: File,
     end: u64,
-    lines: LineFiles,
+    /// What is in it.
+    pub lines: LineFiles,
     /// Whether its lines stand by number, each once, and nothing else.
     is_in_order: bool,
 }
@@ -132,11 +133,6 @@ impl LineRecord {
         })?;
         (self.end, self.is_in_order) = (end, is_in_order);
         Ok(())
-    }
-
-    /// What is in it.
-    pub fn lines(&self) -> &LineFiles {
-        &self.lines
     }
 
     /// Writes one line at its end.
@@ -253,13 +249,13 @@ mod tests {
         let mut file = OpenOptions::new().append(true).open(&path).unwrap();
         file.write_all(&line(1, "torn")[..20]).unwrap();
         let mut record = LineRecord::open(&path, true, &[], own).unwrap();
-        assert!(record.lines().line(3).is_some() && record.lines().line(1).is_none());
+        assert!(record.lines.line(3).is_some() && record.lines.line(1).is_none());
         for number in [1, 2, 3] {
             record.put(number, &line(number, "again")).unwrap();
         }
         record.finish().unwrap();
         let expected = [line(0, "first"), line(1, "again"), line(2, "again"), line(3, "again")].concat();
         assert_eq!(std::fs::read(&path).unwrap(), expected);
-        assert_eq!(record.lines().line(2).unwrap()["w"], "again");
+        assert_eq!(record.lines.line(2).unwrap()["w"], "again");
     }
 }

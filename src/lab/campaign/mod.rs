@@ -11,7 +11,6 @@ mod tally;
 
 pub use lines::{SCHEMA, ScenePlace, line, read};
 pub use score::csv;
-pub(super) use score::written;
 pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;

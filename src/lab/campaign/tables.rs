@@ -1,7 +1,6 @@
 //! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
 //! often it says so.
 
-use super::score::written;
 use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread};
 use super::tally::{ClassTable, Tally};
 use crate::data::{ReconstructionRung, Verdict};
@@ -11,6 +10,7 @@ use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument};
 use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
+use crate::report::text::json_word;
 
 /// The whole as Markdown.
 pub fn markdown(tally: &Tally) -> String {
@@ -93,7 +93,7 @@ fn verdicts(scenes: &SceneGroup) -> ChapterPart {
         scenes.count(|s| s.verdict == Some(*verdict) && outcomes.contains(&s.outcome))
     };
     ReportTable::of(&[Verdict::Pass, Verdict::Review, Verdict::Fail])
-        .text("verdict", written)
+        .text("verdict", json_word)
         .number("scenes", |verdict| number(verdict, &SceneOutcome::ALL).to_string())
         .number("share", |verdict| share(number(verdict, &SceneOutcome::ALL), scenes.len()))
         .number("speed and k right or held", |verdict| {
@@ -125,7 +125,8 @@ fn taken_rungs(tally: &Tally) -> ChapterPart {
     let groups = tally.groups(ClassTable::Rungs);
     let mut table = ReportTable::of(&groups).text("scene", |(words, _)| *words);
     for rung in ReconstructionRung::ALL {
-        table = table.number(written(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
+        table =
+            table.number(json_word(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
     }
     table.into()
 }
@@ -135,8 +136,8 @@ fn other_rungs(tally: &Tally) -> ChapterPart {
     let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.k.count() > 0).collect();
     ReportTable::of(&pairs)
         .chosen(|((taken, rung), _)| taken == rung)
-        .text("taken", |((taken, _), _)| written(taken))
-        .text("rung", |((_, rung), _)| written(rung))
+        .text("taken", |((taken, _), _)| json_word(taken))
+        .text("rung", |((_, rung), _)| json_word(rung))
         .number("drops", |(_, said)| said.k.count().to_string())
         .number("speed: 95th, %", |(_, said)| said.speed.error(0.95, 2))
         .number("half-width, %", |(_, said)| said.speed.half_width(2))

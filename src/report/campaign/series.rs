@@ -18,9 +18,7 @@ pub struct PredictedCurve {
     pub model: BodyModel,
     /// The contact law.
     pub contact: Contact,
-    /// Coefficient of restitution.
-    pub k: f64,
-    /// Angle, degrees, and speed, m/s.
+    /// Of one k: angle, degrees, and speed, m/s.
     pub points: Vec<(f64, f64)>,
 }
 

@@ -22,8 +22,7 @@ const GAP: f64 = 26.0;
 
 /// Height of a panel in a picture, or in a part of it, this wide.
 pub(super) fn height(panel: &Panel, width: f64) -> f64 {
-    let head = head(panel, width);
-    if panel.height == 0 { head } else { head + f64::from(panel.height) + bottom(panel) + GAP }
+    head(panel, width) + f64::from(panel.height) + bottom(panel) + GAP
 }
 
 /// Height of what stands above the axes.
@@ -69,9 +68,6 @@ struct PlotFrame<'a> {
 /// Draws `panel` in a picture, or in a part of it, this wide.
 pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
     legend::draw(svg, panel, width);
-    if panel.height == 0 {
-        return;
-    }
     let (left, right) = panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()));
     let (x, y) = (panel.x_range(), panel.y_range());
     let frame = PlotFrame { panel, x, y, width: width - left - right, height: panel.height.into() };
@@ -90,12 +86,8 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
         let size = "font-size=\"26\"";
         svg.words(&panel.x.label, (frame.width / 2.0, frame.height + BOTTOM - 18.0), Anchor::Middle, size);
         svg.from((16.0 - left, frame.height / 2.0), |svg| {
-            svg.words(
-                &panel.y.label,
-                (0.0, 0.0),
-                Anchor::Middle,
-                &format!("{size} transform=\"rotate(270)\""),
-            );
+            let turned = format!("{size} transform=\"rotate(270)\"");
+            svg.words(&panel.y.label, (0.0, 0.0), Anchor::Middle, &turned);
         });
     });
 }
@@ -118,15 +110,11 @@ impl PlotFrame<'_> {
         let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
         let up = |value: f64| ((1.0 - along_y(value)) * height).round();
-        for (ticks, opacity) in [(&x.fine, 0.10), (&x.bold, 0.28)] {
-            for at in ticks.iter().map(|v| across(*v)) {
-                svg.line(&line(opacity, vec![(at, 0.0), (at, height)]));
-            }
-        }
-        for (ticks, opacity) in [(&y.fine, 0.10), (&y.bold, 0.28)] {
-            for at in ticks.iter().map(|v| up(*v)) {
-                svg.line(&line(opacity, vec![(0.0, at), (width, at)]));
-            }
+        let upright = |value: f64| vec![(across(value), 0.0), (across(value), height)];
+        let level = |value: f64| vec![(0.0, up(value)), (width, up(value))];
+        for (ticks, ends) in [(&x, &upright as &dyn Fn(f64) -> Vec<(f64, f64)>), (&y, &level)] {
+            ticks.fine.iter().for_each(|value| svg.line(&line(0.10, ends(*value))));
+            ticks.bold.iter().for_each(|value| svg.line(&line(0.28, ends(*value))));
         }
         svg.line(&line(1.0, vec![(0.0, 0.0), (0.0, height), (width, height)]));
         for value in x.bold.iter().filter(|_| !panel.x.label.is_empty()) {

@@ -97,12 +97,11 @@ fn spoken(panel: &Panel) -> Vec<String> {
     marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
 }
 
-/// Panels in rows of `columns`, those without axes in rows of their own, each row as wide as the picture; and
-/// how high the drawing is.
+/// Panels in rows of `columns`, each row as wide as the picture; and how high the drawing is.
 fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
-        match rows.last_mut().filter(|row| row.len() < columns && row[0].height > 0 && panel.height > 0) {
+        match rows.last_mut().filter(|row| row.len() < columns) {
             Some(row) => row.push(panel),
             None => rows.push(vec![panel]),
         }

@@ -279,7 +279,7 @@ pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) x: PanelAxis,
     pub(crate) y: PanelAxis,
-    /// Height in drawing units, without head and axis; 0 is a legend without axes.
+    /// Height in drawing units, without head and axis.
     pub(crate) height: u32,
     /// Room for the words of rows at the left and the right; `None`: for ticks.
     pub(crate) sides: Option<(u32, u32)>,
@@ -329,7 +329,7 @@ impl Panel {
 
     /// Whether there is anything to draw.
     pub(super) fn has_points(&self) -> bool {
-        self.height == 0 || self.drawn().next().is_some()
+        self.drawn().next().is_some()
     }
 
     /// Every point that can be drawn.

@@ -14,8 +14,7 @@ pub(super) fn ladders(study: &Study) -> Chapter {
     let tolerance = plain(LADDER_TOLERANCE_PERCENT, 3);
     let lead = format!(
         "Slap-down speed by each model, the simplest first; each adds one thing to the one before it. One \
-         suffices where no richer one \
-         moves the speed by more than {tolerance} %."
+         suffices where no richer one moves the speed by more than {tolerance} %."
     );
     let lead = ChapterPart::lead(lead).only(Medium::Page);
     match &study.ladders[..] {

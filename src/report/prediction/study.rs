@@ -3,9 +3,9 @@
 use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
 use super::super::medium::Medium;
 use super::super::pictures::study_names;
+use super::super::record::tested;
 use super::super::rounding::{MISSING, plain};
 use super::super::table::ReportTable;
-use super::super::tested::tested;
 use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
 use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
@@ -39,10 +39,8 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             heading: format!("{name}: slap-down prediction"),
             about: file.path.display().to_string(),
             footer: "The drop angle is the inclination of the cask's axis above the horizontal at first \
-                     contact. The first end is the low one, \
-                     the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on \
-                     slap-down impacts of packagings \
-                     (PATRAM).",
+                     contact. The first end is the low one, the second end slaps down. Vertical velocities \
+                     are positive up. [P]: the BAM paper on slap-down impacts of packagings (PATRAM).",
             style: include_str!("../prediction.css"),
             ..Frame::default()
         },
