@@ -10,7 +10,6 @@ pub mod data;
 mod drawn;
 pub mod in_memory;
 pub mod methods;
-mod plan;
 pub mod report;
 pub mod scene_file;
 pub mod synth;

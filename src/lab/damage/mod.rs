@@ -8,8 +8,7 @@ mod stated;
 mod wish;
 
 use super::data::{BendingMode, SyntheticRecording};
-use super::drawn::DrawnDrop;
-use super::plan::DropPlan;
+use super::drawn::{DrawnDrop, DropPlan};
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
