@@ -134,11 +134,10 @@ fn tabled(
 }
 
 /// The words for kinds in one order and each once, so that shards of the same campaign say the same.
-pub fn words(kinds: &[&'static str]) -> Vec<String> {
-    let mut words: Vec<String> = kinds.iter().map(|word| (*word).to_owned()).collect();
-    words.sort();
-    words.dedup();
-    words
+pub fn words(mut kinds: Vec<String>) -> Vec<String> {
+    kinds.sort();
+    kinds.dedup();
+    kinds
 }
 
 #[cfg(test)]
@@ -147,6 +146,6 @@ mod tests {
 
     #[test]
     fn kinds_are_said_in_one_order() {
-        assert_eq!(words(&["skew", "hum", "skew"]), ["hum", "skew"]);
+        assert_eq!(words(["skew", "hum", "skew"].map(str::to_owned).into()), ["hum", "skew"]);
     }
 }

@@ -8,6 +8,7 @@ use crate::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
 use crate::lab::report::SyntheticFormat;
 use crate::{lab, report};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -31,9 +32,9 @@ pub struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
-    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind,
-        requires = "campaign")]
-    kinds: Vec<&'static str>,
+    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kinds(),
+        hide_possible_values = true, requires = "campaign")]
+    kinds: Vec<String>,
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
     exact: bool,
@@ -49,18 +50,15 @@ pub struct Arguments {
     parts: campaign::Parts,
 }
 
-fn kind(word: &str) -> Result<&'static str, String> {
-    let kinds = lab::campaign::kinds().map(|kind| kind.name);
-    let words: Vec<&str> = lab::campaign::WORDS.into_iter().chain(kinds).collect();
-    let known = words.iter().copied().find(|known| *known == word);
-    known.ok_or_else(|| format!("no kind of drop; there are {}", words.join(", ")))
+fn kinds() -> PossibleValuesParser {
+    lab::campaign::WORDS.into_iter().chain(lab::campaign::kinds().map(|kind| kind.name)).into()
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, out, Some(scenes)) => {
-            let kinds = campaign::words(&arguments.kinds);
+            let kinds = campaign::words(arguments.kinds.clone());
             let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
             campaign::run(&request, &arguments.parts, out.as_deref(), arguments.into.as_deref())
         }
