@@ -1,16 +1,17 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
 use super::FILE_NAMES;
-use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
+use super::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
+    TableShape, Tone, Words,
+};
 use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
-use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, TOLD, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
-use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{
     Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
     verdict_sentence, verdict_style, verdict_word, yes,

@@ -1,10 +1,8 @@
 //! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
 
-use super::document::{Chapter, ChapterPart, PartContent};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::settings::to_state;
-use super::table::{ReportTable, TableCell};
 use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 

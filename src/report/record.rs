@@ -1,10 +1,8 @@
 //! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to
 //! sign.
 
-use super::document::{Chapter, ChapterPart, Fact, PartContent};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape};
 use super::rounding::{MISSING, interval, optional_fixed, plain};
-use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, json_word};
 use super::words::contact_words;
 use crate::data::keys::{LIMITS, OBSERVED};

@@ -7,12 +7,13 @@ use super::summary::{Oddity, few, oddities, tag};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES};
 use crate::data::{Estimate, Program, STANDARD_GRAVITY_M_S2, Verdict};
 use crate::numerics::pooled::e_n;
-use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
+use crate::report::document::{
+    Chapter, ChapterPart, Frame, PartContent, ReportDocument, ReportTable, TableCell, Tone,
+};
 use crate::report::json::in_a_line;
 use crate::report::rounding::{
     MISSING, fixed, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
-use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::Style;
 use serde_json::json;
 use std::collections::{BTreeSet, HashMap};

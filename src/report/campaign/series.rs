@@ -112,9 +112,8 @@ impl<'a> DropSeries<'a> {
         for (number, series) in series.iter_mut().enumerate() {
             series.pools = pools(&series.rows);
             series.set_places();
-            series.k = ends(
-                series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
-            );
+            let sound = series.rows.iter().filter(|row| is_usable(row) && !series.place(row).is_out);
+            series.k = ends(sound.filter_map(|row| Some(row.k?.value)));
             if let (Some(k), Some([from, to]), 0..MOST_SERIES) =
                 (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)), number)
             {
@@ -123,11 +122,6 @@ impl<'a> DropSeries<'a> {
             }
         }
         series
-    }
-
-    /// Those whose numbers may be used.
-    pub(super) fn usable(&self) -> impl Iterator<Item = &'a BatchRow> {
-        self.rows.iter().copied().filter(|row| is_usable(row))
     }
 
     /// The places of all rows by their numbers.
@@ -141,11 +135,6 @@ impl<'a> DropSeries<'a> {
     /// The place of a row among its repeats.
     pub(super) fn place(&self, row: &BatchRow) -> RowPlace {
         self.places.get(&row.at.number).copied().unwrap_or_default()
-    }
-
-    /// Whether a row is an outlier among its repeats in any quantity.
-    pub(super) fn falls_out(&self, row: &BatchRow) -> bool {
-        self.place(row).is_out
     }
 
     /// Gives each row its place.

@@ -3,9 +3,8 @@
 use super::series::DropSeries;
 use super::summary::{MOST_LINES, few, oddities};
 use super::{Batch, BatchRow};
-use crate::report::document::{Chapter, ChapterPart, ReportDocument};
+use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable, TableShape};
 use crate::report::rounding::{MISSING, interval, percent, plain};
-use crate::report::table::{ReportTable, TableShape};
 use crate::report::text::{tail, verdict_word};
 use std::path::Path;
 

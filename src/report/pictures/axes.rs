@@ -105,7 +105,7 @@ impl PlotFrame<'_> {
         let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
         let most = if width < WIDTH / 2.0 { 8 } else { 14 };
         // A date takes the room of two or three numbers.
-        let x = ticks(&panel.x, &self.x, if panel.x.has_dates() { most / 3 + 1 } else { most });
+        let x = ticks(&panel.x, &self.x, if panel.x.scale == AxisScale::Days { most / 3 + 1 } else { most });
         let y = ticks(&panel.y, &self.y, 8);
         let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
@@ -233,7 +233,8 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
             let step =
                 [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= least * 0.999);
             // A date has no parts.
-            let step = if axis.has_dates() { least.ceil().max(1.0) } else { step.unwrap_or(least) };
+            let step =
+                if axis.scale == AxisScale::Days { least.ceil().max(1.0) } else { step.unwrap_or(least) };
             Ticks { bold: steps(step).into_iter().map(|i| f64::from(i) * step).collect(), fine: Vec::new() }
         }
         AxisScale::Logarithmic => {
@@ -250,10 +251,10 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
 
 /// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic; a date's day.
 fn tick(value: f64, axis: &PanelAxis) -> String {
-    if axis.has_dates() {
+    if axis.scale == AxisScale::Days {
         return date_of_day(value).unwrap_or_default();
     }
-    if axis.is_logarithmic() && !(1e-2..1e5).contains(&value) {
+    if axis.scale == AxisScale::Logarithmic && !(1e-2..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
     let rounded = (value * 1e6).round() / 1e6;

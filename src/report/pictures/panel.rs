@@ -188,7 +188,7 @@ pub(crate) struct Mark {
 }
 
 /// Words at either side of a row.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) struct RowWords {
     pub(crate) left: String,
     pub(crate) right: String,
@@ -196,7 +196,7 @@ pub(crate) struct RowWords {
 }
 
 /// How values lie on an axis.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) enum AxisScale {
     #[default]
     Linear,
@@ -232,16 +232,6 @@ impl PanelAxis {
         Self { range, ..self }
     }
 
-    /// Whether it has powers of ten.
-    pub(super) fn is_logarithmic(&self) -> bool {
-        matches!(self.scale, AxisScale::Logarithmic)
-    }
-
-    /// Whether its numbers are dates.
-    pub(super) fn has_dates(&self) -> bool {
-        matches!(self.scale, AxisScale::Days)
-    }
-
     /// The value as a place along the axis.
     pub(super) fn place(&self, value: f64) -> f64 {
         /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too,
@@ -250,12 +240,12 @@ impl PanelAxis {
         fn power(value: f64) -> f64 {
             value.log10()
         }
-        if self.is_logarithmic() { power(value) } else { value }
+        if self.scale == AxisScale::Logarithmic { power(value) } else { value }
     }
 
     /// Whether it has a place for the value.
     fn holds(&self, value: f64) -> bool {
-        value.is_finite() && (value > 0.0 || !self.is_logarithmic())
+        value.is_finite() && (value > 0.0 || self.scale != AxisScale::Logarithmic)
     }
 
     /// Smallest and largest of what it shows, with some air around it.
@@ -265,7 +255,7 @@ impl PanelAxis {
         }
         let (low, high) =
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        if self.is_logarithmic() {
+        if self.scale == AxisScale::Logarithmic {
             return low..high.max(low * 10.0) * 10f64.powf(air);
         }
         let span = if high > low { high - low } else { high.abs().max(1.0) };

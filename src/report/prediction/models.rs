@@ -1,9 +1,7 @@
 //! The ladder of models to a chapter.
 
-use super::super::document::{Chapter, ChapterPart};
-use super::super::medium::{Medium, Words};
+use super::super::document::{Chapter, ChapterPart, Medium, ReportTable, TableShape, Words};
 use super::super::rounding::{optional_fixed, percent, plain};
-use super::super::table::{ReportTable, TableShape};
 use super::super::text::capital;
 use super::super::words::{MOST_ON_PAGE, MOST_ROWS, OTHERS, case_words, contact_words, degrees, rung_short};
 

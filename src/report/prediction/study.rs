@@ -1,11 +1,11 @@
 //! A study to the document that the terminal and `prediction.html` show.
 
-use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
-use super::super::medium::Medium;
+use super::super::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable,
+};
 use super::super::pictures::study_names;
 use super::super::record::tested;
 use super::super::rounding::{MISSING, plain};
-use super::super::table::ReportTable;
 use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
 use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
