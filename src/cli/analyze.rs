@@ -76,11 +76,6 @@ fn corrections() -> PossibleValuesParser {
 }
 
 impl SwitchedOff {
-    /// Those that an earlier command line named.
-    fn of_record(record: &EarlierResult) -> Self {
-        Self { without: record.switched_off().map(str::to_owned).collect() }
-    }
-
     /// Whether the correction of this key is among them.
     fn names(&self, key: &str) -> bool {
         self.without.iter().any(|without| without == key)
@@ -156,7 +151,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if folder.is_some() {
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
-    let repeated = earlier.as_ref().map(SwitchedOff::of_record);
+    let repeated = earlier.as_ref().map(|earlier| SwitchedOff { without: earlier.switched_off() });
     let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
     switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();

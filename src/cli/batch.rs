@@ -106,10 +106,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 /// Where the files are.
 fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
     match &arguments.out {
-        Some(out) if plan.is_whole() => {
-            let page = out.join("campaign.html").display().to_string();
-            Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
-        }
+        Some(out) if plan.is_whole() => tell_page(out),
         _ if !plan.is_whole() => Ok(print(&format!(
             "\nShard {}/{}: {} of {} recordings; `dropcheck merge` makes the campaign of all shards.\n",
             plan.shard.0,
@@ -119,6 +116,11 @@ fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
         ))?),
         _ => Ok(()),
     }
+}
+
+fn tell_page(out: &Path) -> miette::Result<()> {
+    let page = out.join("campaign.html").display().to_string();
+    Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
 }
 
 /// The file that holds the lines: that of `--jsonl`, else one in `--out`.
@@ -268,7 +270,6 @@ pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     })?;
     campaign::write(out, &batch, &lines, &inputs)?;
     print(&batch.table(columns()))?;
-    let page = out.join("campaign.html").display().to_string();
-    print(&format!("\nCampaign: {}\n", report::printable(&page)))?;
+    tell_page(out)?;
     Ok(campaign::ending(&batch))
 }

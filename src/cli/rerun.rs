@@ -86,9 +86,9 @@ impl EarlierResult {
     }
 
     /// The corrections that were switched off on its command line, by their keys.
-    pub fn switched_off(&self) -> impl Iterator<Item = &str> {
+    pub fn switched_off(&self) -> Vec<String> {
         let made = self.result["settings"]["corrections"].as_object().into_iter().flatten();
-        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.as_str())
+        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.clone()).collect()
     }
 
     /// Gives a result that was made again the words of the first, where it is of the same recording. Says

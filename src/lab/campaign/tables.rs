@@ -7,9 +7,8 @@ use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{Campaign, CampaignRow, Stated};
 use crate::numerics::as_f64;
 use crate::report::as_markdown;
-use crate::report::document::{Chapter, ChapterPart, ReportDocument};
+use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable};
 use crate::report::rounding::optional_fixed;
-use crate::report::table::ReportTable;
 use crate::report::text::json_word;
 
 /// The whole as Markdown.

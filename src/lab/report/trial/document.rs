@@ -5,11 +5,12 @@ use crate::data::Program;
 use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
-use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
-use crate::report::medium::{Medium, Words};
+use crate::report::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
+    TableShape, Tone, Words,
+};
 use crate::report::record;
 use crate::report::rounding::{optional_fixed, plain, significant};
-use crate::report::table::{ReportTable, TableCell, TableShape};
 use crate::report::text::Style;
 
 /// Errors from here on are words: the method diverged.
