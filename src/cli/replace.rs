@@ -164,8 +164,8 @@ fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(
     sync_folder(parent).map_err(at(parent))
 }
 
-/// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false` where
-/// nothing was changed and another way must be found.
+/// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false`
+/// where nothing was changed and another way must be found.
 fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<bool> {
     let Some(others) = others(folder, files)? else { return Ok(false) };
     let Ok(staging) = staging_in(parent) else { return Ok(false) };
