@@ -99,8 +99,8 @@ fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<Pl
 fn check(heads: &[String], path: &Path) -> miette::Result<()> {
     let name = path.display();
     if !heads.iter().any(|head| head == RECORDING) {
-        let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck init \
-                    FOLDER` writes one";
+        let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck \
+                    init FOLDER` writes one";
         return Err(miette!(help = mend, "{name}, line 1: there is no column `recording`"));
     }
     let mut before = HashSet::new();

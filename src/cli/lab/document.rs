@@ -20,17 +20,11 @@ impl MarkedDocument {
             .map_err(|source| miette!("{} cannot be read: {source}", path.display()))?;
         let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {name}: {word} -->"));
         let found = text.find(&begin).map(|at| at + begin.len()).zip(text.find(&end));
-        match found.filter(|(begin, end)| begin <= end) {
-            Some((begin, end)) => Ok(Self {
-                path: path.to_owned(),
-                before: text[..begin].to_owned(),
-                behind: text[end..].to_owned(),
-            }),
-            None => {
-                let mend = format!("write the lines {begin} and {end} where the tables are to stand");
-                Err(miette!(help = mend, "{} does not say where the tables go", path.display()))
-            }
-        }
+        let Some((begin, end)) = found.filter(|(begin, end)| begin <= end) else {
+            let mend = format!("write the lines {begin} and {end} where the tables are to stand");
+            return Err(miette!(help = mend, "{} does not say where the tables go", path.display()));
+        };
+        Ok(Self { path: path.to_owned(), before: text[..begin].to_owned(), behind: text[end..].to_owned() })
     }
 
     /// Writes the words to their place.
