@@ -175,7 +175,7 @@ fn report_files(bencher: Bencher, samples: usize) {
 fn report_table_and_json(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher.counter(items(samples)).bench(|| {
-        (report::table(&m.analysis, 80), report::result_json(&m.analysis.result).expect("a result"))
+        (report::table(&m.analysis, 80), report::pretty_json(&m.analysis.result).expect("a result"))
     });
 }
 

@@ -72,7 +72,7 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 impl Analysed {
     /// `result.json`.
     fn json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let json = apart(py, || Ok(report::result_json(&self.0.result)?))?;
+        let json = apart(py, || Ok(report::pretty_json(&self.0.result)?))?;
         Ok(PyBytes::new(py, &json))
     }
 

@@ -15,16 +15,8 @@ use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-Examples:
-  dropcheck analyze drop.mcap --cask cask.toml
-  dropcheck analyze drop.csv --cask cask.toml --out report
-  dropcheck analyze drop.h5 --cask cask.toml --json - | jq .k
-  dropcheck analyze drop.mcap --cask cask.toml --without zero_shift,hum
-  dropcheck analyze drop.mcap --from report/result.json";
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("help/analyze.txt"))]
 #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
 pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
@@ -84,11 +76,6 @@ fn corrections() -> PossibleValuesParser {
 }
 
 impl SwitchedOff {
-    /// Those that an earlier command line named.
-    fn of_record(record: &EarlierResult) -> Self {
-        Self { without: record.switched_off().map(str::to_owned).collect() }
-    }
-
     /// Whether the correction of this key is among them.
     fn names(&self, key: &str) -> bool {
         self.without.iter().any(|without| without == key)
@@ -164,7 +151,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if folder.is_some() {
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
-    let repeated = earlier.as_ref().map(SwitchedOff::of_record);
+    let repeated = earlier.as_ref().map(|earlier| SwitchedOff { without: earlier.switched_off() });
     let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
     switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
@@ -212,7 +199,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             ));
         }
     }
-    json.write(|| report::result_json(&analysis.result))?;
+    json.write(|| report::pretty_json(&analysis.result))?;
     if json.is_standard_output() {
         // It holds the JSON alone.
         let _ = write!(anstream::stderr(), "{same}{otherwise}");

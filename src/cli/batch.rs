@@ -23,26 +23,15 @@ use crate::ingest::bytes_of;
 use crate::report::Batch;
 use crate::{ingest, report};
 use clap::Args;
+use miette::miette;
 use plan::CampaignPlan;
 use planned::PlannedTest;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-A NAME.toml beside NAME.mcap goes before --cask. A manifest is a CSV with the columns recording, cask and id;
-columns named like a key of the cask file (drop.angle_deg, channel.A1.polarity) override it, others are \
-carried along.
-
-Examples:
-  dropcheck batch tests/*.mcap --cask cask.toml --out campaign
-  dropcheck init tests > runs.csv
-  dropcheck batch --manifest runs.csv --out campaign --resume
-  dropcheck batch --manifest runs.csv --shard 0/3 --jsonl shard-0.jsonl
-  dropcheck merge shard-*.jsonl --out campaign";
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("help/batch.txt"))]
 pub struct Arguments {
     /// Recordings, folders of them, and patterns; each counted once
     #[arg(required_unless_present = "manifest", conflicts_with = "manifest", value_name = "PATHS")]
@@ -105,7 +94,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     })?;
     let out = arguments.out.as_deref().filter(|_| plan.is_whole());
     if let Some((record, out)) = output.record.as_ref().zip(out) {
-        campaign::write(out, &batch, record.lines(), &inputs)?;
+        campaign::write(out, &batch, &record.lines, &inputs)?;
     }
     if !output.is_standard_output {
         print(&batch.table(columns()))?;
@@ -117,10 +106,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 /// Where the files are.
 fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
     match &arguments.out {
-        Some(out) if plan.is_whole() => {
-            let page = out.join("campaign.html").display().to_string();
-            Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
-        }
+        Some(out) if plan.is_whole() => tell_page(out),
         _ if !plan.is_whole() => Ok(print(&format!(
             "\nShard {}/{}: {} of {} recordings; `dropcheck merge` makes the campaign of all shards.\n",
             plan.shard.0,
@@ -130,6 +116,11 @@ fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
         ))?),
         _ => Ok(()),
     }
+}
+
+fn tell_page(out: &Path) -> miette::Result<()> {
+    let page = out.join("campaign.html").display().to_string();
+    Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
 }
 
 /// The file that holds the lines: that of `--jsonl`, else one in `--out`.
@@ -143,14 +134,12 @@ fn open_record(
         (Some(path), _) => path,
         (None, Some(out)) => {
             let made = std::fs::create_dir_all(out);
-            made.map_err(|source| miette::miette!("{} cannot be made: {source}", out.display()))?;
+            made.map_err(|source| miette!("{} cannot be made: {source}", out.display()))?;
             out.join(plan.record_name())
         }
         (None, None) if arguments.resume => {
-            return Err(miette::miette!(
-                help = "name the --out or the --jsonl FILE of the run that is to go on",
-                "--resume does not know what is done"
-            ));
+            let mend = "name the --out or the --jsonl FILE of the run that is to go on";
+            return Err(miette!(help = mend, "--resume does not know what is done"));
         }
         (None, None) => return Ok(None),
     };
@@ -197,9 +186,8 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
         let curves = report::in_a_line(&report::drop_curves(&analysis))?;
         Ok(format!("\"curves\":{curves},{}", &report::in_a_line(&analysis.result)?[1..]))
     }));
-    let made = made.unwrap_or_else(|_| {
-        Err(miette::miette!("{}: the program has a fault here; please report it", test.shown))
-    });
+    let fault = |_| Err(miette!("{}: the program has a fault here; please report it", test.shown));
+    let made = made.unwrap_or_else(fault);
     match made {
         Ok(result) => format!("{head}{result}\n"),
         Err(complaint) => {
@@ -223,8 +211,7 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     let (recording, cask) = (&test.shown, test.cask_shown.as_deref().unwrap_or("FILE"));
     Some(report::printable(&format!(
         "{recording} or its cask file lies in another folder, so that what is wrong with it is not written \
-         here; \
-         `dropcheck analyze {recording} --cask {cask}` says it"
+         here; `dropcheck analyze {recording} --cask {cask}` says it"
     )))
 }
 
@@ -232,7 +219,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     let Some(cask) = &test.cask else {
         // Without its name all recordings that have none say the same.
         let mend = "put NAME.toml beside NAME.mcap, or name one by --cask or in the manifest";
-        return Err(miette::miette!(help = mend, "there is no cask file for the recording"));
+        return Err(miette!(help = mend, "there is no cask file for the recording"));
     };
     let inputs = [test.recording.as_path(), cask];
     let folder = arguments
@@ -283,7 +270,6 @@ pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     })?;
     campaign::write(out, &batch, &lines, &inputs)?;
     print(&batch.table(columns()))?;
-    let page = out.join("campaign.html").display().to_string();
-    print(&format!("\nCampaign: {}\n", report::printable(&page)))?;
+    tell_page(out)?;
     Ok(campaign::ending(&batch))
 }

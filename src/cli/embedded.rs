@@ -55,7 +55,7 @@ pub fn prediction(words: &[OsString]) -> miette::Result<Vec<u8>> {
 /// # Errors
 /// What the command complains of.
 pub fn listing(recording: &Path) -> miette::Result<Vec<u8>> {
-    Ok(report::listing_json(&ingest::list(recording, &|_| ())?)?)
+    Ok(report::pretty_json(&ingest::list(recording, &|_| ())?)?)
 }
 
 /// Writes what `synth` makes of these words: recording, cask file, truth.

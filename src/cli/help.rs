@@ -8,11 +8,7 @@ use miette::{IntoDiagnostic, WrapErr};
 use std::path::PathBuf;
 
 #[derive(Args)]
-#[command(after_help = "\
-Examples:
-  dropcheck completions bash > ~/.local/share/bash-completion/completions/dropcheck
-  dropcheck completions fish > ~/.config/fish/completions/dropcheck.fish
-  dropcheck completions powershell >> $PROFILE")]
+#[command(after_help = include_str!("help/completions.txt"))]
 pub struct CompletionArguments {
     /// The shell
     shell: Shell,

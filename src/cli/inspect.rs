@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
-    json.write(|| report::listing_json(&listing))?;
+    json.write(|| report::pretty_json(&listing))?;
     if !json.is_standard_output() {
         print(&report::listing_table(&listing, columns()))?;
     }

@@ -20,22 +20,14 @@ impl Bounds {
 
 /// Limits from "2GB", "1.5 GiB", "500MB"; thousands and 1024 by the unit's own definition.
 fn limits(text: &str) -> Result<Limits, String> {
-    const UNITS: [(&str, f64); 9] = [
-        ("kib", 1024.0),
-        ("mib", 1_048_576.0),
-        ("gib", 1_073_741_824.0),
-        ("tib", 1_099_511_627_776.0),
-        ("kb", 1e3),
-        ("mb", 1e6),
-        ("gb", 1e9),
-        ("tb", 1e12),
-        ("b", 1.0),
-    ];
+    /// Each larger than the one before by a thousand, or by 1024.
+    const UNITS: [(&str, f64); 2] = [("b kb mb gb tb", 1000.0), ("b kib mib gib tib", 1024.0)];
     let lower = text.trim().to_lowercase().replace(',', ".");
-    let (number, factor) = UNITS
-        .iter()
-        .find_map(|(unit, factor)| lower.strip_suffix(unit).map(|number| (number, *factor)))
-        .ok_or_else(|| "a size needs its unit, such as 8GB or 500MB".to_owned())?;
+    let number = lower.trim_end_matches(char::is_alphabetic);
+    let unit = &lower[number.len()..];
+    let place = |units: &str| units.split(' ').zip(0..).find(|(own, _)| *own == unit).map(|(_, place)| place);
+    let factor = UNITS.iter().find_map(|(units, factor)| Some(factor.powi(place(units)?)));
+    let factor = factor.ok_or_else(|| "a size needs its unit, such as 8GB or 500MB".to_owned())?;
     let number: f64 = number.trim().parse().map_err(|_| "no number stands before the unit".to_owned())?;
     let bytes = number * factor;
     #[allow(clippy::cast_precision_loss, reason = "a small constant")]

@@ -30,19 +30,10 @@ use crate::data::{Program, Verdict};
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 
+/// Without the commands of the laboratory where there is none.
 fn after_help() -> String {
-    let synth = if cfg!(feature = "lab") { "\n  dropcheck synth scene.toml --out drop.mcap" } else { "" };
-    format!(
-        "\
-Examples:
-  dropcheck inspect drop.mcap
-  dropcheck init drop.mcap > cask.toml
-  dropcheck analyze drop.mcap --cask cask.toml --out report
-  dropcheck predict --cask cask.toml --sweep 5:45:5{synth}
-
-Exit status: 0 done, nothing speaks against the result; 1 done, a person should
-look at the data's quality or the comparison; 2 not done, one message says why."
-    )
+    let lines = include_str!("help/main.txt").split_inclusive('\n');
+    lines.filter(|line| cfg!(feature = "lab") || !line.contains("dropcheck synth")).collect()
 }
 
 /// "0.2.0 (0123abc)": the commit as far as the build was told.

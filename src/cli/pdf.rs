@@ -8,16 +8,8 @@ use std::time::{Duration, Instant};
 pub const NAME: &str = "report.pdf";
 
 /// What the browsers are called that print without a window, in the order in which they are tried.
-const BROWSERS: [&str; 8] = [
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-    "chrome",
-    "microsoft-edge",
-    "microsoft-edge-stable",
-    "msedge",
-];
+const BROWSERS: &str = "chromium chromium-browser google-chrome google-chrome-stable chrome microsoft-edge \
+                        microsoft-edge-stable msedge";
 
 /// Where they are installed without standing on the path.
 const PLACES: [&str; 5] = [
@@ -57,7 +49,7 @@ pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {
 fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let on_path = std::env::split_paths(&path).flat_map(|folder| {
-        BROWSERS.map(|name| folder.join(name).with_extension(std::env::consts::EXE_EXTENSION))
+        BROWSERS.split(' ').map(move |name| folder.join(name).with_extension(std::env::consts::EXE_EXTENSION))
     });
     on_path.chain(PLACES.map(PathBuf::from)).find(|browser| browser.is_file())
 }

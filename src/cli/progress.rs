@@ -23,11 +23,7 @@ pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     let in_log = !std::io::stderr().is_terminal();
     let told = AtomicU64::new(0);
     let done = work(&|fraction: f64| {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "cut to 0 to 1000 before the cast"
-        )]
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 1000")]
         let parts = (fraction.clamp(0.0, 1.0) * f64::from(PARTS)) as u64;
         bar.set_position(parts);
         let tenth = 10 * parts / u64::from(PARTS);
@@ -66,7 +62,7 @@ impl CountedProgress {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
         if !std::io::stderr().is_terminal() && (done == all || self.told.elapsed() >= EACH) {
             self.told = Instant::now();
-            let left = HumanDuration(self.bar.elapsed().div_f64(as_f64(done)).mul_f64(as_f64(all - done)));
+            let left = HumanDuration(self.bar.eta());
             // There is no one left to tell where standard error is closed.
             let _ = writeln!(anstream::stderr(), "{done} of {all}, {left} left");
         }
@@ -74,9 +70,4 @@ impl CountedProgress {
             self.bar.finish_and_clear();
         }
     }
-}
-
-#[allow(clippy::cast_precision_loss, reason = "counts of recordings")]
-fn as_f64(count: u64) -> f64 {
-    count as f64
 }

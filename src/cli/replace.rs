@@ -43,7 +43,7 @@ pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Sto
         }
         Ok(_) => turn.clear_stale(folder, files),
     }
-    if exchange(parent, folder, files).map_err(at(folder))? == Exchanged::Yes {
+    if exchange(parent, folder, files).map_err(at(folder))? {
         return Ok(());
     }
     move_one_by_one(folder, files)
@@ -164,29 +164,23 @@ fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(
     sync_folder(parent).map_err(at(parent))
 }
 
-#[derive(PartialEq)]
-enum Exchanged {
-    Yes,
-    /// Nothing was changed; another way must be found.
-    No,
-}
-
-/// Exchanges `folder` for a complete one that holds its other files too, under names of their own.
-fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Exchanged> {
-    let Some(others) = others(folder, files)? else { return Ok(Exchanged::No) };
-    let Ok(staging) = staging_in(parent) else { return Ok(Exchanged::No) };
+/// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false`
+/// where nothing was changed and another way must be found.
+fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<bool> {
+    let Some(others) = others(folder, files)? else { return Ok(false) };
+    let Ok(staging) = staging_in(parent) else { return Ok(false) };
     if !take_over_rights(folder, staging.path()) {
-        return Ok(Exchanged::No);
+        return Ok(false);
     }
     fill(staging.path(), folder, files).map_err(|stopped| stopped.source)?;
     for name in others {
         if fs::hard_link(folder.join(&name), staging.path().join(&name)).is_err() {
-            return Ok(Exchanged::No);
+            return Ok(false);
         }
     }
     sync_folder(staging.path())?;
     if exchange_names(staging.path(), folder).is_err() {
-        return Ok(Exchanged::No);
+        return Ok(false);
     }
     sync_folder(parent)?;
     // What somebody put into the folder in the meantime goes back to it.
@@ -200,7 +194,7 @@ fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Re
         // It holds what cannot be put back: it stays where a person can find it.
         let _ = staging.keep();
     }
-    Ok(Exchanged::Yes)
+    Ok(true)
 }
 
 /// Names in `folder` that are not among `files`; `None` where it is no plain folder of a report.

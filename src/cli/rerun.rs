@@ -4,7 +4,7 @@ use super::Ending;
 use crate::data::{CaskFile, DropResult, Program, shortened};
 use crate::ingest::bytes_of;
 use crate::{ingest, report};
-use miette::{IntoDiagnostic, WrapErr};
+use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::path::Path;
@@ -74,10 +74,8 @@ impl EarlierResult {
         if result["schema"] == "dropcheck.result/1" && result["cask_text"].is_string() {
             return Ok(Self { result, name });
         }
-        Err(miette::miette!(
-            help = "name a result.json that `analyze --json` or `--out` wrote",
-            "{name} is no result of dropcheck that holds its cask file"
-        ))
+        let mend = "name a result.json that `analyze --json` or `--out` wrote";
+        Err(miette!(help = mend, "{name} is no result of dropcheck that holds its cask file"))
     }
 
     /// The cask file.
@@ -88,9 +86,9 @@ impl EarlierResult {
     }
 
     /// The corrections that were switched off on its command line, by their keys.
-    pub fn switched_off(&self) -> impl Iterator<Item = &str> {
+    pub fn switched_off(&self) -> Vec<String> {
         let made = self.result["settings"]["corrections"].as_object().into_iter().flatten();
-        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.as_str())
+        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.clone()).collect()
     }
 
     /// Gives a result that was made again the words of the first, where it is of the same recording. Says
@@ -107,7 +105,7 @@ impl EarlierResult {
         }
         let words = self.result["command"].as_array().into_iter().flatten();
         result.command = words.filter_map(|word| word.as_str().map(str::to_owned)).collect();
-        let now: Value = serde_json::from_slice(&report::result_json(result)?).into_diagnostic()?;
+        let now: Value = serde_json::from_slice(&report::pretty_json(&result)?).into_diagnostic()?;
         let mut found = Vec::new();
         compare("", [&self.result, &now], 0.0, &mut found);
         found.retain(|(_, line)| !line.starts_with("analysed:"));

@@ -10,7 +10,6 @@ pub mod data;
 mod drawn;
 pub mod in_memory;
 pub mod methods;
-mod plan;
 pub mod report;
 pub mod scene_file;
 pub mod synth;
@@ -18,7 +17,6 @@ pub mod synth;
 use crate::lab::data::{Scene, SyntheticRecording};
 
 /// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
-#[must_use]
 pub fn synthesise(scene: &Scene) -> SyntheticRecording {
     synth::record(scene, &synth::simulate(scene))
 }

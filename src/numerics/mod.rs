@@ -21,3 +21,24 @@ pub mod spectrum;
 pub fn as_f64(count: usize) -> f64 {
     count as f64
 }
+
+/// The count or index that a number holds, towards 0; a number beyond all of them gives the nearest, NaN 0.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
+pub fn whole(number: f64) -> usize {
+    number as usize
+}
+
+/// A time in whole nanoseconds, as files stamp it.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
+pub fn nanoseconds(time_s: f64) -> i64 {
+    (time_s * 1e9).round() as i64
+}
+
+/// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, reason = "the loss of digits is meant")]
+pub fn single(value: f64) -> f32 {
+    value as f32
+}

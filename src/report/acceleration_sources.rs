@@ -6,22 +6,8 @@ use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
 
 /// Words in a source that make it no acceleration.
-const OTHER_WORDS: [&str; 14] = [
-    "time",
-    "stamp",
-    "sec",
-    "nsec",
-    "nanosec",
-    "seq",
-    "covariance",
-    "orientation",
-    "angular",
-    "gyro",
-    "temp",
-    "sample_rate",
-    "frame_id",
-    "index",
-];
+const OTHER_WORDS: &str = "time stamp sec nsec nanosec seq covariance orientation angular gyro temp \
+                           sample_rate frame_id index";
 
 /// A recording of which no form could ever be filled in.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -112,7 +98,7 @@ fn candidates(listing: &Listing) -> impl Iterator<Item = &ListedChannel> {
         .channels
         .iter()
         .filter(|c| c.samples != Some(0) && !c.unit.as_deref().is_some_and(is_rate_of_turn))
-        .filter(|c| !OTHER_WORDS.iter().any(|word| has_word(&c.source, word)) && !is_time(&c.source))
+        .filter(|c| !OTHER_WORDS.split(' ').any(|word| has_word(&c.source, word)) && !is_time(&c.source))
 }
 
 /// Whether unit or name say that it is an acceleration.

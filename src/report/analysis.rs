@@ -1,17 +1,17 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
 use super::FILE_NAMES;
-use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
+use super::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
+    TableShape, Tone, Words,
+};
 use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
-use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
-use super::record;
+use super::record::{self, TOLD, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
-use super::table::{ReportTable, TableCell, TableShape};
-use super::tested::{TOLD, tested};
 use super::text::{
     Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
     verdict_sentence, verdict_style, verdict_word, yes,
@@ -263,9 +263,6 @@ pub(super) fn quality(issues: &[Finding]) -> Chapter {
 
 /// What the analytical models say at the angle of the drop.
 fn predictions(result: &DropResult) -> Chapter {
-    if result.predictions.is_empty() {
-        return Chapter::new("");
-    }
     let table = ReportTable::of(&result.predictions).class("").caption(
         "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the \
          first impact.",
@@ -278,7 +275,9 @@ fn predictions(result: &DropResult) -> Chapter {
     let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
     let over = result.predictions.iter().any(Prediction::turns_over);
     let notes = [kept.then_some(KEPT_SENTENCE), over.then_some(OVER_SENTENCE)];
-    Chapter::new("Predictions").with(table).with_all(notes.into_iter().flatten().map(ChapterPart::note))
+    Chapter::new("Predictions")
+        .with_all((!result.predictions.is_empty()).then(|| table.into()))
+        .with_all(notes.into_iter().flatten().map(ChapterPart::note))
 }
 
 /// What each channel is worth.

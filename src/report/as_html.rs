@@ -1,9 +1,10 @@
 //! A document to a page: one file without network, for the desk and for A4 paper. Every word is escaped here.
 
-use super::document::{ChapterPart, Fact, Frame, PartContent, ReportDocument, SentenceRole, Tone};
-use super::medium::{Medium, Words};
+use super::document::{
+    CellKind, ChapterPart, Fact, Frame, Medium, PartContent, ReportColumn, ReportDocument, ReportTable,
+    SentenceRole, TableCell, Tone, Words,
+};
 use super::pictures::draw::Picture;
-use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
 use super::text::{Style, capital, printable};
 use crate::data::Photo;
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
@@ -213,7 +214,7 @@ fn default_mark(word: &str) -> Markup {
 fn table(table: &ReportTable) -> Markup {
     let columns = table.shown(Medium::Page);
     let (rows, left_out) = table.rows(Medium::Page);
-    let number = |column: &ReportColumn| column.is_number().then_some("n");
+    let number = |column: &ReportColumn| (column.kind == CellKind::Number).then_some("n");
     html! {
         table class=[class(table.class)] {
             @if !table.caption.is_empty() { caption { (printable(&table.caption)) } }

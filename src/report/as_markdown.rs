@@ -1,8 +1,6 @@
 //! A document to Markdown that stands within another document.
 
-use super::document::{ChapterPart, PartContent, ReportDocument};
-use super::medium::Medium;
-use super::table::{CellKind, ReportTable, TableCell};
+use super::document::{CellKind, ChapterPart, Medium, PartContent, ReportDocument, ReportTable, TableCell};
 use super::text::printable;
 
 /// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none
@@ -25,12 +23,8 @@ fn passage(passage: &ChapterPart, heading: &str, folder: Option<&str>) -> Option
         }
         PartContent::Picture(name, _) => folder.map(|folder| format!("![{heading}]({folder}{name}.svg)\n")),
         PartContent::ReportTable(table) => Some(self::table(table)),
-        PartContent::Banner(..)
-        | PartContent::Figures(_)
-        | PartContent::Facts(..)
-        | PartContent::Photographs(_)
-        | PartContent::List(_)
-        | PartContent::Beside(_) => None,
+        // What only pages and terminals have.
+        _ => None,
     }
 }
 

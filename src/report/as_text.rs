@@ -1,10 +1,11 @@
 //! A document to the text that a terminal of so many columns shows, with SGR colours that the caller strips
 //! where none are read.
 
-use super::document::{ChapterPart, Fact, PartContent, ReportDocument, SentenceRole, Tone};
-use super::medium::Medium;
+use super::document::{
+    CellKind, ChapterPart, Fact, Medium, PartContent, ReportColumn, ReportDocument, ReportTable,
+    SentenceRole, TableShape, Tone,
+};
 use super::rounding::MISSING;
-use super::table::{ReportColumn, ReportTable, TableShape};
 use super::text::{Style, lines, printable, styled, styled_lines, wrap};
 use comfy_table::ColumnConstraint::LowerBoundary;
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle, Width};
@@ -52,10 +53,8 @@ fn passage(passage: &ChapterPart, width: usize) -> String {
             .filter(|passage| passage.is_shown(Medium::Terminal))
             .map(|part| self::passage(part, width))
             .collect(),
-        PartContent::Figures(_)
-        | PartContent::Picture(..)
-        | PartContent::Photographs(_)
-        | PartContent::List(_) => String::new(),
+        // What is drawn.
+        _ => String::new(),
     }
 }
 
@@ -123,12 +122,12 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
     let is_narrow = !fits(columns, rows, width);
     for (i, set) in table.column_iter_mut().enumerate() {
         set.set_padding((0, if i == 0 { 0 } else { gap }));
-        if i > 0 && columns[i - 1].is_number() {
-            set.set_cell_alignment(CellAlignment::Right);
-        }
-        if i > 0 && is_narrow && columns[i - 1].is_number() {
+        let column = i.checked_sub(1).map(|i| columns[i]);
+        let Some(column) = column.filter(|column| column.kind == CellKind::Number) else { continue };
+        set.set_cell_alignment(CellAlignment::Right);
+        if is_narrow {
             // A number that goes on in the next line is another one.
-            let longest = (0..rows).map(|row| cell(columns[i - 1], row).chars().count()).max().unwrap_or(0);
+            let longest = (0..rows).map(|row| cell(column, row).chars().count()).max().unwrap_or(0);
             let most = (width / 2).min(longest + usize::from(gap));
             set.set_constraint(LowerBoundary(Width::Fixed(u16::try_from(most).unwrap_or(40))));
         }

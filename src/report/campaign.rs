@@ -2,7 +2,6 @@
 //! reason.
 
 mod columns;
-mod compared;
 mod drop_curves;
 mod files;
 mod page;
@@ -77,7 +76,6 @@ pub struct BatchRow {
 }
 
 /// The name of a test as the name of a folder that leads nowhere else.
-#[must_use]
 pub fn folder_name(test: &str) -> String {
     let is_plain = |c: char| !c.is_control() && !"/\\:*?\"<>|".contains(c);
     let plain: String = test.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
@@ -88,7 +86,6 @@ pub fn folder_name(test: &str) -> String {
 
 /// The first number among a line's settings that no cask file may state, with its place: no run of this
 /// program wrote it.
-#[must_use]
 pub fn impossible(line: &Value) -> Option<String> {
     for (name, stated) in line["settings"].as_object().into_iter().flatten() {
         let channels = stated.as_array().map_or(std::slice::from_ref(stated), Vec::as_slice);
@@ -134,7 +131,6 @@ impl BatchRow {
     }
 
     /// The row of a line.
-    #[must_use]
     pub fn of(line: &Value) -> Self {
         let verdict: Option<Verdict> = part(line, "/verdict");
         // What is no folder of a campaign would be a link to elsewhere in its page.
@@ -203,7 +199,6 @@ pub struct Batch {
 
 impl Batch {
     /// Nothing yet of a campaign by this manifest or cask file.
-    #[must_use]
     pub fn new(source: String) -> Self {
         Self { source, ..Self::default() }
     }
@@ -223,7 +218,6 @@ impl Batch {
     }
 
     /// Whether a file that begins so is a `campaign.csv` of this program.
-    #[must_use]
     pub fn begins(head_of_file: &[u8]) -> bool {
         let first = columns::names().take(10).collect::<Vec<_>>().join(",");
         head_of_file.starts_with(first.as_bytes())

@@ -4,6 +4,7 @@ use super::ReportError;
 use super::grid::{CurveSeries, Grid, channel_series, common_time_s, motion_series};
 use super::records::{finished, text_cell};
 use crate::data::Curves;
+use crate::numerics::{nanoseconds, single};
 use std::io::Write;
 
 /// The table; a cell outside its curve is empty.
@@ -73,16 +74,9 @@ fn groups(curves: &Curves) -> Vec<CurveGroup<'_>> {
     channels.chain(motion).flatten().collect()
 }
 
-/// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
-#[allow(clippy::cast_possible_truncation, reason = "the loss of digits is meant")]
-pub(super) fn single(value: f64) -> f32 {
-    value as f32
-}
-
 /// A time to the nanosecond, by whole numbers: of ten cells of a row it is the one that would take longest.
-#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
 fn put_nanoseconds(table: &mut Vec<u8>, time_s: f64) {
-    let time_ns = (time_s * 1e9).round() as i64;
+    let time_ns = nanoseconds(time_s);
     let (sign, time_ns) = (if time_ns < 0 { "-" } else { "" }, time_ns.unsigned_abs());
     // Writing to memory does not fail.
     let _ = write!(table, "{sign}{}.{:09}", time_ns / 1_000_000_000, time_ns % 1_000_000_000);

@@ -1,9 +1,9 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
-use super::curves_csv::single;
 use super::grid::{CurveSeries, motion_series, named_events, step_s};
 use super::{ReportError, scratch, spectrum};
 use crate::data::Analysis;
+use crate::numerics::single;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, Group, H5Type, Location};
 

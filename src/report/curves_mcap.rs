@@ -1,10 +1,10 @@
 //! Curves to `curves.mcap`: JSON messages with schemas, one a sample, as Foxglove opens them.
 
 use super::ReportError;
-use super::curves_csv::single;
 use super::grid::{CurveSeries, channel_series, motion_series, named_events};
 use super::text::printable;
 use crate::data::Analysis;
+use crate::numerics::{nanoseconds, single};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -139,9 +139,8 @@ impl CurvesFile {
     }
 
     /// Time of a sample, ns; what lies before 1970, or before 0 in a recording without a start, is put at 0.
-    #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates, and so does the sum")]
     fn stamp_ns(&self, time_s: f64) -> u64 {
-        u64::try_from(self.start_ns.saturating_add((time_s * 1e9).round() as i64)).unwrap_or(0)
+        u64::try_from(self.start_ns.saturating_add(nanoseconds(time_s))).unwrap_or(0)
     }
 }
 

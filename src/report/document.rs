@@ -1,9 +1,9 @@
 //! What a person is to read to a document of chapters: tables, facts and sentences, each once for every
 //! medium.
 
-use super::medium::{Medium, Words};
+pub(crate) use super::medium::{Medium, Words};
 use super::rounding::MISSING;
-use super::table::{CellKind, ReportTable, TableRows};
+pub(crate) use super::table::{CellKind, ReportColumn, ReportTable, TableCell, TableRows, TableShape};
 use super::text::Style;
 use crate::data::{Letterhead, Photo};
 

@@ -1,7 +1,7 @@
 //! What stands first, on the terminal and at the head of the page: the verdict and its cause, the numbers,
 //! what limits them, and what nothing in the recording tests.
 
-use super::reconstruction::{defaults_that_weigh, largest, weighty_default_count};
+use super::reconstruction::{defaults_that_weigh, largest, weighty_defaults};
 use super::rounding::{interval, pair, percent, significant};
 use super::text::{
     Style, clamped, counted, determined, distinct, dropped, json_word, printable, sentence, styled,
@@ -119,7 +119,6 @@ fn of_corner(result: &DropResult) -> Option<String> {
 }
 
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
-#[must_use]
 pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let recording = tail(&result.input.recording, 40);
@@ -160,21 +159,16 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
 }
 
 /// Why a formal report cannot rest on this result, beside its verdict; `None` where it can.
-#[must_use]
 pub fn not_strict(analysis: &Analysis) -> Option<String> {
     let result = &analysis.result;
     let open = result.limits.iter().filter(|limit| limit.state != LimitState::Kept).count();
+    let weighty = weighty_defaults(result, &analysis.cask_file).len();
     let reasons = [
-        (result.untested.len(), "untested input"),
-        (weighty_default_count(result, &analysis.cask_file), "default"),
-        (open, "limit"),
+        (result.untested.len(), "untested input", ""),
+        (weighty, "default", " with over a tenth of the variance"),
+        (open, "limit", " exceeded or undecided"),
     ];
-    let what = ["", " with over a tenth of the variance", " exceeded or undecided"];
-    let reasons: Vec<String> = reasons
-        .iter()
-        .zip(what)
-        .filter(|((count, _), _)| *count > 0)
-        .map(|((count, noun), what)| counted(*count, noun) + what)
-        .collect();
+    let reasons = reasons.iter().filter(|(count, ..)| *count > 0);
+    let reasons: Vec<String> = reasons.map(|(count, noun, what)| counted(*count, noun) + what).collect();
     (!reasons.is_empty()).then(|| reasons.join(", "))
 }

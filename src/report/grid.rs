@@ -1,6 +1,7 @@
 //! Curves on grids of their own to values at any time.
 
 use crate::data::{ChannelCurve, Curves, Events, MotionCurve, STANDARD_GRAVITY_M_S2};
+use crate::numerics::{as_f64, whole};
 
 /// One quantity of a curve: its name with its unit, its values, and what makes that unit of them.
 pub(super) struct CurveSeries<'a> {
@@ -44,20 +45,13 @@ pub(super) fn named_events(events: &Events) -> [(&'static str, Option<f64>); 4] 
 }
 
 /// Step of a uniform time vector, s; `None` where it has fewer than two points or does not rise.
-#[allow(clippy::cast_precision_loss, reason = "lengths stay below 2^52")]
 pub(super) fn step_s(time_s: &[f64]) -> Option<f64> {
     let (first, last) = (time_s.first()?, time_s.last()?);
-    let step = (last - first) / (time_s.len().checked_sub(1)? as f64);
+    let step = (last - first) / as_f64(time_s.len().checked_sub(1)?);
     (step.is_finite() && step > 0.0).then_some(step)
 }
 
 /// The times of the finest channel, carried on over the span of every curve.
-#[allow(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "counts are checked to be finite and bounded before the cast"
-)]
 pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let times = || {
         curves
@@ -78,10 +72,10 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let held: usize = times().map(<[f64]>::len).sum();
     // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times
     // serve.
-    if !(rows.is_finite() && rows <= 4.0 * held as f64 + 4.0) {
+    if !(rows.is_finite() && rows <= 4.0 * as_f64(held) + 4.0) {
         return finest.to_vec();
     }
-    (0..rows as usize).map(|i| finest[0] + (i as f64 - before) * step).collect()
+    (0..whole(rows)).map(|i| finest[0] + (as_f64(i) - before) * step).collect()
 }
 
 /// The grid of a curve's points.
@@ -100,18 +94,11 @@ pub(super) struct GridPlace {
 
 impl Grid {
     /// The grid of these times; `None` where they are none.
-    #[allow(clippy::cast_precision_loss, reason = "lengths stay below 2^52")]
     pub(super) fn new(time_s: &[f64]) -> Option<Self> {
-        Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, last: (time_s.len() - 1) as f64 })
+        Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, last: as_f64(time_s.len() - 1) })
     }
 
     /// The place of `time_s`; `None` outside the curve.
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the place is checked against the length before the cast"
-    )]
     pub(super) fn place(&self, time_s: f64) -> Option<GridPlace> {
         /// Places that differ from a grid point by less are on it: the rounding of times, in steps.
         const ON_GRID: f64 = 1e-3;
@@ -120,8 +107,8 @@ impl Grid {
             return None;
         }
         let place = place.clamp(0.0, self.last);
-        let below = place as usize;
-        let weight = place - below as f64;
+        let below = whole(place);
+        let weight = place - as_f64(below);
         Some(if weight < ON_GRID {
             GridPlace { below, weight: 0.0 }
         } else if weight > 1.0 - ON_GRID {

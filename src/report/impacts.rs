@@ -1,9 +1,7 @@
 //! Both impacts to the chapter that tabulates them: in short on a terminal, one table per impact on a page.
 
-use super::document::{Chapter, ChapterPart};
-use super::medium::{Medium, Words};
+use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
-use super::table::ReportTable;
 use super::text::distinct;
 use crate::data::{
     ChannelPeak, DropResult, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration, STANDARD_GRAVITY_M_S2,

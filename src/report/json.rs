@@ -1,27 +1,13 @@
 //! Results and listings to JSON: pretty, keys in the contract's order, never a number that is not one.
 
 use super::ReportError;
-use crate::data::{DropResult, Listing};
 use std::fmt::Write as _;
 
-/// `result.json`.
+/// A result, a listing or the like as a file: two spaces of indentation and a line feed at the end.
 ///
 /// # Errors
 /// [`ReportError::Json`] where the writer fails.
-pub fn result(result: &DropResult) -> Result<Vec<u8>, ReportError> {
-    pretty(result)
-}
-
-/// The JSON of `inspect`.
-///
-/// # Errors
-/// [`ReportError::Json`] where the writer fails.
-pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
-    pretty(listing)
-}
-
-/// Two spaces of indentation and a line feed at the end.
-pub(crate) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
+pub fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
     Ok((bare(serde_json::to_string_pretty(value)?) + "\n").into_bytes())
 }
 
@@ -73,7 +59,7 @@ mod tests {
 
     #[test]
     fn the_result_has_the_keys_of_the_contract() {
-        let json: Value = serde_json::from_slice(&result(&sample::analysis().result).unwrap()).unwrap();
+        let json: Value = serde_json::from_slice(&pretty(&sample::analysis().result).unwrap()).unwrap();
         assert_eq!(json["schema"], "dropcheck.result/1");
         assert_eq!(json["k"]["unit"], "1");
         assert_eq!(json["verdict"], "review");
@@ -97,7 +83,7 @@ mod tests {
         choice.candidates[0].k = Some(Estimate::new(f64::NAN, 0.1, "1"));
         choice.closures[0].miss_in_u = f64::NAN;
         choice.chi_square = Some((f64::INFINITY, 2));
-        let json: Value = serde_json::from_slice(&result(&analysis.result).unwrap()).unwrap();
+        let json: Value = serde_json::from_slice(&pretty(&analysis.result).unwrap()).unwrap();
         assert!(json["k"].is_null());
         assert!(json["slap_down"]["speed"].is_null());
         let choice = &json["reconstruction"];

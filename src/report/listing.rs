@@ -1,15 +1,12 @@
 //! What a recording holds to the document that `inspect` shows.
 
 use super::analysis::quality;
-use super::document::{Chapter, ChapterPart, ReportDocument};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart, Medium, ReportDocument, ReportTable, TableShape};
 use super::rounding::{MISSING, plain};
-use super::table::{ReportTable, TableShape};
 use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
-#[must_use]
 pub fn table(listing: &Listing, width: usize) -> String {
     super::as_text::text(&document(listing), width)
 }

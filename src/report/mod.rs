@@ -36,7 +36,6 @@ mod scratch;
 mod settings;
 pub(crate) mod table;
 mod template;
-mod tested;
 pub(crate) mod text;
 mod words;
 
@@ -47,14 +46,14 @@ pub use campaign::{
 };
 pub use curves_csv::in_german;
 pub use first_screen::{first_screen, not_strict};
-pub use json::{in_a_line, listing as listing_json, result as result_json};
+pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
 
 use crate::data::{Analysis, ChannelCurve};
-use crate::numerics::spectrum::magnitude;
+use crate::numerics::{as_f64, spectrum::magnitude};
 
 /// Why a part of the report could not be made.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -88,14 +87,12 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     let (Some(first_s), Some(last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
         return (Vec::new(), Vec::new());
     };
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let sample_rate_hz = (curve.time_s.len().max(2) - 1) as f64 / (last_s - first_s);
+    let sample_rate_hz = as_f64(curve.time_s.len().max(2) - 1) / (last_s - first_s);
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
 /// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
 /// where no terminal shows it.
-#[must_use]
 pub fn table(analysis: &Analysis, width: usize) -> String {
     as_text::text(&analysis::document(analysis), width)
 }
@@ -130,7 +127,7 @@ pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError>
         || rayon::join(|| curves_h5::bytes(analysis), || pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
-    let (result, table) = (json::result(&analysis.result)?, latex::table(&analysis.result));
+    let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));
     let bytes = [page, result, table, curves_csv?, curves_h5?, curves_mcap?];
     let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
     Ok(FILE_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())

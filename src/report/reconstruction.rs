@@ -1,10 +1,8 @@
 //! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
 
-use super::document::{Chapter, ChapterPart, PartContent};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::settings::to_state;
-use super::table::{ReportTable, TableCell};
 use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
@@ -18,9 +16,8 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
     let rungs = ReportTable::of(&choice.candidates)
         .caption(
             "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken \
-             that noise and tolerances explain \
-             and whose answer the next would neither change by more than the narrower interval nor know \
-             better by a tenth.",
+             that noise and tolerances explain and whose answer the next would neither change by more than \
+             the narrower interval nor know better by a tenth.",
         )
         .chosen(|c| c.rung == choice.rung)
         .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), taken_mark(c.rung == choice.rung)))
@@ -76,8 +73,7 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
     let still = " It moves no input by more than a twentieth of its standard uncertainty.";
     let sentence = format!(
         "The joint fit moves every input within its tolerance until the closures are met: χ² = {} with \
-         {degrees} degree{} of freedom, one a \
-         closure. {used}{}",
+         {degrees} degree{} of freedom, one a closure. {used}{}",
         significant(chi_square, 2),
         if degrees == 1 { "" } else { "s" },
         if choice.adjustments.is_empty() { still } else { "" }
@@ -144,8 +140,7 @@ fn flight_sentence(fit: &FlightFit) -> String {
     };
     format!(
         "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes \
-         is the one with the lowest \
-         information criterion{among}",
+         is the one with the lowest information criterion{among}",
         fixed(fit.from_s * 1e3, 2),
         fixed(fit.to_s * 1e3, 2)
     )
@@ -203,13 +198,14 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
 }
 
 /// A default that carries more than a tenth of the variance of the speed, or of k where there is no speed.
-struct WeightyDefault<'a> {
+pub(super) struct WeightyDefault<'a> {
     share: VarianceShare<'a>,
     /// What to state in its place.
     key: String,
 }
 
-fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyDefault<'a>> {
+/// The defaults that a formal report must not rest on, the largest share first.
+pub(super) fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyDefault<'a>> {
     const WEIGHS_PERCENT: f64 = 10.0;
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
     let mut all = shares(&result.budget, change);
@@ -237,11 +233,6 @@ pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Optio
     let keys = keys.join(", ");
     (!named.is_empty())
         .then(|| format!("variance of {of_what} by assumed tolerances: {}; state {keys}", named.join(", ")))
-}
-
-/// How many inputs a formal report must not leave to defaults.
-pub(super) fn weighty_default_count(result: &DropResult, file: &CaskFile) -> usize {
-    weighty_defaults(result, file).len()
 }
 
 /// An input, and how much of the variance of a quantity it carries.

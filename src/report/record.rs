@@ -1,11 +1,10 @@
 //! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to
 //! sign.
 
-use super::document::{Chapter, ChapterPart, Fact, PartContent};
-use super::medium::Medium;
+use super::document::{Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape};
 use super::rounding::{MISSING, interval, optional_fixed, plain};
-use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, json_word};
+use super::words::contact_words;
 use crate::data::keys::{LIMITS, OBSERVED};
 use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, TestRecord};
 
@@ -57,10 +56,6 @@ fn words(name: &str) -> &str {
 
 /// What was seen otherwise beside the result.
 pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
-    let chapter = Chapter::new("Observed otherwise");
-    if all.is_empty() {
-        return chapter;
-    }
     let agrees = |seen: &ObservedBeside| match seen.e_n {
         None => MISSING,
         Some(e_n) if e_n.abs() <= 1.0 => "yes",
@@ -76,7 +71,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
         .number("Result", |seen| interval(seen.result.as_ref()))
         .number("E_n", |seen| optional_fixed(seen.e_n, 2))
         .text("Agree", agrees);
-    chapter.with(table)
+    Chapter::new("Observed otherwise").with_all((!all.is_empty()).then(|| table.into()))
 }
 
 const LIMITS_CAPTION: &str = "The customer's. Undecided: the interval holds the limit, or the quantity is \
@@ -103,6 +98,62 @@ pub(super) fn limits(all: &[Limit]) -> Chapter {
         .number("Most", |row| bound(row.most))
         .text("Limit", state);
     Chapter::new("Limits").with_all((!all.is_empty()).then(|| table.into()))
+}
+
+/// The settings that the chapter has already.
+pub(super) const TOLD: [&str; 9] = [
+    "mass",
+    "length",
+    "section in the plane of the drop",
+    "centre of gravity from the first end",
+    "inertia",
+    "drop angle",
+    "impact velocity",
+    "gravity",
+    "contact law of the first end",
+];
+
+/// The cask, the drop and the contact; what is a default is marked.
+pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
+    let (cask, drop) = (&file.cask, &file.drop);
+    let fact = |name: &str, key: &str, value: String, unit: &str| Fact {
+        is_default: file.defaults.iter().any(|d| d == key),
+        ..Fact::number(name, value).note(unit)
+    };
+    let is_rod = cask.height_m <= 0.0;
+    let section = if is_rod { "thin rod".into() } else { plain(cask.height_m, 5) };
+    let velocity =
+        if drop.impact_velocity_given { "Impact velocity, as stated" } else { "Impact velocity, √(2 g h)" };
+    let mut of_cask = vec![
+        fact("Mass", "cask.mass_kg", plain(cask.mass_kg, 6), "kg"),
+        fact("Length between the ends that strike", "cask.length_m", plain(cask.length_m, 6), "m"),
+        fact("Section in the plane of the drop", "cask.height_m", section, if is_rod { "" } else { "m" }),
+        fact("Centre of gravity from the first end", "cask.cog_m", plain(cask.cog_m, 6), "m"),
+        fact(
+            "Inertia about the centre of gravity",
+            "cask.inertia_kg_m2",
+            plain(cask.inertia_kg_m2, 6),
+            "kg\u{a0}m²",
+        ),
+    ];
+    if let Some(width_m) = cask.width_m {
+        of_cask.insert(3, fact("Section across that plane", "cask.width_m", plain(width_m, 6), "m"));
+    }
+    let mut of_drop = vec![
+        fact("Free-fall height", "drop.height_m", plain(drop.height_m, 6), "m"),
+        fact("Inclination of the axis", "drop.angle_deg", plain(drop.angle_rad.to_degrees(), 6), "°"),
+        fact(velocity, "drop.impact_velocity", plain(drop.impact_velocity_m_s, 5), "m/s"),
+        fact("Gravity", "drop.gravity_m_s2", plain(drop.gravity_m_s2, 6), "m/s²"),
+        fact("Contact of the first end", "contact.friction", contact_words(file.contact), ""),
+    ];
+    if drop.contact_duration_s > 0.0 {
+        let lasts_ms = plain(1e3 * drop.contact_duration_s, 5);
+        of_drop.push(fact("First impact lasts", "contact.duration_s", lasts_ms, "ms"));
+    }
+    Chapter::new(heading).only(Medium::Page).with(PartContent::Beside([
+        vec![ChapterPart::facts(format!("Cask {}", cask.name), of_cask)],
+        vec![ChapterPart::facts("Drop and contact", of_drop)],
+    ]))
 }
 
 /// Which sensor stands where, in which direction it reads, and by which papers.

@@ -195,8 +195,7 @@ fn quality() -> Vec<Finding> {
     vec![
         Finding {
             message: "A1 stands at ±500 g in 42 samples of the first impact; the rebound velocity may read \
-                      low by up to \
-             0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out"
+                      low by up to 0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out"
                 .into(),
             ..clipped.on("A1").between(0.152_1, 0.152_4)
         },

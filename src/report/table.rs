@@ -58,18 +58,6 @@ pub(crate) struct ReportColumn {
     pub(crate) cells: Vec<TableCell>,
 }
 
-impl ReportColumn {
-    /// Whether this medium shows it.
-    pub(crate) fn is_shown(&self, medium: Medium) -> bool {
-        self.only.is_none_or(|only| only == medium)
-    }
-
-    /// Whether its cells are set to the right.
-    pub(crate) fn is_number(&self) -> bool {
-        self.kind == CellKind::Number
-    }
-}
-
 /// One cell.
 #[derive(Default)]
 pub(crate) struct TableCell {
@@ -93,11 +81,6 @@ impl TableCell {
         Self { mark, ..words.into().into() }
     }
 
-    /// Words that lead somewhere.
-    pub(crate) fn linked(words: impl Into<Words>, link: String) -> Self {
-        Self { link, ..words.into().into() }
-    }
-
     /// Words in a colour.
     pub(crate) fn toned(style: Style, words: impl Into<Words>) -> Self {
         Self { style: Some(style), ..words.into().into() }
@@ -112,7 +95,7 @@ impl ReportTable {
 
     /// The columns that a medium shows.
     pub(crate) fn shown(&self, medium: Medium) -> Vec<&ReportColumn> {
-        self.columns.iter().filter(|column| column.is_shown(medium)).collect()
+        self.columns.iter().filter(|column| column.only.is_none_or(|only| only == medium)).collect()
     }
 
     /// How many rows a medium shows, and a sentence on those that it leaves out.

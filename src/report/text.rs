@@ -62,7 +62,6 @@ pub(super) fn styled(style: Style, text: &str) -> String {
 }
 
 /// `text` without control and direction characters, which a file could use to write elsewhere on a terminal.
-#[must_use]
 pub fn printable(text: &str) -> String {
     text.chars()
         .filter_map(|c| match c {
@@ -180,7 +179,7 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
 }
 
 /// A word as the result's JSON writes it, such as "`ends_early`", "mcap" or "warning".
-pub(super) fn json_word<T: serde::Serialize + std::fmt::Debug>(value: T) -> String {
+pub(crate) fn json_word<T: serde::Serialize + std::fmt::Debug>(value: T) -> String {
     match serde_json::to_value(&value) {
         Ok(serde_json::Value::String(word)) => word,
         _ => format!("{value:?}"),
@@ -259,11 +258,9 @@ pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str
         let is_wanted = |f: &&Finding| f.severity == severity && (!among || codes.contains(&f.code));
         result.quality.iter().find(is_wanted)
     };
-    first(Severity::Error, true)
-        .or_else(|| first(Severity::Error, false))
-        .or_else(|| first(Severity::Warning, true))
-        .or_else(|| first(Severity::Warning, false))
-        .map_or("", |finding| finding.message.as_str())
+    let gravest = |severity| first(severity, true).or_else(|| first(severity, false));
+    let found = gravest(Severity::Error).or_else(|| gravest(Severity::Warning));
+    found.map_or("", |finding| finding.message.as_str())
 }
 
 #[cfg(test)]

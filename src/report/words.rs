@@ -139,8 +139,7 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
     );
     format!(
         "Drawn: k {}, {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity \
-         {} of \
-         the length, inertia {} (95 % of normal distributions); seed {}.",
+         {} of the length, inertia {} (95 % of normal distributions); seed {}.",
         spread_words(u.k),
         plain(u.angle_deg, 3),
         share(u.drop_height),

@@ -105,7 +105,7 @@ fn in_process(path: &Path, stem: &str) -> Result<Value, String> {
         catch_unwind(AssertUnwindSafe(|| {
             let file = ingest::cask_file(&fixture(&format!("{stem}.toml"))).expect("a cask file");
             let recording = ingest::read(path, &file, &|_| ()).map_err(|error| error.to_string())?;
-            let bytes = report::result_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
+            let bytes = report::pretty_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
             Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
         }))
     });

@@ -46,10 +46,10 @@ pub fn said(name: String, recording: &Path, cask: &Path) -> Said {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let result = ingest::cask_file(cask).and_then(|file| {
         let read = ingest::read(recording, &file, &|_| ())?;
-        Ok(report::result_json(&dropcheck::stages::measure(&read, &file).result).expect("JSON"))
+        Ok(report::pretty_json(&dropcheck::stages::measure(&read, &file).result).expect("JSON"))
     });
     let listing =
-        ingest::list(recording, &|_| ()).map(|listing| report::listing_json(&listing).expect("JSON"));
+        ingest::list(recording, &|_| ()).map(|listing| report::pretty_json(&listing).expect("JSON"));
     let text = |said: Result<Vec<u8>, IngestError>| {
         let said = said.unwrap_or_else(|error| told(&error).into_bytes());
         placeless(&String::from_utf8(said).expect("UTF-8"), recording, cask)

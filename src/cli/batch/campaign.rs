@@ -4,7 +4,7 @@ use super::super::Ending;
 use super::super::lines::LineFiles;
 use super::super::output::{Folder, replace_by};
 use super::plan::SUMMARY;
-use crate::data::{BodyModel, CaskFile, Contact, Drop};
+use crate::data::{CaskFile, Contact, Drop};
 use crate::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
 use crate::{ingest, predict};
 use serde_json::Value;
@@ -56,13 +56,11 @@ fn curves(cask_file: &CaskFile, ks: [f64; 2], [from, to]: [f64; 2]) -> Vec<Predi
                 let at = |i: u32| {
                     let angle_deg = from + (to - from) * f64::from(i) / f64::from(ANGLES);
                     let drop = Drop { angle_rad: angle_deg.to_radians(), ..cask_file.drop };
-                    (
-                        angle_deg,
-                        predict::predict(&body, &drop, contact, k).slap_down_speed_m_s.unwrap_or(f64::NAN),
-                    )
+                    let struck = predict::predict(&body, &drop, contact, k);
+                    (angle_deg, struck.slap_down_speed_m_s.unwrap_or(f64::NAN))
                 };
-                let model: BodyModel = body.model;
-                curves.push(PredictedCurve { model, contact, k, points: (0..=ANGLES).map(at).collect() });
+                let points = (0..=ANGLES).map(at).collect();
+                curves.push(PredictedCurve { model: body.model, contact, points });
             }
         }
     }

@@ -4,6 +4,7 @@
 use super::paths::{in_folder, note, stem};
 use super::planned::{PlannedTest, cask_of};
 use crate::ingest::{bytes_of, cask_file::key_of_column};
+use miette::miette;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -16,18 +17,14 @@ const CASK: &str = "cask";
 /// recording.
 pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
     let name = path.display();
-    let bytes = bytes_of(path, 64)
-        .map_err(|source| miette::miette!("{name}: the manifest cannot be read: {source}"))?;
-    let text = std::str::from_utf8(&bytes).map_err(|_| {
-        miette::miette!(
-            help = "save it as CSV UTF-8, which every spreadsheet offers",
-            "{name} is no text in UTF-8"
-        )
-    })?;
+    let bytes =
+        bytes_of(path, 64).map_err(|source| miette!("{name}: the manifest cannot be read: {source}"))?;
+    let mend = "save it as CSV UTF-8, which every spreadsheet offers";
+    let text = std::str::from_utf8(&bytes).map_err(|_| miette!(help = mend, "{name} is no text in UTF-8"))?;
     let text = text.trim_start_matches('\u{feff}');
     let mut reader =
         csv::ReaderBuilder::new().delimiter(delimiter(text)).flexible(true).from_reader(text.as_bytes());
-    let fault = |error: csv::Error| miette::miette!("{name}: {error}");
+    let fault = |error: csv::Error| miette!("{name}: {error}");
     let heads: Vec<String> =
         reader.headers().map_err(fault)?.iter().map(|head| head.trim().to_owned()).collect();
     check(&heads, path)?;
@@ -40,29 +37,25 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
             continue;
         }
         if row.len() > heads.len() {
-            return Err(miette::miette!(
-                help = "put quotes around a cell that holds a comma",
-                "{name}, line {line}: {} cells, and there are {} columns",
-                row.len(),
-                heads.len()
+            let (mend, cells, all) = ("put quotes around a cell that holds a comma", row.len(), heads.len());
+            return Err(miette!(
+                help = mend,
+                "{name}, line {line}: {cells} cells, and there are {all} columns"
             ));
         }
         let cells: Vec<(&str, &str)> =
             heads.iter().map(String::as_str).zip(row.iter().map(str::trim)).collect();
         let test = test(&cells, folder, cask)
-            .ok_or_else(|| miette::miette!("{name}, line {line}: the cell of `recording` is empty"))?;
+            .ok_or_else(|| miette!("{name}, line {line}: the cell of `recording` is empty"))?;
         let has_id = cells.iter().any(|(head, cell)| *head == ID && !cell.is_empty());
         if let Some(first) = lines.insert(test.id.clone(), line).filter(|_| has_id) {
-            return Err(miette::miette!(
-                help = "give each row an id of its own, or leave the column out",
-                "{name}, line {line}: the id {} stands in line {first} too",
-                test.id
-            ));
+            let (mend, id) = ("give each row an id of its own, or leave the column out", &test.id);
+            return Err(miette!(help = mend, "{name}, line {line}: the id {id} stands in line {first} too"));
         }
         tests.push(test);
     }
     if tests.is_empty() {
-        return Err(miette::miette!(help = "write one row a recording", "{name} lists no recording"));
+        return Err(miette!(help = "write one row a recording", "{name} lists no recording"));
     }
     Ok(tests)
 }
@@ -106,27 +99,18 @@ fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<Pl
 fn check(heads: &[String], path: &Path) -> miette::Result<()> {
     let name = path.display();
     if !heads.iter().any(|head| head == RECORDING) {
-        return Err(miette::miette!(
-            help = "the first line names the columns: id, recording, cask, and what you like; `dropcheck \
-                    init FOLDER` writes one",
-            "{name}, line 1: there is no column `recording`"
-        ));
+        let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck \
+                    init FOLDER` writes one";
+        return Err(miette!(help = mend, "{name}, line 1: there is no column `recording`"));
     }
     let mut before = HashSet::new();
     for head in heads {
         if !head.is_empty() && !before.insert(head) {
-            return Err(miette::miette!(
-                help = "rename one of them",
-                "{name}, line 1: two columns are named {head}"
-            ));
+            return Err(miette!(help = "rename one of them", "{name}, line 1: two columns are named {head}"));
         }
-        key_of_column(head).map_err(|problem| {
-            miette::miette!(
-                help = "a column that is only to be carried into the tables needs a name without that \
-                        table's word and a point",
-                "{name}, line 1: {problem}"
-            )
-        })?;
+        let mend = "a column that is only to be carried into the tables needs a name without that table's \
+                    word and a point";
+        key_of_column(head).map_err(|problem| miette!(help = mend, "{name}, line 1: {problem}"))?;
     }
     Ok(())
 }
@@ -142,7 +126,7 @@ fn delimiter(text: &str) -> u8 {
 /// most.
 pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let fault = |error: csv::Error| miette::miette!("the manifest could not be written: {error}");
+    let fault = |error: csv::Error| miette!("the manifest could not be written: {error}");
     writer.write_record([ID, RECORDING, CASK, "drop.angle_deg", "test.date"]).map_err(fault)?;
     // A shell makes the file first into which the manifest goes.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);

@@ -2,6 +2,7 @@
 
 use crate::report;
 use crate::report::Batch;
+use miette::miette;
 use std::collections::HashSet;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -17,12 +18,11 @@ pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             recordings.extend(in_folder(path)?);
         } else if is_pattern(path) {
             let pattern = path.display().to_string();
-            let found =
-                glob::glob(&pattern).map_err(|fault| miette::miette!("{pattern} is no pattern: {fault}"))?;
+            let found = glob::glob(&pattern).map_err(|fault| miette!("{pattern} is no pattern: {fault}"))?;
             let before = recordings.len();
             recordings.extend(found.flatten().filter(|path| path.is_file() && !is_summary(path)));
             if recordings.len() == before {
-                return Err(miette::miette!("no file is named like {pattern}"));
+                return Err(miette!("no file is named like {pattern}"));
             }
         } else {
             recordings.push(path.clone());
@@ -42,7 +42,7 @@ fn is_pattern(path: &Path) -> bool {
 /// The recordings of a folder by their endings, by name.
 pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(path)
-        .map_err(|source| miette::miette!("the folder {} cannot be read: {source}", path.display()))?;
+        .map_err(|source| miette!("the folder {} cannot be read: {source}", path.display()))?;
     let mut files: Vec<PathBuf> =
         entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|p| p.is_file()).collect();
     files.sort();
@@ -50,11 +50,9 @@ pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
         files.into_iter().filter(|p| !is_summary(p)).partition(|p| has_ending(p));
     tell_left_out(path, &others);
     if found.is_empty() {
-        return Err(miette::miette!(
-            help = "name the recordings themselves: their content, not their name, tells the format",
-            "the folder {} holds no .mcap, .h5, .hdf5, .hdf or .csv file",
-            path.display()
-        ));
+        let mend = "name the recordings themselves: their content, not their name, tells the format";
+        let path = path.display();
+        return Err(miette!(help = mend, "the folder {path} holds no .mcap, .h5, .hdf5, .hdf or .csv file"));
     }
     Ok(found)
 }

@@ -7,6 +7,7 @@ use super::planned::{PlannedTest, cask_of};
 use crate::data::Program;
 use crate::ingest::{bytes_of, hexadecimal};
 use crate::report::folder_name;
+use miette::miette;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -102,14 +103,10 @@ impl CampaignPlan {
             let parent = real(input).and_then(|input| Some(input.parent()?.to_path_buf()));
             parent.is_some_and(|parent| folders.contains(&parent))
         };
-        match inputs.filter(|_| !folders.is_empty()).find(is_within) {
-            None => Ok(()),
-            Some(input) => Err(miette::miette!(
-                help = "choose another --out: no command alters its input",
-                "{} lies where a report of this campaign would go",
-                input.display()
-            )),
-        }
+        let mend = "choose another --out: no command alters its input";
+        inputs.filter(|_| !folders.is_empty()).find(is_within).map_or(Ok(()), |input| {
+            Err(miette!(help = mend, "{} lies where a report of this campaign would go", input.display()))
+        })
     }
 }
 

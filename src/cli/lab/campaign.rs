@@ -8,7 +8,7 @@ use super::document::MarkedDocument;
 use crate::lab::campaign::{self, ScenePlace, Tally};
 use crate::lab::data::{CampaignRequest, CampaignRow};
 use clap::Args;
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -94,11 +94,9 @@ fn own_number(place: ScenePlace, own: &[usize], path: &Path, line: &Value) -> mi
         own.binary_search(number).is_ok() && is_said
     };
     number.filter(is_own).ok_or_else(|| {
-        miette::miette!(
-            help = "name another file, or leave out --resume to begin anew",
-            "{} holds lines of another campaign, of another shard of it, or of another build of dropcheck",
-            path.display()
-        )
+        let (mend, path) = ("name another file, or leave out --resume to begin anew", path.display());
+        let other = "another campaign, of another shard of it, or of another build of dropcheck";
+        miette!(help = mend, "{path} holds lines of {other}")
     })
 }
 
@@ -136,11 +134,10 @@ fn tabled(
 }
 
 /// The words for kinds in one order and each once, so that shards of the same campaign say the same.
-pub fn words(kinds: &[&'static str]) -> Vec<String> {
-    let mut words: Vec<String> = kinds.iter().map(|word| (*word).to_owned()).collect();
-    words.sort();
-    words.dedup();
-    words
+pub fn words(mut kinds: Vec<String>) -> Vec<String> {
+    kinds.sort();
+    kinds.dedup();
+    kinds
 }
 
 #[cfg(test)]
@@ -149,6 +146,6 @@ mod tests {
 
     #[test]
     fn kinds_are_said_in_one_order() {
-        assert_eq!(words(&["skew", "hum", "skew"]), ["hum", "skew"]);
+        assert_eq!(words(["skew", "hum", "skew"].map(str::to_owned).into()), ["hum", "skew"]);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::output::replace;
 use crate::ingest::bytes_of;
+use miette::miette;
 use std::path::{Path, PathBuf};
 
 /// What stands before and behind the words that a command writes, the lines that mark the place included.
@@ -16,21 +17,14 @@ impl MarkedDocument {
     pub fn of(path: &Path, name: &str) -> miette::Result<Self> {
         let text = bytes_of(path, 16)
             .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
-            .map_err(|source| miette::miette!("{} cannot be read: {source}", path.display()))?;
+            .map_err(|source| miette!("{} cannot be read: {source}", path.display()))?;
         let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {name}: {word} -->"));
         let found = text.find(&begin).map(|at| at + begin.len()).zip(text.find(&end));
-        match found.filter(|(begin, end)| begin <= end) {
-            Some((begin, end)) => Ok(Self {
-                path: path.to_owned(),
-                before: text[..begin].to_owned(),
-                behind: text[end..].to_owned(),
-            }),
-            None => Err(miette::miette!(
-                help = format!("write the lines {begin} and {end} where the tables are to stand"),
-                "{} does not say where the tables go",
-                path.display()
-            )),
-        }
+        let Some((begin, end)) = found.filter(|(begin, end)| begin <= end) else {
+            let mend = format!("write the lines {begin} and {end} where the tables are to stand");
+            return Err(miette!(help = mend, "{} does not say where the tables go", path.display()));
+        };
+        Ok(Self { path: path.to_owned(), before: text[..begin].to_owned(), behind: text[end..].to_owned() })
     }
 
     /// Writes the words to their place.

@@ -8,21 +8,11 @@ use crate::{lab, report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-Beside FILE come the cask file (.toml) and the truth (.truth.json). The same scene and seed give the same \
-samples.
-The scene's keys: docs/formats.md; an example: fixtures/examples/scene-anf18.toml.
-
-Examples:
-  dropcheck synth scene.toml
-  dropcheck synth scene.toml --out drop.h5 --seed 7
-  dropcheck analyze drop.h5 --cask drop.toml";
-
 /// Behind the stem of the scene's name, so that its cask file is not taken for the scene.
 const SUFFIX: &str = "-synth.mcap";
 
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("../help/synth.txt"))]
 pub struct Arguments {
     /// The scene file (TOML)
     scene: PathBuf,

@@ -8,33 +8,11 @@ use crate::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
 use crate::lab::report::SyntheticFormat;
 use crate::{lab, report};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not
-(exit status 1): speed against accuracy, what becomes of damages, and every limit beside what
-was found. --quick takes a minute. reference.toml has a table a recording:
-
-  ["drop7.mcap"]               # beside it drop7.toml, or cask = "anf18.toml"
-  verdict = "pass"
-  slap_down_speed_m_s = 20.44  # the stated interval must hold it
-  k = { value = 0.51, within = 0.02 }
-
-Undamaged scenes are U0, U1 …, those of other kinds D0,
-    D1 …: with its seed a number names the same scene for ever.
-
-Examples:
-  dropcheck validate --quick --out validation
-  dropcheck validate --quick --reference our-drops --out validation
-  dropcheck validate --out docs/measured/trial --into docs/measured/trial.md
-  dropcheck validate --campaign 2000
-  dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
-  dropcheck validate --campaign 2000 --into docs/measured/campaign.md
-  dropcheck validate --campaign 100000 --shard 0/8 --jsonl shard-0.jsonl   # and 1/8 … elsewhere; then
-  dropcheck merge shard-*.jsonl --out campaign
-  dropcheck validate --scene D17 --out scene"#;
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("../help/validate.txt"))]
 #[command(group = clap::ArgGroup::new("what").args(["campaign", "scene"]))]
 pub struct Arguments {
     /// Analyse N random undamaged scenes and N of other kinds, with one damage each or none
@@ -54,9 +32,9 @@ pub struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
-    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind,
-        requires = "campaign")]
-    kinds: Vec<&'static str>,
+    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kinds(),
+        hide_possible_values = true, requires = "campaign")]
+    kinds: Vec<String>,
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
     exact: bool,
@@ -72,18 +50,15 @@ pub struct Arguments {
     parts: campaign::Parts,
 }
 
-fn kind(word: &str) -> Result<&'static str, String> {
-    let kinds = lab::campaign::kinds().map(|kind| kind.name);
-    let words: Vec<&str> = lab::campaign::WORDS.into_iter().chain(kinds).collect();
-    let known = words.iter().copied().find(|known| *known == word);
-    known.ok_or_else(|| format!("no kind of drop; there are {}", words.join(", ")))
+fn kinds() -> PossibleValuesParser {
+    lab::campaign::WORDS.into_iter().chain(lab::campaign::kinds().map(|kind| kind.name)).into()
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, out, Some(scenes)) => {
-            let kinds = campaign::words(&arguments.kinds);
+            let kinds = campaign::words(arguments.kinds.clone());
             let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
             campaign::run(&request, &arguments.parts, out.as_deref(), arguments.into.as_deref())
         }

@@ -3,7 +3,7 @@
 
 use super::super::output::{JsonTarget, replace_by};
 use crate::ingest::opened;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -79,8 +79,7 @@ impl LineFiles {
     /// Hands over all lines by number.
     pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
         for number in self.numbers() {
-            let line =
-                self.text(number).ok_or_else(|| miette::miette!("the lines were changed meanwhile"))?;
+            let line = self.text(number).ok_or_else(|| miette!("the lines were changed meanwhile"))?;
             take(line.as_bytes())?;
         }
         Ok(())
@@ -93,7 +92,8 @@ pub struct LineRecord {
     path: PathBuf,
     file: File,
     end: u64,
-    lines: LineFiles,
+    /// What is in it.
+    pub lines: LineFiles,
     /// Whether its lines stand by number, each once, and nothing else.
     is_in_order: bool,
 }
@@ -133,11 +133,6 @@ impl LineRecord {
         })?;
         (self.end, self.is_in_order) = (end, is_in_order);
         Ok(())
-    }
-
-    /// What is in it.
-    pub fn lines(&self) -> &LineFiles {
-        &self.lines
     }
 
     /// Writes one line at its end.
@@ -201,7 +196,7 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
     if !file.metadata().is_ok_and(|there| there.is_file()) {
         let help = "name a file; --jsonl - writes to standard output";
-        return Err(miette::miette!(help = help, "{} is a pipe or a device", path.display()));
+        return Err(miette!(help = help, "{} is a pipe or a device", path.display()));
     }
     // What a killed run had begun to start may hold it for a moment longer.
     let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
@@ -211,7 +206,7 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     };
     if is_held() && (0..TRIES).all(|_| waits()) {
         let help = "wait for it, or end it";
-        return Err(miette::miette!(help = help, "another run is writing {}", path.display()));
+        return Err(miette!(help = help, "another run is writing {}", path.display()));
     }
     Ok(file)
 }
@@ -254,13 +249,13 @@ mod tests {
         let mut file = OpenOptions::new().append(true).open(&path).unwrap();
         file.write_all(&line(1, "torn")[..20]).unwrap();
         let mut record = LineRecord::open(&path, true, &[], own).unwrap();
-        assert!(record.lines().line(3).is_some() && record.lines().line(1).is_none());
+        assert!(record.lines.line(3).is_some() && record.lines.line(1).is_none());
         for number in [1, 2, 3] {
             record.put(number, &line(number, "again")).unwrap();
         }
         record.finish().unwrap();
         let expected = [line(0, "first"), line(1, "again"), line(2, "again"), line(3, "again")].concat();
         assert_eq!(std::fs::read(&path).unwrap(), expected);
-        assert_eq!(record.lines().line(2).unwrap()["w"], "again");
+        assert_eq!(record.lines.line(2).unwrap()["w"], "again");
     }
 }

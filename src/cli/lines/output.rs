@@ -31,7 +31,7 @@ impl LineOutput {
     ) -> miette::Result<()> {
         let mut progress = CountedProgress::of(own.len(), self.record.is_some());
         // These are read by one thread beside the others, since the file grows meanwhile.
-        let earlier = self.record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
+        let earlier = self.record.as_ref().map(|record| record.lines.clone()).unwrap_or_default();
         let make = |number| {
             let earlier = earlier.text(number);
             make(number, earlier.as_deref()).map(|made| (made, earlier))

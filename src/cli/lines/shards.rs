@@ -3,6 +3,7 @@
 
 use super::file::{LineFiles, next_line};
 use crate::ingest::opened;
+use miette::miette;
 use serde_json::Value;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -84,16 +85,17 @@ fn complete(shards: &[PathBuf], all: usize, lines: &LineFiles) -> miette::Result
             shards[file].display()
         ),
     };
-    Err(miette::miette!(
-        help = "run that shard again, with --resume what is done is not done again; then name all shards",
-        "{what}; {count} of {} lines are in no shard, the first is number {} of the campaign",
-        all,
-        missing + 1
+    let first = missing + 1;
+    Err(refused(
+        "run that shard again, with --resume what is done is not done again; then name all shards",
+        &format!(
+            "{what}; {count} of {all} lines are in no shard, the first is number {first} of the campaign"
+        ),
     ))
 }
 
 fn refused(mend: &'static str, problem: &str) -> miette::Report {
-    miette::miette!(help = mend, "{problem}")
+    miette!(help = mend, "{problem}")
 }
 
 fn cut(path: &Path, line: usize) -> miette::Report {
@@ -112,7 +114,7 @@ fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
 
 /// `campaign.schema` of the first line.
 pub fn schema(path: &Path) -> miette::Result<String> {
-    let unread = |source| miette::miette!("{} cannot be read: {source}", path.display());
+    let unread = |source| miette!("{} cannot be read: {source}", path.display());
     let mut line = Vec::new();
     next_line(&mut BufReader::new(opened(path).map_err(unread)?), &mut line).map_err(unread)?;
     let first: Value = serde_json::from_slice(&line).unwrap_or_default();
@@ -121,12 +123,10 @@ pub fn schema(path: &Path) -> miette::Result<String> {
 
 /// The refusal of a file that no `--jsonl` of this program wrote.
 pub fn no_shard(path: &Path) -> miette::Report {
-    miette::miette!(
-        help = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was \
-                stopped goes on with --resume",
-        "{} is no shard of a campaign: its first line does not say of which",
-        path.display()
-    )
+    let mend = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was \
+                stopped goes on with --resume";
+    let path = path.display();
+    refused(mend, &format!("{path} is no shard of a campaign: its first line does not say of which"))
 }
 
 /// "I/N": part I, from 0, of N.
@@ -143,11 +143,9 @@ pub fn holds_some((index, count): (usize, usize), all: usize) -> miette::Result<
     if index < all.max(1) {
         return Ok(());
     }
-    let help = format!(
-        "take --shard I/{} at most; what the other shards wrote can be merged without it",
-        all.max(1)
-    );
-    Err(miette::miette!(help = help, "shard {index}/{count} holds none of {all}"))
+    let most = all.max(1);
+    let mend = format!("take --shard I/{most} at most; what the other shards wrote can be merged without it");
+    Err(miette!(help = mend, "shard {index}/{count} holds none of {all}"))
 }
 
 #[cfg(test)]

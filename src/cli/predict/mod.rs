@@ -12,27 +12,12 @@ use crate::report;
 use clap::Args;
 use std::path::PathBuf;
 
-const AFTER_HELP: &str = "\
-Which cases: without --k and --contact the four borderline cases, rough and smooth with k = 0 and k = 1. \
-With --k alone the contact is the cask file's; with --contact alone k is 0 and 1. \
-A sweep of k or friction takes the place of the option: curves and critical angles are then of its two ends.
-
-Monte Carlo draws k and friction evenly from their ranges; a --k or --contact alone is taken as known. \
-A tolerance is a half-width that holds 95 of 100 drops.
-
-Examples:
-  dropcheck predict --cask cask.toml
-  dropcheck predict --cask cask.toml --k 0.5 --contact 0.4
-  dropcheck predict --cask cask.toml --sweep 5:45:5 --out prediction
-  dropcheck predict --cask cask.toml --k-range 0.3:0.7 --out prediction
-  dropcheck predict --cask cask.toml --sweep 0:90:1 --sweep k=0:1:0.1";
-
 const CASES: &str = "What to predict";
 const CRITICAL: &str = "Critical angles and what uncertainty makes of them";
 const OUTPUT: &str = "Output";
 
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("../help/predict.txt"))]
 pub struct Arguments {
     /// The cask file (TOML); it needs no [[channel]]
     #[arg(short, long)]

@@ -4,6 +4,7 @@ use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name, rounded};
 use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use crate::predict;
+use miette::miette;
 
 /// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
@@ -48,10 +49,8 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
     for (i, sweep) in sweeps.iter().enumerate() {
         let called = name(sweep.variable);
         if sweeps[..i].iter().any(|other| other.variable == sweep.variable) {
-            return Err(miette::miette!(
-                help = "one --sweep for each variable; for two ranges of one variable run predict twice",
-                "--sweep {called} is given twice"
-            ));
+            let mend = "one --sweep for each variable; for two ranges of one variable run predict twice";
+            return Err(miette!(help = mend, "--sweep {called} is given twice"));
         }
         let option = match sweep.variable {
             SweepVariable::Angle => arguments.angle.map(|_| "--angle"),
@@ -60,10 +59,8 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
             SweepVariable::Length | SweepVariable::DropHeight => None,
         };
         if let Some(option) = option {
-            return Err(miette::miette!(
-                help = format!("leave out {option} to sweep, or --sweep {called} to have the one value"),
-                "{option} and --sweep {called} both say what {called} is"
-            ));
+            let mend = format!("leave out {option} to sweep, or --sweep {called} to have the one value");
+            return Err(miette!(help = mend, "{option} and --sweep {called} both say what {called} is"));
         }
     }
     Ok(())
@@ -72,33 +69,26 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
 /// A section longer than the cask is refused here as in the cask file.
 fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result<()> {
     let section_m = file.cask.height_m;
-    match swept(sweeps, SweepVariable::Length).and_then(ends) {
-        Some((shortest_m, _)) if shortest_m < section_m => Err(miette::miette!(
-            help = format!(
-                "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {}",
-                file.path.display()
-            ),
-            "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask \
-             is longer than its section"
-        )),
-        _ => Ok(()),
-    }
+    let shortest_m = swept(sweeps, SweepVariable::Length).and_then(ends).map(|(from_m, _)| from_m);
+    let Some(shortest_m) = shortest_m.filter(|from_m| *from_m < section_m) else { return Ok(()) };
+    let path = file.path.display();
+    Err(miette!(
+        help = format!(
+            "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {path}"
+        ),
+        "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask is \
+         longer than its section"
+    ))
 }
 
 /// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
 fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     let both = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
-    let swept_k = swept(&arguments.sweep, SweepVariable::K).and_then(ends);
-    let swept_friction = swept(&arguments.sweep, SweepVariable::Friction).and_then(ends);
-    let ks = match (arguments.k, swept_k) {
-        (Some(k), _) => Some(vec![k]),
-        (None, swept) => swept.map(both),
-    };
-    let contacts = match (arguments.contact, swept_friction) {
-        (Some(contact), _) => Some(vec![contact]),
-        (None, swept) => swept.map(|ends| both(ends).into_iter().map(Contact::Coulomb).collect()),
-    };
-    match (contacts, ks) {
+    let swept = |variable| swept(&arguments.sweep, variable).and_then(ends).map(both);
+    let rubbed = |coefficients: Vec<f64>| coefficients.into_iter().map(Contact::Coulomb).collect();
+    let ks = arguments.k.map(|k| vec![k]).or_else(|| swept(SweepVariable::K));
+    let contacts = arguments.contact.map(|contact| vec![contact]);
+    match (contacts.or_else(|| swept(SweepVariable::Friction).map(rubbed)), ks) {
         (Some(contacts), Some(ks)) => (contacts, ks),
         (Some(contacts), None) => (contacts, vec![0.0, 1.0]),
         // A prediction needs one: the borderline case that the paper found.
@@ -174,7 +164,7 @@ fn few_enough(request: &StudyRequest, file: &CaskFile) -> miette::Result<()> {
         .collect();
     let longest = request.sweeps.iter().max_by_key(|sweep| sweep.values.len());
     let longest = longest.map_or("", |sweep| name(sweep.variable));
-    Err(miette::miette!(
+    Err(miette!(
         help = format!("take a larger STEP or a shorter range for {longest}, or give --k and --contact"),
         "{} = {predictions} predictions are too many; at most {MOST_PREDICTIONS}",
         product.join(" × ")

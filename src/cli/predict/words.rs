@@ -57,22 +57,17 @@ fn within(text: &str, least: f64, most: f64, range: &str) -> Result<f64, String>
 }
 
 pub fn contact(text: &str) -> Result<Contact, String> {
+    let other = |_| "give rough, smooth or a friction coefficient such as 0.4".to_owned();
     match text.trim().to_lowercase().as_str() {
-        "rough" => return Ok(Contact::Rough),
-        "smooth" => return Ok(Contact::Smooth),
-        _ => {}
+        "rough" => Ok(Contact::Rough),
+        "smooth" => Ok(Contact::Smooth),
+        _ => friction(number(text).map_err(other)?).map(Contact::Coulomb),
     }
-    let value =
-        number(text).map_err(|_| "give rough, smooth or a friction coefficient such as 0.4".to_owned())?;
-    friction(value).map(Contact::Coulomb)
 }
 
 fn friction(value: f64) -> Result<f64, String> {
-    if value >= 0.0 {
-        Ok(value)
-    } else {
-        Err("a friction coefficient is not negative: 0 is smooth, 0.4 is common for steel".into())
-    }
+    let range = "a friction coefficient is not negative: 0 is smooth, 0.4 is common for steel";
+    if value >= 0.0 { Ok(value) } else { Err(range.into()) }
 }
 
 /// FROM:TO within 0 to 1.
@@ -96,20 +91,13 @@ fn range(text: &str, example: &str, end: impl Fn(&str) -> Result<f64, String>) -
 
 /// Whether TO does not lie below FROM.
 pub fn ascending(from: f64, to: f64) -> Result<(), String> {
-    if to < from {
-        return Err(format!("TO ({to}) lies below FROM ({from}): exchange them"));
-    }
-    Ok(())
+    if to < from { Err(format!("TO ({to}) lies below FROM ({from}): exchange them")) } else { Ok(()) }
 }
 
 /// The width of a band, percent.
 pub fn band(text: &str) -> Result<f64, String> {
-    let percent = number(text)?;
-    if percent > 0.0 && percent <= 50.0 {
-        Ok(percent)
-    } else {
-        Err("the band is above 0 and at most 50 percent wide; 5 is usual".into())
-    }
+    let (percent, range) = (number(text)?, "the band is above 0 and at most 50 percent wide; 5 is usual");
+    if percent > 0.0 && percent <= 50.0 { Ok(percent) } else { Err(range.into()) }
 }
 
 /// The half-width of the angle, degrees.

@@ -24,14 +24,12 @@ pub struct ScenePlace<'a> {
 
 impl<'a> ScenePlace<'a> {
     /// The first of the `count` scenes of a campaign, done in so many parts, by this program.
-    #[must_use]
     pub fn first(of: &'a CampaignRequest, count: usize, parts: usize) -> Self {
         let Program { version, commit, .. } = Program::this();
         Self { schema: SCHEMA, version, commit, of, count, number: 0, shard: [0, parts] }
     }
 
     /// Scene `number` of the same campaign.
-    #[must_use]
     pub fn at(self, number: usize) -> Self {
         let parts = self.shard[1];
         Self { number, shard: [number % parts.max(1), parts], ..self }
@@ -54,7 +52,6 @@ pub fn line(campaign: &ScenePlace, row: &CampaignRow) -> serde_json::Result<Stri
 }
 
 /// What a line says; `None` where it is no whole one.
-#[must_use]
 pub fn read(line: &[u8]) -> Option<CampaignRow> {
     serde_json::from_slice(line.strip_suffix(b"\n")?).ok()
 }

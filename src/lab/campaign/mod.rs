@@ -11,8 +11,7 @@ mod tally;
 
 pub use lines::{SCHEMA, ScenePlace, line, read};
 pub use score::csv;
-pub(super) use score::written;
-pub(super) use statistics::{half_widths_between, half_widths_off, is_missed, quantile};
+pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;
 pub use tally::Tally;
@@ -34,7 +33,6 @@ use std::convert::Infallible;
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
-#[must_use]
 pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
     let (numbers, mut rows) = (numbers(request), Vec::new());
     let take = |_, row| {
@@ -48,7 +46,6 @@ pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
-#[must_use]
 pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
     let RecordedScene { drop, recording, .. } = recorded(seed, number, exact);
     (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
@@ -56,7 +53,6 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
 
 /// The scenes of a campaign in their order, undamaged ones first: those of a kind are counted through all
 /// kinds, those not asked for left out.
-#[must_use]
 pub fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let has = |word: &str| request.kinds.iter().any(|own| own == word);
     let [all, undamaged, sound] = WORDS.map(has);
@@ -77,7 +73,6 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
 }
 
 /// What is found of a scene, beside its truth.
-#[must_use]
 pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
     let read = scene.drop.read(&scene.recording);

@@ -8,7 +8,8 @@ use crate::lab::data::{
 };
 use crate::lab::drawn::DrawnDrop;
 use crate::report::ReportError;
-use crate::report::records::finished;
+use crate::report::records::records;
+use crate::report::text::json_word;
 use std::collections::BTreeMap;
 
 /// A scene, drawn, struck by its damage and recorded.
@@ -86,7 +87,7 @@ fn quantities(
 fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
     let findings = analysis.into_iter().flat_map(|a| &a.result.quality);
     let mut names: Vec<String> =
-        findings.filter(|f| f.severity == severity).map(|f| written(f.code)).collect();
+        findings.filter(|f| f.severity == severity).map(|f| json_word(f.code)).collect();
     names.sort();
     names.dedup();
     names
@@ -99,12 +100,8 @@ fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
 /// Where the writer fails.
 pub fn csv(row: &CampaignRow, with_headers: bool) -> Result<Vec<u8>, ReportError> {
     let cells = cells(row);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    if with_headers {
-        writer.write_record(cells.iter().map(|cell| &cell.0))?;
-    }
-    writer.write_record(cells.iter().map(|cell| &cell.1))?;
-    finished(writer)
+    let (headers, cells): (Vec<String>, Vec<String>) = cells.into_iter().unzip();
+    records(with_headers.then_some(headers).into_iter().chain([cells]))
 }
 
 /// A cell under its header.
@@ -130,7 +127,7 @@ fn cells(row: &CampaignRow) -> Vec<Cell> {
         cell("kind", damage.map_or("none", |damage| &damage.kind)),
         maybe("size", damage.map(|damage| damage.size)),
         cell("size_unit", damage.map_or("", |damage| &damage.unit)),
-        cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), written)),
+        cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), json_word)),
         cell("outcome", statistics::outcome(row).word()),
         cell("errors", row.errors.join(" ")),
         cell("warnings", row.warnings.join(" ")),
@@ -141,10 +138,10 @@ fn cells(row: &CampaignRow) -> Vec<Cell> {
         cells.push(maybe(&format!("{name}_true"), scored.and_then(|scored| scored.truth)));
         cells.push(maybe(&format!("{name}_off"), scored.and_then(statistics::half_widths_off)));
     }
-    cells.push(cell("rung", row.rung.map_or_else(String::new, written)));
+    cells.push(cell("rung", row.rung.map_or_else(String::new, json_word)));
     for rung in ReconstructionRung::ALL {
         let said = row.rungs.iter().find(|said| said.rung == rung);
-        let name = written(rung);
+        let name = json_word(rung);
         cells.push(cell(
             &format!("{name}_consistent"),
             said.map_or("", |said| if said.consistent { "yes" } else { "no" }),
@@ -164,10 +161,4 @@ fn cells(row: &CampaignRow) -> Vec<Cell> {
         cell("stated_contact", &facts.stated_contact),
     ]);
     cells
-}
-
-/// A code, a rung or a verdict as the result writes it.
-pub(in crate::lab) fn written(word: impl serde::Serialize) -> String {
-    // An enum without data is a JSON string.
-    serde_json::to_string(&word).unwrap_or_default().trim_matches('"').to_owned()
 }

@@ -3,7 +3,7 @@
 
 use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{CampaignRow, Scored, Stated};
-pub(in crate::lab) use crate::numerics::robust::quantile;
+use crate::numerics::{as_f64, whole};
 use std::collections::BTreeMap;
 
 /// An error above this many half-widths on a result that passed is a miss: the interval ends half its width,
@@ -101,19 +101,14 @@ impl Magnitudes {
     }
 
     /// The value below which this share lies; the largest is known as it is. NaN of none.
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "an index into a list"
-    )]
     pub(super) fn quantile(&self, share: f64) -> f64 {
         let Some(last) = self.count.checked_sub(1) else { return f64::NAN };
-        let place = share * last as f64;
-        let below = (place as usize).min(last);
+        let place = share * as_f64(last);
+        let below = whole(place).min(last);
         let (low, high) = (self.at(below), self.at((below + 1).min(last)));
         // Equal neighbours may be infinite.
-        if place > below as f64 && low < high { low + (place - below as f64) * (high - low) } else { low }
+        let beyond = place - as_f64(below);
+        if beyond > 0.0 && low < high { low + beyond * (high - low) } else { low }
     }
 
     /// The value of this rank: the middle of its bin.
@@ -213,6 +208,7 @@ impl SceneGroup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::robust::quantile;
 
     fn counted(values: impl IntoIterator<Item = f64>) -> Magnitudes {
         let mut all = Magnitudes::default();

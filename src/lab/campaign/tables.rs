@@ -1,19 +1,17 @@
 //! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
 //! often it says so.
 
-use super::score::written;
 use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread};
 use super::tally::{ClassTable, Tally};
 use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{Campaign, CampaignRow, Stated};
 use crate::numerics::as_f64;
 use crate::report::as_markdown;
-use crate::report::document::{Chapter, ChapterPart, ReportDocument};
+use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable};
 use crate::report::rounding::optional_fixed;
-use crate::report::table::ReportTable;
+use crate::report::text::json_word;
 
 /// The whole as Markdown.
-#[must_use]
 pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally), None)
 }
@@ -94,7 +92,7 @@ fn verdicts(scenes: &SceneGroup) -> ChapterPart {
         scenes.count(|s| s.verdict == Some(*verdict) && outcomes.contains(&s.outcome))
     };
     ReportTable::of(&[Verdict::Pass, Verdict::Review, Verdict::Fail])
-        .text("verdict", written)
+        .text("verdict", json_word)
         .number("scenes", |verdict| number(verdict, &SceneOutcome::ALL).to_string())
         .number("share", |verdict| share(number(verdict, &SceneOutcome::ALL), scenes.len()))
         .number("speed and k right or held", |verdict| {
@@ -126,7 +124,8 @@ fn taken_rungs(tally: &Tally) -> ChapterPart {
     let groups = tally.groups(ClassTable::Rungs);
     let mut table = ReportTable::of(&groups).text("scene", |(words, _)| *words);
     for rung in ReconstructionRung::ALL {
-        table = table.number(written(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
+        table =
+            table.number(json_word(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
     }
     table.into()
 }
@@ -136,8 +135,8 @@ fn other_rungs(tally: &Tally) -> ChapterPart {
     let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.k.count() > 0).collect();
     ReportTable::of(&pairs)
         .chosen(|((taken, rung), _)| taken == rung)
-        .text("taken", |((taken, _), _)| written(taken))
-        .text("rung", |((_, rung), _)| written(rung))
+        .text("taken", |((taken, _), _)| json_word(taken))
+        .text("rung", |((_, rung), _)| json_word(rung))
         .number("drops", |(_, said)| said.k.count().to_string())
         .number("speed: 95th, %", |(_, said)| said.speed.error(0.95, 2))
         .number("half-width, %", |(_, said)| said.speed.half_width(2))

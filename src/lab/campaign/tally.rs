@@ -131,7 +131,6 @@ pub struct Tally {
 
 impl Tally {
     /// Of no scene yet.
-    #[must_use]
     pub fn new(request: CampaignRequest) -> Self {
         Self { request, groups: BTreeMap::new(), rungs: BTreeMap::new(), missed: Vec::new(), missed_count: 0 }
     }

@@ -2,15 +2,13 @@
 //! until the analysis fails.
 
 mod chain;
-mod harder;
 mod physical;
 mod samples;
 mod stated;
 mod wish;
 
-use super::data::SyntheticRecording;
-use super::drawn::DrawnDrop;
-use super::plan::DropPlan;
+use super::data::{BendingMode, SyntheticRecording};
+use super::drawn::{DrawnDrop, DropPlan};
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
@@ -79,7 +77,6 @@ impl DamageKind {
     }
 
     /// Whether it is no damage: its drops should pass, and their intervals hold.
-    #[must_use]
     pub fn is_sound(&self) -> bool {
         self.of == "sound"
     }
@@ -101,12 +98,35 @@ impl DamageKind {
     /// The drop of a sound plan, and its recording, grown to this size.
     pub(super) fn grown(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
-        harder::harden(self.name, &mut plan, size);
+        harden(self.name, &mut plan, size);
         let wish = self.wish(size);
         plan.contact = wish.contact.unwrap_or(plan.contact);
         let mut drop = plan.draw_with(|scene, stated, chance| wish.equip(scene, stated, chance));
         let recording = self.strike(&mut drop, size);
         (drop, recording)
+    }
+}
+
+/// A flight shows so many periods of a mode that has to be told by itself.
+const CLEAR_PERIODS: f64 = 3.0;
+
+/// Hardens a sound plan; a kind of damage does nothing to it.
+fn harden(kind: &str, plan: &mut DropPlan, size: f64) {
+    let flight_s = if kind.contains("mode") { plan.flight_s() } else { 1.0 };
+    let clear = DropPlan::mode(1, CLEAR_PERIODS / flight_s);
+    match kind {
+        "mode_frequency" => plan.modes = vec![DropPlan::mode(1, size / flight_s)],
+        "mode_damping" => plan.modes = vec![BendingMode { damping: size, ..clear }],
+        "close_modes" => {
+            plan.modes = vec![clear, DropPlan::mode(2, clear.frequency_hz * (1.0 + size / 100.0))];
+        }
+        "mode_strength" => plan.modes = vec![BendingMode { strength: size, ..clear }],
+        "k_small" => plan.k = size,
+        "k_large" => plan.k = 1.0 - size,
+        "pulse" => plan.pulse_s = 1e-3 * size,
+        "angle_small" | "angle_large" => plan.angle_deg = size,
+        "recontact" => (plan.k, plan.angle_deg) = (0.1, size),
+        _ => {}
     }
 }
 

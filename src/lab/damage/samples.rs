@@ -3,6 +3,7 @@
 use super::super::data::{SyntheticChannel, SyntheticRecording};
 use super::super::drawn::{DrawnDrop, unit_m_s2};
 use crate::data::{STANDARD_GRAVITY_M_S2, Unit};
+use crate::numerics::{single, whole};
 use std::f64::consts::TAU;
 
 /// Damages the recording by `kind`; one that is done to something else does nothing to it.
@@ -28,10 +29,9 @@ fn one<'a>(case: &mut DrawnDrop, recording: &'a mut SyntheticRecording) -> &'a m
 }
 
 /// Index of the sample at `since_s` after first contact.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
 fn index(case: &DrawnDrop, channel: &SyntheticChannel, since_s: f64) -> usize {
     let number = (case.scene.before_s + since_s) * channel.sample_rate_hz;
-    (number.round() as usize).min(channel.samples.len())
+    whole(number.round()).min(channel.samples.len())
 }
 
 /// Time of sample `index` after first contact, s.
@@ -47,11 +47,6 @@ fn g_in(channel: &SyntheticChannel) -> f64 {
 /// The largest magnitude of a channel, in its unit.
 fn peak(channel: &SyntheticChannel) -> f64 {
     channel.samples.iter().fold(0.0_f64, |peak, x| peak.max(f64::from(x.abs())))
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "recorders store single precision")]
-fn stored(value: f64) -> f32 {
-    value as f32
 }
 
 /// Infinite samples here and there between first contact and slap-down.
@@ -81,7 +76,7 @@ fn unplugged(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64
     let g = g_in(channel);
     for i in 0..channel.samples.len() {
         let hum = size * (TAU * 50.0 * time_s(case, channel, i) + phase).sin();
-        channel.samples[i] = stored(g * (hum + 0.05 * case.chance.normal()));
+        channel.samples[i] = single(g * (hum + 0.05 * case.chance.normal()));
     }
 }
 
@@ -92,22 +87,21 @@ fn drift(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let g = g_in(channel);
     for i in 0..channel.samples.len() {
         let since_s = time_s(case, channel, i) + case.scene.before_s;
-        channel.samples[i] += stored(g * slope * since_s);
+        channel.samples[i] += single(g * slope * since_s);
     }
 }
 
 /// Single samples off by half to twice the peak, between 20 ms before first contact and the slap-down.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number")]
 fn spikes(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let way_s = case.way_s();
     let channel = one(case, recording);
     let peak = peak(channel);
-    for _ in 0..size as usize {
+    for _ in 0..whole(size) {
         let since_s = case.chance.even(-20e-3, way_s);
         let at = index(case, channel, since_s);
         let off = case.chance.sign() * case.chance.even(0.5, 2.0) * peak;
         if let Some(sample) = channel.samples.get_mut(at) {
-            *sample += stored(off);
+            *sample += single(off);
         }
     }
 }
@@ -127,7 +121,7 @@ fn aliasing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64)
                 let since_s = time_s(case, channel, i) - struck_s;
                 let fading = amplitude * (-since_s / FADES_S).exp();
                 let swing = (TAU * times_rate * channel.sample_rate_hz * since_s + phase).sin();
-                channel.samples[i] += stored(fading * swing);
+                channel.samples[i] += single(fading * swing);
             }
         }
     }
@@ -140,7 +134,7 @@ fn unit(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64, uni
         // What the samples must be multiplied by to be in the unit that is not stated.
         let factor = unit_m_s2(&channel.unit) / if unit == Unit::G { 1.0 } else { STANDARD_GRAVITY_M_S2 };
         if all || i == only {
-            channel.samples.iter_mut().for_each(|x| *x = stored(f64::from(*x) * factor));
+            channel.samples.iter_mut().for_each(|x| *x = single(f64::from(*x) * factor));
             if unit == Unit::G { "g" } else { "m/s^2" }.clone_into(&mut channel.unit);
             case.stated.channels[i].unit = Some(unit);
         }

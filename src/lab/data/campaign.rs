@@ -164,13 +164,11 @@ pub struct CampaignRow {
 
 impl CampaignRow {
     /// What is stated of a quantity.
-    #[must_use]
     pub fn stated(&self, quantity: &str) -> Option<Stated> {
         self.quantities.get(quantity)?.stated
     }
 
     /// The truth of a quantity.
-    #[must_use]
     pub fn truth(&self, quantity: &str) -> Option<f64> {
         self.quantities.get(quantity)?.truth
     }

@@ -20,7 +20,6 @@ pub struct CrushableEnd {
 
 impl CrushableEnd {
     /// An end without yield, lock-up and footprint, by its stiffnesses, N/m.
-    #[must_use]
     pub fn elastic(loading_n_m: f64, unloading_n_m: f64) -> Self {
         Self { loading_n_m, unloading_n_m, yield_n: None, lock_up: None, footprint: 0.0 }
     }
@@ -117,7 +116,6 @@ pub struct Chain {
 
 impl Chain {
     /// A chain that alters nothing.
-    #[must_use]
     pub fn perfect() -> Self {
         Self { scale: 1.0, ..Self::default() }
     }
@@ -148,7 +146,6 @@ pub struct SceneChannel {
 
 impl SceneChannel {
     /// A transverse channel in g at 20 kHz whose chain alters nothing.
-    #[must_use]
     pub fn perfect(name: &str, end: End, position_m: f64) -> Self {
         Self {
             name: name.to_owned(),
@@ -201,7 +198,6 @@ pub struct Scene {
 }
 
 /// The drop where guides take `share` of g off its fall: √(2 g h) becomes √(2 (1 − q) g h).
-#[must_use]
 pub fn slowed(free: Drop, share: f64) -> Drop {
     let of_fall_m_s = (2.0 * free.gravity_m_s2 * free.height_m).sqrt();
     let lost_m_s = of_fall_m_s * (1.0 - (1.0 - share).sqrt());
@@ -210,7 +206,6 @@ pub fn slowed(free: Drop, share: f64) -> Drop {
 
 impl Scene {
     /// From the release to first contact, s: √(2 h/(g (1 − q))), of which guides take q.
-    #[must_use]
     pub fn fall_s(&self) -> f64 {
         (2.0 * self.drop.height_m / (self.drop.gravity_m_s2 * (1.0 - self.extras.guided))).sqrt()
     }
@@ -232,7 +227,6 @@ impl SimulatedMotion {
     }
 
     /// Tangential and normal impulse of the first contact, N s.
-    #[must_use]
     pub fn first_impulse_n_s(&self) -> (f64, f64) {
         let end_s = self.truth.contact_s.unwrap_or(f64::INFINITY);
         let steps = self.steps[..self.count_before(|t| t <= end_s)].windows(2);

@@ -53,7 +53,6 @@ impl SyntheticChannel {
     }
 
     /// Stamp of sample `index`, s.
-    #[must_use]
     pub fn time_s(&self, index: usize) -> f64 {
         self.start_s + as_f64(index) / self.sample_rate_hz
     }
@@ -74,7 +73,6 @@ pub struct SyntheticRecording {
 
 impl SyntheticRecording {
     /// The recording as sensors write it that are mounted as the cask file states.
-    #[must_use]
     pub fn mounted(&self, stated: &CaskFile) -> Self {
         let mut mounted = self.clone();
         for (channel, stated) in mounted.channels.iter_mut().zip(&stated.channels) {

@@ -14,7 +14,6 @@ pub struct TrialRequest {
 
 impl TrialRequest {
     /// What the quick run takes, or the full one.
-    #[must_use]
     pub fn either<T>(&self, quick: T, full: T) -> T {
         if self.quick { quick } else { full }
     }
@@ -110,13 +109,11 @@ pub struct TrialMap {
 
 impl TrialMap {
     /// The first size at which this becomes of a drop.
-    #[must_use]
     pub fn first(&self, fate: TrialFate) -> Option<&TrialSize> {
         self.sizes.iter().find(|size| size.drops.iter().any(|drop| drop.fate == fate))
     }
 
     /// The drops at the gross end of which no finding names what is wrong.
-    #[must_use]
     pub fn unnamed(&self) -> usize {
         self.sizes.last().map_or(0, |size| size.drops.iter().filter(|drop| !drop.is_named).count())
     }
@@ -143,7 +140,6 @@ pub struct TrialLimit {
 
 impl TrialLimit {
     /// Whether what was found lies within.
-    #[must_use]
     pub fn is_kept(&self) -> bool {
         let within =
             |v: f64| self.least.is_none_or(|least| v >= least) && self.most.is_none_or(|most| v <= most);
@@ -194,7 +190,6 @@ pub struct Trial {
 
 impl Trial {
     /// Whether every limit is kept.
-    #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.limits.iter().all(TrialLimit::is_kept)
     }

@@ -3,8 +3,7 @@
 use crate::data::{CaskFile, CoarseEvent, Recording, STANDARD_GRAVITY_M_S2, Signal};
 use crate::lab::chance::Chance;
 use crate::lab::data::TrialRequest;
-use crate::lab::drawn::BUILDS;
-use crate::lab::plan::DropPlan;
+use crate::lab::drawn::{BUILDS, DropPlan};
 use crate::{condition, events};
 use rayon::prelude::*;
 

@@ -3,10 +3,11 @@
 use super::points::ALL_CLASSES;
 use super::references::{self, References};
 use crate::data::Verdict;
-use crate::lab::campaign::{half_widths_off, is_missed, quantile};
+use crate::lab::campaign::{half_widths_off, is_missed};
 use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
+use crate::numerics::robust::quantile;
 use std::f64::consts::PI;
 
 /// What is measured, least, most, unit, why.
@@ -16,7 +17,6 @@ const TABLE: &str = include_str!("../limits.tsv");
 type Found = (Option<f64>, String);
 
 /// Every limit beside what was found: those of the table, then a site's own recordings.
-#[must_use]
 pub fn limits(
     points: &[TrialPoint],
     maps: &[TrialMap],

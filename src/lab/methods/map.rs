@@ -3,12 +3,12 @@
 
 use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
-use crate::lab::campaign::{half_widths_between, written};
+use crate::lab::campaign::half_widths_between;
 use crate::lab::damage::{self, DamageKind};
 use crate::lab::data::{TrialDrop, TrialFate, TrialMap, TrialRequest, TrialSize};
-use crate::lab::drawn::{ANF_10, ANF_18, Build, ESBB, VHLW};
-use crate::lab::plan::DropPlan;
+use crate::lab::drawn::{ANF_10, ANF_18, Build, DropPlan, ESBB, VHLW};
 use crate::numerics::as_f64;
+use crate::report::text::json_word;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -56,7 +56,7 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
         _ => TrialFate::Refused,
     };
     let is_named = kind.told_by.is_empty()
-        || result.quality.iter().any(|finding| kind.told_by.contains(&&written(finding.code)[..]));
+        || result.quality.iter().any(|finding| kind.told_by.contains(&&json_word(finding.code)[..]));
     TrialDrop { fate, half_widths_off: worst, is_named }
 }
 

@@ -1,7 +1,6 @@
 //! Whole ways of working and damages that grow to what is accepted: speed, accuracy, failure.
 
 mod drops;
-mod front;
 mod limits;
 mod map;
 mod points;
@@ -26,7 +25,6 @@ type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
 pub const FAMILIES: [(&str, Trying); 2] = [("ways", ways::points), ("prediction", prediction::points)];
 
 /// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
-#[must_use]
 pub fn trial(
     request: TrialRequest,
     machine: TrialMachine,
@@ -39,7 +37,7 @@ pub fn trial(
         progress(as_f64(done) / as_f64(3 * FAMILIES.len()));
         points.extend(tried(&request));
     }
-    front::mark_front(&mut points);
+    points::mark_front(&mut points);
     let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
     let drops = CampaignRequest {
         scenes: request.either(100, 600),

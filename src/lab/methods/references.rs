@@ -5,8 +5,8 @@ use crate::data::{DropResult, Estimate};
 use crate::ingest;
 use crate::ingest::cask_file::section::Kind;
 use crate::ingest::cask_file::{self, CaskFileError, no_cask_file};
-use crate::lab::campaign::written;
 use crate::lab::data::TrialLimit;
+use crate::report::text::json_word;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,10 +16,9 @@ const NAME: &str = "reference.toml";
 
 /// What stands in it.
 const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", \
-                    findings = [\"clipped\"], \
-                    k = 0.51 or k = { value = 0.51, within = 0.02 }, slap_down_speed_m_s, \
-                    angular_velocity_rad_s, flight_time_s, \
-                    impact_velocity_m_s, predicted_speed_m_s";
+                    findings = [\"clipped\"], k = 0.51 or k = { value = 0.51, within = 0.02 }, \
+                    slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, impact_velocity_m_s, \
+                    predicted_speed_m_s";
 
 /// Recordings of `fixtures/examples` and their cask files by their names.
 macro_rules! fixtures {
@@ -155,12 +154,12 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
     match analyzed {
         Err(problem) => differs.push(problem.clone()),
         Ok(result) => {
-            let verdict = written(result.verdict);
+            let verdict = json_word(result.verdict);
             if expected.verdict.as_ref().is_some_and(|expected| *expected != verdict) {
                 differs.push(format!("the verdict is {verdict}"));
             }
             let is_named =
-                |code: &String| result.quality.iter().any(|finding| written(finding.code) == *code);
+                |code: &String| result.quality.iter().any(|finding| json_word(finding.code) == *code);
             let unnamed = expected.findings.iter().filter(|code| !is_named(code));
             differs.extend(unnamed.map(|code| format!("{code} is not named")));
         }

@@ -188,7 +188,7 @@ fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
 /// The drops of a class as files in a folder; those in which R does not strike are left out.
 fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
     let plans = class.plans(request.either(6, 30), request);
-    let filed = |(number, plan): (usize, &crate::lab::plan::DropPlan)| {
+    let filed = |(number, plan): (usize, &crate::lab::drawn::DropPlan)| {
         let mut plan = plan.clone();
         (plan.rate_hz, plan.before_s) = (RATE_HZ, plan.before_s + BEFORE_S);
         let mut drop = plan.draw();

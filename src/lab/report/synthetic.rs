@@ -95,7 +95,6 @@ fn one_rate_hz(recording: &SyntheticRecording) -> Result<f64, SyntheticError> {
 }
 
 /// The names of the files of a recording: its own, the cask file's, the truth's.
-#[must_use]
 pub fn synthetic_names(recording_name: &str) -> [String; 3] {
     let stem = recording_name.rsplit_once('.').map_or(recording_name, |(stem, _)| stem);
     [recording_name.to_owned(), format!("{stem}.toml"), format!("{stem}.truth.json")]

@@ -12,13 +12,11 @@ pub const TRIAL_NAMES: [&str; 5] =
 
 /// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves
 /// them out.
-#[must_use]
 pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
     as_markdown::markdown(&document::document(trial), folder)
 }
 
 /// What a terminal shows at the end: the limits, and whether the program is accepted.
-#[must_use]
 pub fn trial_outcome(trial: &Trial, width: usize) -> String {
     as_text::text(&document::verdict(trial), width)
 }

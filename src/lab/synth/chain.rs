@@ -11,6 +11,7 @@ use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2};
 use crate::lab::data::{
     MotionStep, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
 };
+use crate::numerics::single;
 
 /// What a perfect sensor at a channel's place and axis reads at given times, m/s².
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
@@ -25,7 +26,6 @@ struct SensedDrop<'a> {
 }
 
 /// What the recorder of `scene` writes of `motion`. The same scene gives the same bits.
-#[must_use]
 pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     let force =
         |channel: &SceneChannel, times_s: &[f64]| super::specific_force_m_s2(scene, motion, channel, times_s);
@@ -92,8 +92,7 @@ fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop)
     recorder::hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz, None);
     recorder::hold(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz, Some(f64::NAN));
     let unit_m_s2 = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
-    #[allow(clippy::cast_possible_truncation, reason = "recorders store 24 bits at most")]
-    let samples = samples_m_s2.iter().map(|x| (x / unit_m_s2) as f32).collect();
+    let samples = samples_m_s2.iter().map(|x| single(x / unit_m_s2)).collect();
     SyntheticChannel {
         name: seat.name.clone(),
         unit: seat.unit.clone(),

@@ -8,7 +8,6 @@ use std::f64::consts::FRAC_PI_2;
 ///
 /// m_eff is the mass that the corner of `end` shows the target: of L at the drop angle under `contact`; of R
 /// with the axis flat and sliding freely. The turn of the body and gravity during the pulse are left out.
-#[must_use]
 pub fn crushable_end(
     cask: &Cask,
     drop: &Drop,

@@ -59,7 +59,6 @@ fn is_upright(y: &[f64]) -> bool {
 ///
 /// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
 /// [`super::MOST_MODES`] are left out. The result is the same to the bit at every run.
-#[must_use]
 pub fn simulate(scene: &Scene) -> SimulatedMotion {
     follow(scene, TOLERANCE, usize::MAX)
 }
@@ -68,7 +67,6 @@ pub fn simulate(scene: &Scene) -> SimulatedMotion {
 /// slap-down.
 ///
 /// A cask that stands on L while its contents rattle takes hundreds of thousands of steps to tell nothing.
-#[must_use]
 pub fn simulate_one_flight(scene: &Scene) -> SimulatedMotion {
     follow(scene, TOLERANCE, 0)
 }

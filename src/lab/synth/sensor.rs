@@ -13,7 +13,6 @@ const RELEASE_S: f64 = 2e-3;
 /// Before first contact the cask falls, held back by what guides it; before its release, where the scene
 /// shows it, it hangs at rest. Bending and roll are in the transverse axis. After the motion's end the last
 /// value stays.
-#[must_use]
 pub fn specific_force_m_s2(
     scene: &Scene,
     motion: &SimulatedMotion,

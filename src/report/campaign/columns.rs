@@ -23,7 +23,6 @@ pub struct CampaignColumn {
 
 /// Every column that each `campaign.csv` has, whatever was dropped: those of the table, and the keys of the
 /// cask file but those of channels. What the manifest carries comes behind them.
-#[must_use]
 pub fn campaign_columns() -> &'static [CampaignColumn] {
     static ALL: LazyLock<Vec<CampaignColumn>> = LazyLock::new(|| {
         let mut all: Vec<CampaignColumn> = Vec::new();

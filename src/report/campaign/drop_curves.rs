@@ -22,7 +22,6 @@ pub struct DropCurves {
 }
 
 /// The curves of an analysis; none where no first contact was found.
-#[must_use]
 pub fn drop_curves(analysis: &Analysis) -> Option<DropCurves> {
     let (events, curves) = (&analysis.result.events, &analysis.curves.channels);
     let contact_s = events.first_contact_s()?;

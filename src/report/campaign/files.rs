@@ -6,7 +6,7 @@ use super::series::{DropSeries, PooledQuantity, RowPlace};
 use super::{Batch, BatchRow, MOST_SERIES, PredictedCurve, page};
 use crate::data::Program;
 use crate::report::json::{in_a_line, pretty};
-use crate::report::records::{finished, text_cell};
+use crate::report::records::{records, text_cell};
 use crate::report::text::json_word;
 use crate::report::{ReportError, as_html};
 use serde_json::{Value, json};
@@ -37,7 +37,8 @@ impl<'a> CampaignFiles<'a> {
     pub fn csv_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
         let own = self.columns(line);
         let carried = self.batch.carried.iter().map(String::as_str);
-        record(columns::names().chain(carried).map(|name| own.get(name).map_or_else(String::new, cell)))
+        let names = columns::names().chain(carried);
+        records([names.map(|name| own.get(name).map_or_else(String::new, cell))])
     }
 
     /// Every column of a line.
@@ -100,7 +101,6 @@ impl<'a> CampaignFiles<'a> {
     }
 
     /// `campaign.html` and its pictures.
-    #[must_use]
     pub fn page(&self) -> Vec<(String, Vec<u8>)> {
         let drawn = self.series.iter().take(MOST_SERIES);
         let pictures: Vec<_> = drawn.enumerate().flat_map(|(i, series)| series.pictures(i + 1)).collect();
@@ -118,14 +118,8 @@ impl Batch {
     /// [`ReportError::Csv`] where the writer fails.
     pub fn csv_head(&self) -> Result<Vec<u8>, ReportError> {
         let carried = self.carried.iter().map(|name| text_cell(name));
-        record(columns::names().map(str::to_owned).chain(carried))
+        records([columns::names().map(str::to_owned).chain(carried)])
     }
-}
-
-fn record(cells: impl Iterator<Item = String>) -> Result<Vec<u8>, ReportError> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(cells)?;
-    finished(writer)
 }
 
 /// A value as a cell; a number that was carried as text stays one.

@@ -4,24 +4,24 @@
 use super::columns::NamedQuantity;
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, is_usable, scatter_words};
 use super::summary::{Oddity, few, oddities, tag};
-use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES, compared};
-use crate::data::{Program, STANDARD_GRAVITY_M_S2, Verdict};
-use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
+use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES};
+use crate::data::{Estimate, Program, STANDARD_GRAVITY_M_S2, Verdict};
+use crate::numerics::pooled::e_n;
+use crate::report::document::{
+    Chapter, ChapterPart, Frame, PartContent, ReportDocument, ReportTable, TableCell, Tone,
+};
 use crate::report::json::in_a_line;
 use crate::report::rounding::{
-    MISSING, interval, optional, optional_fixed, pair, percent, plain, significant,
+    MISSING, fixed, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
-use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::Style;
 use serde_json::json;
 use std::collections::{BTreeSet, HashMap};
 
-const REPEATS: &str = "Mean of the repeats without outliers, weighted with 1/u². Its interval is that of \
-                       one drop: repeats share what is \
-                       stated of cask, angle and sensors, and no mean makes that smaller. Scatter: the \
-                       standard deviation. χ² of the \
-                       stated intervals says whether it is as large as they say; where repeats share most of \
-                       what is uncertain it is smaller.";
+const REPEATS: &str = "Mean of the repeats without outliers, weighted with 1/u². Its interval is that of one \
+                       drop: repeats share what is stated of cask, angle and sensors, and no mean makes that \
+                       smaller. Scatter: the standard deviation. χ² of the stated intervals says whether it \
+                       is as large as they say; where repeats share most of what is uncertain it is smaller.";
 
 /// The page.
 pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
@@ -108,7 +108,38 @@ fn date(row: &BatchRow) -> Option<&str> {
 fn both(batch: &Batch) -> Option<Chapter> {
     let usable: Vec<&BatchRow> = batch.rows.iter().filter(|row| row.verdict.is_some()).collect();
     let [a, b] = usable[..] else { return None };
-    Some(Chapter::new("What the two differ by").with(compared::table(a, b)))
+    Some(Chapter::new("What the two differ by").with(compared(a, b)))
+}
+
+/// Two rows to what they differ by, quantity by quantity.
+fn compared<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
+    let e_n = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
+        e_n((b.estimate.value, b.estimate.u95), (a.estimate.value, a.estimate.u95))
+    };
+    let pair =
+        |of_a: &'a NamedQuantity| Some((of_a, b.quantities.iter().find(|of_b| of_b.name == of_a.name)?));
+    let pairs: Vec<(&NamedQuantity, &NamedQuantity)> =
+        a.quantities.iter().filter_map(pair).filter(|pair| e_n(pair).is_finite()).collect();
+    let difference = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
+        let (a, b) = (a.estimate, b.estimate);
+        interval(Some(&Estimate::new(b.value - a.value, a.u95.hypot(b.u95), a.unit)))
+    };
+    let word = |pair: &(&NamedQuantity, &NamedQuantity)| {
+        TableCell::marked(fixed(e_n(pair), 2), if e_n(pair).abs() > 1.0 { "differ" } else { "" })
+    };
+    ReportTable::of(&pairs)
+        .class("many")
+        .caption(format!(
+            "{} and {}: E_n = difference over the root of the squares of both half-widths; within ±1 they \
+             agree.",
+            a.id, b.id
+        ))
+        .head("quantity", |(a, _)| a.name)
+        .number(&a.id[..], |(a, _)| interval(Some(&a.estimate)))
+        .number(&b.id[..], |(_, b)| interval(Some(&b.estimate)))
+        .number("difference", difference)
+        .number("E_n", word)
+        .into()
 }
 
 /// Drops that disagree with their repeats, or lie outside both intervals of measurement and prediction.
@@ -166,7 +197,8 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
 
 /// A row's name, leading to its report.
 fn linked(row: &BatchRow) -> TableCell {
-    TableCell::linked(row.id.clone(), row.report.as_deref().map(encoded).unwrap_or_default())
+    let link = row.report.as_deref().map(encoded).unwrap_or_default();
+    TableCell { link, ..row.id.clone().into() }
 }
 
 /// A path as a relative address.

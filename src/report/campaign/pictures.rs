@@ -111,7 +111,7 @@ impl DropSeries<'_> {
                 panel.lines.push(Curve { stroke: 3, ..Curve::new(colour, ends) });
             }
             looks[usize::from(!is_usable(row))].at.push(at);
-            if self.falls_out(row) {
+            if self.place(row).is_out {
                 looks[2].at.push(at);
             }
         }
@@ -121,7 +121,7 @@ impl DropSeries<'_> {
 
     /// The names of the outliers.
     fn marks(&self) -> Vec<Mark> {
-        let out = self.rows.iter().filter(|row| self.falls_out(row));
+        let out = self.rows.iter().filter(|row| self.place(row).is_out);
         out.filter_map(|row| Some(Mark { at: self.angle(row)?, label: row.id.clone() })).collect()
     }
 }

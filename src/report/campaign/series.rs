@@ -3,8 +3,8 @@
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
-use crate::numerics::as_f64;
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
+use crate::numerics::{as_f64, whole};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -18,9 +18,7 @@ pub struct PredictedCurve {
     pub model: BodyModel,
     /// The contact law.
     pub contact: Contact,
-    /// Coefficient of restitution.
-    pub k: f64,
-    /// Angle, degrees, and speed, m/s.
+    /// Of one k: angle, degrees, and speed, m/s.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -114,9 +112,8 @@ impl<'a> DropSeries<'a> {
         for (number, series) in series.iter_mut().enumerate() {
             series.pools = pools(&series.rows);
             series.set_places();
-            series.k = ends(
-                series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
-            );
+            let sound = series.rows.iter().filter(|row| is_usable(row) && !series.place(row).is_out);
+            series.k = ends(sound.filter_map(|row| Some(row.k?.value)));
             if let (Some(k), Some([from, to]), 0..MOST_SERIES) =
                 (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)), number)
             {
@@ -125,11 +122,6 @@ impl<'a> DropSeries<'a> {
             }
         }
         series
-    }
-
-    /// Those whose numbers may be used.
-    pub(super) fn usable(&self) -> impl Iterator<Item = &'a BatchRow> {
-        self.rows.iter().copied().filter(|row| is_usable(row))
     }
 
     /// The places of all rows by their numbers.
@@ -143,11 +135,6 @@ impl<'a> DropSeries<'a> {
     /// The place of a row among its repeats.
     pub(super) fn place(&self, row: &BatchRow) -> RowPlace {
         self.places.get(&row.at.number).copied().unwrap_or_default()
-    }
-
-    /// Whether a row is an outlier among its repeats in any quantity.
-    pub(super) fn falls_out(&self, row: &BatchRow) -> bool {
-        self.place(row).is_out
     }
 
     /// Gives each row its place.
@@ -207,13 +194,11 @@ pub(super) fn is_usable(row: &BatchRow) -> bool {
 
 /// Both quantities at every angle, and k of all angles.
 fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
-    let mut by_angle: BTreeMap<i64, Vec<&'a BatchRow>> = BTreeMap::new();
+    let mut by_angle: BTreeMap<usize, Vec<&'a BatchRow>> = BTreeMap::new();
     // One recording is one drop, however often it is listed.
     for row in rows.iter().filter(|row| row.same_recording_as.is_none()) {
-        #[allow(clippy::cast_possible_truncation, reason = "0 to 90 degrees in millionths")]
-        let angle = row.at.angle_deg.map(|angle| (angle * 1e6).round() as i64);
-        if let Some(angle) = angle {
-            by_angle.entry(angle).or_default().push(row);
+        if let Some(angle_deg) = row.at.angle_deg {
+            by_angle.entry(whole((angle_deg * 1e6).round())).or_default().push(row);
         }
     }
     let of_angle = by_angle.values().flat_map(|rows| {

@@ -3,9 +3,8 @@
 use super::series::DropSeries;
 use super::summary::{MOST_LINES, few, oddities};
 use super::{Batch, BatchRow};
-use crate::report::document::{Chapter, ChapterPart, ReportDocument};
+use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable, TableShape};
 use crate::report::rounding::{MISSING, interval, percent, plain};
-use crate::report::table::{ReportTable, TableShape};
 use crate::report::text::{tail, verdict_word};
 use std::path::Path;
 
@@ -15,7 +14,6 @@ const CASK_AND_ANGLE: usize = 32;
 
 impl Batch {
     /// The table, `width` columns wide; below it what was found, reasons of failures, and the sum.
-    #[must_use]
     pub fn table(&self, width: usize) -> String {
         crate::report::as_text::text(&self.document(width), width)
     }

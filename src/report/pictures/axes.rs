@@ -4,6 +4,7 @@ use super::decimate::runs;
 use super::legend::{self, LEFT, RIGHT, point, width_of};
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
+use crate::numerics::{as_f64, nanoseconds};
 use std::ops::Range;
 
 /// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the
@@ -21,15 +22,13 @@ const GAP: f64 = 26.0;
 
 /// Height of a panel in a picture, or in a part of it, this wide.
 pub(super) fn height(panel: &Panel, width: f64) -> f64 {
-    let head = head(panel, width);
-    if panel.height == 0 { head } else { head + f64::from(panel.height) + bottom(panel) + GAP }
+    head(panel, width) + f64::from(panel.height) + bottom(panel) + GAP
 }
 
 /// Height of what stands above the axes.
-#[allow(clippy::cast_precision_loss, reason = "rows are few")]
 fn head(panel: &Panel, width: f64) -> f64 {
     let rows = mark_rows(panel, width).iter().max().map_or(0, |row| row + 1);
-    legend::height(panel, width) + MARK_ROW * rows as f64
+    legend::height(panel, width) + MARK_ROW * as_f64(rows)
 }
 
 fn bottom(panel: &Panel) -> f64 {
@@ -69,9 +68,6 @@ struct PlotFrame<'a> {
 /// Draws `panel` in a picture, or in a part of it, this wide.
 pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
     legend::draw(svg, panel, width);
-    if panel.height == 0 {
-        return;
-    }
     let (left, right) = panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()));
     let (x, y) = (panel.x_range(), panel.y_range());
     let frame = PlotFrame { panel, x, y, width: width - left - right, height: panel.height.into() };
@@ -90,12 +86,8 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
         let size = "font-size=\"26\"";
         svg.words(&panel.x.label, (frame.width / 2.0, frame.height + BOTTOM - 18.0), Anchor::Middle, size);
         svg.from((16.0 - left, frame.height / 2.0), |svg| {
-            svg.words(
-                &panel.y.label,
-                (0.0, 0.0),
-                Anchor::Middle,
-                &format!("{size} transform=\"rotate(270)\""),
-            );
+            let turned = format!("{size} transform=\"rotate(270)\"");
+            svg.words(&panel.y.label, (0.0, 0.0), Anchor::Middle, &turned);
         });
     });
 }
@@ -113,20 +105,16 @@ impl PlotFrame<'_> {
         let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
         let most = if width < WIDTH / 2.0 { 8 } else { 14 };
         // A date takes the room of two or three numbers.
-        let x = ticks(&panel.x, &self.x, if panel.x.has_dates() { most / 3 + 1 } else { most });
+        let x = ticks(&panel.x, &self.x, if panel.x.scale == AxisScale::Days { most / 3 + 1 } else { most });
         let y = ticks(&panel.y, &self.y, 8);
         let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
         let up = |value: f64| ((1.0 - along_y(value)) * height).round();
-        for (ticks, opacity) in [(&x.fine, 0.10), (&x.bold, 0.28)] {
-            for at in ticks.iter().map(|v| across(*v)) {
-                svg.line(&line(opacity, vec![(at, 0.0), (at, height)]));
-            }
-        }
-        for (ticks, opacity) in [(&y.fine, 0.10), (&y.bold, 0.28)] {
-            for at in ticks.iter().map(|v| up(*v)) {
-                svg.line(&line(opacity, vec![(0.0, at), (width, at)]));
-            }
+        let upright = |value: f64| vec![(across(value), 0.0), (across(value), height)];
+        let level = |value: f64| vec![(0.0, up(value)), (width, up(value))];
+        for (ticks, ends) in [(&x, &upright as &dyn Fn(f64) -> Vec<(f64, f64)>), (&y, &level)] {
+            ticks.fine.iter().for_each(|value| svg.line(&line(0.10, ends(*value))));
+            ticks.bold.iter().for_each(|value| svg.line(&line(0.28, ends(*value))));
         }
         svg.line(&line(1.0, vec![(0.0, 0.0), (0.0, height), (width, height)]));
         for value in x.bold.iter().filter(|_| !panel.x.label.is_empty()) {
@@ -207,13 +195,12 @@ impl PlotFrame<'_> {
         }
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
     fn mark(&self, svg: &mut Svg, mark: &Mark, row: usize, (left, right): (f64, f64)) {
         if !(self.x.start..=self.x.end).contains(&mark.at) {
             return;
         }
         let (x, _) = self.place()((mark.at, self.y.end));
-        let top = -MARK_ROW * row as f64;
+        let top = -MARK_ROW * as_f64(row);
         let dashed = Curve { opacity: 0.55, stroke: 2, ..Curve::new(INK, vec![(x, top), (x, self.height)]) };
         svg.line(&dashed.broken(Dash::Marked));
         let half = width_of(&mark.label, 7.0);
@@ -246,7 +233,8 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
             let step =
                 [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= least * 0.999);
             // A date has no parts.
-            let step = if axis.has_dates() { least.ceil().max(1.0) } else { step.unwrap_or(least) };
+            let step =
+                if axis.scale == AxisScale::Days { least.ceil().max(1.0) } else { step.unwrap_or(least) };
             Ticks { bold: steps(step).into_iter().map(|i| f64::from(i) * step).collect(), fine: Vec::new() }
         }
         AxisScale::Logarithmic => {
@@ -263,10 +251,10 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
 
 /// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic; a date's day.
 fn tick(value: f64, axis: &PanelAxis) -> String {
-    if axis.has_dates() {
+    if axis.scale == AxisScale::Days {
         return date_of_day(value).unwrap_or_default();
     }
-    if axis.is_logarithmic() && !(1e-2..1e5).contains(&value) {
+    if axis.scale == AxisScale::Logarithmic && !(1e-2..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
     let rounded = (value * 1e6).round() / 1e6;
@@ -274,9 +262,10 @@ fn tick(value: f64, axis: &PanelAxis) -> String {
 }
 
 /// The date of a day since 1970.
-#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
 fn date_of_day(day: f64) -> Option<String> {
-    Some(jiff::Timestamp::from_second((day * 86_400.0) as i64).ok()?.strftime("%F").to_string())
+    Some(
+        jiff::Timestamp::from_nanosecond(nanoseconds(day * 86_400.0).into()).ok()?.strftime("%F").to_string(),
+    )
 }
 
 #[cfg(test)]

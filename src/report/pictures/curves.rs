@@ -6,7 +6,7 @@ use super::super::text::json_word;
 use super::draw::{Picture, Plate};
 use super::live::MOST_VALUES;
 use super::panel::{self, COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
-use crate::data::{Analysis, Axis, ChannelCurve, End, Mode, STANDARD_GRAVITY_M_S2};
+use crate::data::{Analysis, Axis, ChannelCurve, End, ImpactTable, Mode, STANDARD_GRAVITY_M_S2};
 use std::ops::Range;
 
 const TIME_LABEL: &str = "time from the recording's first sample, ms";
@@ -60,6 +60,27 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
     let count: usize = channel_lines(analysis).map(|line| 2 * line.curve.time_s.len()).sum();
     let lines_of = if count > MOST_VALUES { "" } else { "accelerations" };
     Plate::new("impacts", "Both impacts", caption).live_of(lines_of).picture(&panels)
+}
+
+/// The force over crush of either end, from touching to leaving as far as the recording goes.
+pub(super) fn crush(analysis: &Analysis) -> Picture {
+    let line = |impact: &ImpactTable| {
+        let curve = &impact.force_over_crush;
+        let (colour, name) = match impact.end {
+            End::First => (COLOURS[0], "first end"),
+            End::Second => (COLOURS[1], "second end"),
+        };
+        Curve::new(colour, panel::points(&curve.crush_m, &curve.force_n, [1e3, 1e-6])).named(name)
+    };
+    let lines = analysis.result.impacts.iter().map(line).filter(|line| !line.points.is_empty()).collect();
+    let axes = Panel::new("Force over crush", "crush of the corner, mm", "vertical force, MN", 350);
+    let filter = &analysis.result.impacts[0].rigid_body_deceleration.filter;
+    let caption = format!(
+        "Vertical force of the target, the stated mass times the acceleration of the centre of gravity \
+         through the low-pass {filter}, over how far the corner of the undeformed cask is below where it \
+         touched. The area within is about the energy that the contact absorbs."
+    );
+    Plate::new("crush", "Force over crush", caption).picture(&[Panel { lines, ..axes }])
 }
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.

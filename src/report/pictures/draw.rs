@@ -3,6 +3,7 @@
 use super::panel::{AxisScale, Panel, WIDTH};
 use super::svg::{Anchor, Svg};
 use super::{axes, live};
+use crate::numerics::as_f64;
 
 /// One picture.
 pub(crate) struct Picture {
@@ -96,12 +97,11 @@ fn spoken(panel: &Panel) -> Vec<String> {
     marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
 }
 
-/// Panels in rows of `columns`, those without axes in rows of their own, each row as wide as the picture; and
-/// how high the drawing is.
+/// Panels in rows of `columns`, each row as wide as the picture; and how high the drawing is.
 fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
-        match rows.last_mut().filter(|row| row.len() < columns && row[0].height > 0 && panel.height > 0) {
+        match rows.last_mut().filter(|row| row.len() < columns) {
             Some(row) => row.push(panel),
             None => rows.push(vec![panel]),
         }
@@ -109,8 +109,7 @@ fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut svg = Svg::default();
     let mut top = 0.0;
     for row in &rows {
-        #[allow(clippy::cast_precision_loss, reason = "columns are few")]
-        let width = WIDTH / row.len() as f64;
+        let width = WIDTH / as_f64(row.len());
         let mut left = 0.0;
         for panel in row {
             svg.from((left, top), |svg| axes::draw(svg, panel, width));

@@ -3,6 +3,7 @@
 use super::super::text::printable;
 use super::panel::{Colour, Curve, Fill, Panel, PointShape, Points};
 use super::svg::{Anchor, Svg};
+use crate::numerics::as_f64;
 
 /// Height of the title's row.
 const HEAD: f64 = 62.0;
@@ -32,9 +33,8 @@ struct Entry<'a> {
 }
 
 /// About the width of words with letters this wide.
-#[allow(clippy::cast_precision_loss, reason = "words are short")]
 pub(super) fn width_of(words: &str, letter: f64) -> f64 {
-    words.chars().count() as f64 * letter
+    as_f64(words.chars().count()) * letter
 }
 
 /// The rows of the legend in reading order, each set to the right; the first leaves room for the title.
@@ -69,13 +69,12 @@ fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
 }
 
 /// Height of title and legend in a picture or a part of it this wide.
-#[allow(clippy::cast_precision_loss, reason = "rows are few")]
 pub(super) fn height(panel: &Panel, width: f64) -> f64 {
     let rows = rows(panel, width);
     if panel.title.is_empty() && rows.iter().all(Vec::is_empty) {
         return 14.0;
     }
-    HEAD + LEGEND_ROW * (rows.len() - 1) as f64
+    HEAD + LEGEND_ROW * as_f64(rows.len() - 1)
 }
 
 /// The panel's title at the left, its legend at the right of one line.

@@ -3,6 +3,7 @@
 use super::super::text::printable;
 use super::decimate::runs;
 use super::panel::{Curve, Panel};
+use crate::numerics::{as_f64, single, whole};
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use serde_json::{Value, json};
 
@@ -38,24 +39,18 @@ fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
 
 /// The values, and not a number between runs, where samples are missing; their places, in steps of `dx` from
 /// `x0` on, as the numbers of samples between them, where these are not all one.
-#[allow(clippy::cast_precision_loss, reason = "samples are fewer than 2^52")]
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "counts, and digits that no sensor has"
-)]
 fn of_line(line: &Curve, each: usize) -> Value {
     let ends = line.points.first().zip(line.points.last());
     let (x0, last) = ends.map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
     let (mut steps, mut bytes, mut at) = (Vec::new(), Vec::new(), 0);
     let mut put = |place: usize, value: f64| {
         steps.push(place - at);
-        bytes.extend_from_slice(&(value as f32).to_le_bytes());
+        bytes.extend_from_slice(&single(value).to_le_bytes());
         at = place;
     };
-    let places = line.points.iter().enumerate().map(|(i, p)| (i as f64 / each as f64, p.1));
+    let places = line.points.iter().enumerate().map(|(i, p)| (as_f64(i) / as_f64(each), p.1));
     for (i, run) in runs(places).into_iter().enumerate() {
-        let place = |x: f64| (x * each as f64).round() as usize;
+        let place = |x: f64| whole((x * as_f64(each)).round());
         if let Some((begins, _)) = run.first().filter(|_| i > 0) {
             put(place(*begins) - 1, f64::NAN);
         }
@@ -67,7 +62,7 @@ fn of_line(line: &Curve, each: usize) -> Value {
     json!({
         "label": line.label.as_deref().map(printable), "color": line.colour.to_string(),
         "opacity": line.opacity, "dash": line.dash.pieces(), "stroke": line.stroke,
-        "x0": x0, "dx": (last - x0) / (line.points.len().max(2) - 1) as f64,
+        "x0": x0, "dx": (last - x0) / as_f64(line.points.len().max(2) - 1),
         "steps": (!is_even).then_some(steps), "y": STANDARD.encode(bytes)
     })
 }

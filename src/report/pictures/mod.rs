@@ -4,7 +4,6 @@ mod angle_curves;
 mod axes;
 mod comparison;
 mod critical;
-mod crush;
 mod curves;
 mod decimate;
 pub(crate) mod draw;
@@ -33,7 +32,7 @@ pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
         |analysis| setup::picture(&analysis.cask_file),
         curves::accelerations,
         curves::impacts,
-        crush::picture,
+        curves::crush,
         curves::velocities,
         fit::picture,
         curves::motion,

@@ -1,6 +1,7 @@
 //! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the
 //! size, so that its whole-pixel coordinates stay fine.
 
+use crate::numerics::as_f64;
 use std::ops::Range;
 
 /// Width of a picture in drawing units.
@@ -187,7 +188,7 @@ pub(crate) struct Mark {
 }
 
 /// Words at either side of a row.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) struct RowWords {
     pub(crate) left: String,
     pub(crate) right: String,
@@ -195,7 +196,7 @@ pub(crate) struct RowWords {
 }
 
 /// How values lie on an axis.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) enum AxisScale {
     #[default]
     Linear,
@@ -231,16 +232,6 @@ impl PanelAxis {
         Self { range, ..self }
     }
 
-    /// Whether it has powers of ten.
-    pub(super) fn is_logarithmic(&self) -> bool {
-        matches!(self.scale, AxisScale::Logarithmic)
-    }
-
-    /// Whether its numbers are dates.
-    pub(super) fn has_dates(&self) -> bool {
-        matches!(self.scale, AxisScale::Days)
-    }
-
     /// The value as a place along the axis.
     pub(super) fn place(&self, value: f64) -> f64 {
         /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too,
@@ -249,12 +240,12 @@ impl PanelAxis {
         fn power(value: f64) -> f64 {
             value.log10()
         }
-        if self.is_logarithmic() { power(value) } else { value }
+        if self.scale == AxisScale::Logarithmic { power(value) } else { value }
     }
 
     /// Whether it has a place for the value.
     fn holds(&self, value: f64) -> bool {
-        value.is_finite() && (value > 0.0 || !self.is_logarithmic())
+        value.is_finite() && (value > 0.0 || self.scale != AxisScale::Logarithmic)
     }
 
     /// Smallest and largest of what it shows, with some air around it.
@@ -264,7 +255,7 @@ impl PanelAxis {
         }
         let (low, high) =
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        if self.is_logarithmic() {
+        if self.scale == AxisScale::Logarithmic {
             return low..high.max(low * 10.0) * 10f64.powf(air);
         }
         let span = if high > low { high - low } else { high.abs().max(1.0) };
@@ -278,7 +269,7 @@ pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) x: PanelAxis,
     pub(crate) y: PanelAxis,
-    /// Height in drawing units, without head and axis; 0 is a legend without axes.
+    /// Height in drawing units, without head and axis.
     pub(crate) height: u32,
     /// Room for the words of rows at the left and the right; `None`: for ticks.
     pub(crate) sides: Option<(u32, u32)>,
@@ -314,9 +305,8 @@ impl Panel {
     }
 
     /// The middle of a row, counted from the top one.
-    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
     pub(crate) fn row_middle(&self, row: usize) -> f64 {
-        self.y_range().end - 0.5 - row as f64
+        self.y_range().end - 0.5 - as_f64(row)
     }
 
     /// With room beside the first and the last of what is drawn: this share of the way between them.
@@ -329,7 +319,7 @@ impl Panel {
 
     /// Whether there is anything to draw.
     pub(super) fn has_points(&self) -> bool {
-        self.height == 0 || self.drawn().next().is_some()
+        self.drawn().next().is_some()
     }
 
     /// Every point that can be drawn.

@@ -4,6 +4,7 @@ use super::draw::{Picture, Plate};
 use super::panel::{COLOURS, Colour, Curve, INK, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::data::{Axis, CaskFile, ChannelSpec};
+use crate::numerics::as_f64;
 use crate::report::rounding::plain;
 
 /// Room around the cask, and its height at the most, in units of the drawing.
@@ -94,7 +95,6 @@ fn sensor(svg: &mut Svg, place: &OnCask, spec: &ChannelSpec, section_m: f64, bef
         svg.line(&Curve::new(colour, points));
     }
     // Below the sensor, and below the names of those beside it.
-    #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-    let below = 28.0 + 26.0 * before as f64;
+    let below = 28.0 + 26.0 * as_f64(before);
     svg.word(&spec.name, (at.0, at.1 + below), Anchor::Middle);
 }

@@ -12,23 +12,17 @@ use rayon::prelude::*;
 type Draw = Box<dyn Fn(&Study, &str) -> Picture + Send + Sync>;
 
 /// One chart by its name, and what draws it.
-struct StudyChart {
-    name: String,
-    draw: Draw,
-}
+type StudyChart = (String, Draw);
 
 /// The charts of a request, in the order in which a reader meets them.
 fn charts(request: &StudyRequest) -> Vec<StudyChart> {
-    let chart = |name: &str, draw: fn(&Study, &str) -> Picture| StudyChart {
-        name: name.to_owned(),
-        draw: Box::new(draw),
-    };
+    let chart = |name: &str, draw: fn(&Study, &str) -> Picture| (name.to_owned(), Box::new(draw) as Draw);
     let shown = distinct(request.contacts.iter().copied());
     let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
     let mut charts = vec![chart(if both { "smooth-rough" } else { "speeds" }, angle_curves::speeds)];
-    charts.extend(shown.into_iter().take(MOST_CONTACTS).map(|contact| StudyChart {
-        name: components_name(contact),
-        draw: Box::new(move |study, name| angle_curves::components(study, contact, name)),
+    charts.extend(shown.into_iter().take(MOST_CONTACTS).map(|contact| {
+        let draw = move |study: &Study, name: &str| angle_curves::components(study, contact, name);
+        (components_name(contact), Box::new(draw) as Draw)
     }));
     charts.push(chart("positions", positions::picture));
     charts.push(chart("energy-ratio", angle_curves::energies));
@@ -53,12 +47,12 @@ fn components_name(contact: Contact) -> String {
 
 /// The names of the pictures, in their order.
 pub(in super::super) fn names(request: &StudyRequest) -> Vec<String> {
-    charts(request).into_iter().map(|chart| chart.name).collect()
+    charts(request).into_iter().map(|(name, _)| name).collect()
 }
 
 /// Every picture of a study; one that has nothing to show says so.
 pub(in super::super) fn draw_study(study: &Study) -> Vec<Picture> {
-    charts(&study.request).into_par_iter().map(|chart| (chart.draw)(study, &chart.name)).collect()
+    charts(&study.request).into_par_iter().map(|(name, draw)| draw(study, &name)).collect()
 }
 
 #[cfg(test)]

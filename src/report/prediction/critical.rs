@@ -1,9 +1,7 @@
 //! Critical angles of a study, as stated and under uncertain inputs, to chapters.
 
-use super::super::document::{Chapter, ChapterPart};
-use super::super::medium::{Medium, Words};
+use super::super::document::{Chapter, ChapterPart, Medium, ReportTable, TableShape, Words};
 use super::super::rounding::{MISSING, fixed, plain};
-use super::super::table::{ReportTable, TableShape};
 use super::super::words::{
     MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, contact_words, criterion_short,
     criterion_value, criterion_words, degrees, nearest, uncertain_words, widest_bands_words,

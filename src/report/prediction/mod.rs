@@ -17,7 +17,6 @@ use super::{as_html, as_text, pictures};
 use crate::data::{Study, StudyRequest};
 
 /// The names of the files that [`study_files`] makes for a study of this request, in its order.
-#[must_use]
 pub fn study_file_names(request: &StudyRequest) -> Vec<String> {
     let own = ["prediction.html", "prediction.json", "prediction.csv"].map(str::to_owned);
     own.into_iter()
@@ -26,7 +25,6 @@ pub fn study_file_names(request: &StudyRequest) -> Vec<String> {
 }
 
 /// The whole of a study for the terminal.
-#[must_use]
 pub fn study_table(study: &Study, width: usize) -> String {
     as_text::text(&study::document(study), width)
 }

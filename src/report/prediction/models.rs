@@ -1,9 +1,7 @@
 //! The ladder of models to a chapter.
 
-use super::super::document::{Chapter, ChapterPart};
-use super::super::medium::{Medium, Words};
+use super::super::document::{Chapter, ChapterPart, Medium, ReportTable, TableShape, Words};
 use super::super::rounding::{optional_fixed, percent, plain};
-use super::super::table::{ReportTable, TableShape};
 use super::super::text::capital;
 use super::super::words::{MOST_ON_PAGE, MOST_ROWS, OTHERS, case_words, contact_words, degrees, rung_short};
 
@@ -14,8 +12,7 @@ pub(super) fn ladders(study: &Study) -> Chapter {
     let tolerance = plain(LADDER_TOLERANCE_PERCENT, 3);
     let lead = format!(
         "Slap-down speed by each model, the simplest first; each adds one thing to the one before it. One \
-         suffices where no richer one \
-         moves the speed by more than {tolerance} %."
+         suffices where no richer one moves the speed by more than {tolerance} %."
     );
     let lead = ChapterPart::lead(lead).only(Medium::Page);
     match &study.ladders[..] {

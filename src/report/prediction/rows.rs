@@ -1,9 +1,7 @@
 //! Predictions to a table: the columns that every report of them shares, and those of a sweep.
 
-use super::super::document::ChapterPart;
-use super::super::medium::{Medium, Words};
+use super::super::document::{ChapterPart, Medium, ReportTable, TableRows, TableShape, Words};
 use super::super::rounding::{fixed, optional_fixed, plain, significant};
-use super::super::table::{ReportTable, TableRows, TableShape};
 use super::super::words::{KEPT_SENTENCE, OVER_MARK, OVER_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
 

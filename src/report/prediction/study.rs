@@ -1,11 +1,11 @@
 //! A study to the document that the terminal and `prediction.html` show.
 
-use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
-use super::super::medium::Medium;
+use super::super::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable,
+};
 use super::super::pictures::study_names;
+use super::super::record::tested;
 use super::super::rounding::{MISSING, plain};
-use super::super::table::ReportTable;
-use super::super::tested::tested;
 use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
 use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
@@ -15,23 +15,8 @@ use crate::data::{Criterion, Study, StudyRequest, Sweep};
 /// A longer table of predictions stands at the end of the page, not between the reader and what was found.
 const MOST_ROWS_AHEAD: usize = 40;
 
-/// What the models leave out.
-const LIMITS: [&str; 5] = [
-    "One plane, a rigid cask and a rigid target; an impact takes no time. A real first impact of some \
-     milliseconds lets the cask turn and fall \
-     while it lasts.",
-    "k is given, not predicted. That of a real cask varies with the angle: do not carry it from one angle to \
-     another.",
-    "\"Rough\" assumes that the first end does not slide; the friction that this needs stands with the \
-     predictions. Where the target gives \
-     less, the Coulomb coefficient is the better input.",
-    "For k = 0 the closed form of [P] Table 2 holds the first end on the target whatever the contact force. \
-     Where the force would have to \
-     pull, the first end lifts off and the speeds here are those of the flight; the closed form stands \
-     beside them.",
-    "A critical band is counted from the largest value of its own curve. It says nothing about what the cask \
-     withstands.",
-];
+/// What the models leave out, a sentence or two a line.
+const LIMITS: &str = include_str!("limits.txt");
 
 /// The whole document.
 pub(super) fn document(study: &Study) -> ReportDocument {
@@ -54,10 +39,8 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             heading: format!("{name}: slap-down prediction"),
             about: file.path.display().to_string(),
             footer: "The drop angle is the inclination of the cask's axis above the horizontal at first \
-                     contact. The first end is the low one, \
-                     the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on \
-                     slap-down impacts of packagings \
-                     (PATRAM).",
+                     contact. The first end is the low one, the second end slaps down. Vertical velocities \
+                     are positive up. [P]: the BAM paper on slap-down impacts of packagings (PATRAM).",
             style: include_str!("../prediction.css"),
             ..Frame::default()
         },
@@ -76,7 +59,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             over_the_angle(&study.request),
             ladders(study),
             of_the_paper(),
-            Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
+            Chapter::new("Limits").with(PartContent::List(LIMITS.lines().collect())),
             Chapter::new("All predictions").with_all(at_end),
             provenance(study),
         ],
@@ -140,28 +123,11 @@ fn sweep_words(sweep: &Sweep) -> String {
 }
 
 /// Figures and tables of the paper, the file here that shows the same, and what it holds.
-const OF_THE_PAPER: [[&str; 3]; 9] = [
-    ["Figs. 2, 3", "positions.svg", "the body from first contact to slap-down"],
-    [
-        "Fig. 4",
-        "components-smooth.svg",
-        "components and magnitude of the slap-down velocity, without friction",
-    ],
-    ["Fig. 5", "components-rough.svg", "the same where the first end does not slide"],
-    ["Fig. 7", "smooth-rough.svg", "slap-down speeds of both"],
-    ["Fig. 8", "energy-ratio.svg", "kinetic energy before the slap-down over that before the first impact"],
-    ["Fig. 9", "section.svg", "slap-down speed for sections of the body"],
-    [
-        "Tables 1, 2",
-        "prediction.csv",
-        "velocities after the first impact and at the slap-down, k = 0 by the closed form too",
-    ],
-    ["Figs. 12, 13", "accelerations.svg, velocities.svg", "what a drop test measured: dropcheck analyze"],
-    ["Table 3", "comparison.svg", "measured beside predicted: dropcheck analyze"],
-];
+const OF_THE_PAPER: &str = include_str!("of_the_paper.tsv");
 
 fn of_the_paper() -> Chapter {
-    let table = ReportTable::of(&OF_THE_PAPER)
+    let rows: Vec<Vec<&str>> = OF_THE_PAPER.lines().map(|line| line.split('\t').collect()).collect();
+    let table = ReportTable::of(&rows)
         .head("[P]", |row| row[0])
         .code("File", |row| row[1])
         .text("Shows", |row| row[2]);

@@ -5,7 +5,7 @@ use super::place::SyntheticPlace;
 use crate::lab::data::SyntheticRecording;
 use crate::numerics::as_f64;
 use crate::report::ReportError;
-use crate::report::records::finished;
+use crate::report::records::records;
 
 /// The table of channels that have one rate.
 ///
@@ -20,16 +20,14 @@ pub(super) fn bytes(
     let mut times: Vec<(&str, f64)> = vec![("time_s", 0.0)];
     let late = channels.iter().zip(places).filter(|(channel, _)| channel.start_s > 0.0);
     times.extend(late.filter_map(|(channel, place)| Some((place.time.as_deref()?, channel.start_s))));
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let header = times.iter().map(|(name, _)| (*name).to_owned());
     let columns = channels.iter().zip(places).map(|(c, place)| format!("{} [{}]", place.name, c.unit));
-    writer.write_record(header.chain(columns))?;
-    let rows = channels.iter().map(|c| c.samples.len()).min().unwrap_or(0);
-    for row in (0..rows).filter(|&row| channels.iter().any(|c| !c.samples[row].is_nan())) {
+    let count = channels.iter().map(|c| c.samples.len()).min().unwrap_or(0);
+    let kept = (0..count).filter(|&row| channels.iter().any(|c| !c.samples[row].is_nan()));
+    let rows = kept.map(|row| {
         let times = times.iter().map(|(_, start_s)| format!("{:.9}", start_s + as_f64(row) / rate_hz));
         let samples = channels.iter().map(|channel| channel.samples[row]);
-        let cells = samples.map(|x| if x.is_nan() { String::new() } else { x.to_string() });
-        writer.write_record(times.chain(cells))?;
-    }
-    finished(writer)
+        times.chain(samples.map(|x| if x.is_nan() { String::new() } else { x.to_string() })).collect()
+    });
+    records(std::iter::once(header.chain(columns).collect::<Vec<String>>()).chain(rows))
 }

@@ -3,7 +3,7 @@
 
 use super::place::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, nanoseconds, whole};
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
@@ -90,8 +90,7 @@ impl BlockStamp {
 
 /// The channel in blocks; none reaches over a loss.
 fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
-    let longest = ((BLOCK_S * channel.sample_rate_hz) as usize).max(2);
+    let longest = whole(BLOCK_S * channel.sample_rate_hz).max(2);
     let block = |(from, samples)| SyntheticBlock {
         timestamp: BlockStamp::of(START_NS + nanoseconds(channel.time_s(from))),
         sample_rate_hz: channel.sample_rate_hz,
@@ -100,11 +99,6 @@ fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
     };
     let parts = channel.runs().flat_map(|(from, run)| (from..).step_by(longest).zip(run.chunks(longest)));
     parts.map(block).collect()
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
-fn nanoseconds(time_s: f64) -> i64 {
-    (time_s * 1e9).round() as i64
 }
 
 impl SyntheticBlock<'_> {

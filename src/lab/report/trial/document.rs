@@ -5,11 +5,12 @@ use crate::data::Program;
 use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
-use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
-use crate::report::medium::{Medium, Words};
+use crate::report::document::{
+    Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
+    TableShape, Tone, Words,
+};
 use crate::report::record;
 use crate::report::rounding::{optional_fixed, plain, significant};
-use crate::report::table::{ReportTable, TableCell, TableShape};
 use crate::report::text::Style;
 
 /// Errors from here on are words: the method diverged.
@@ -53,16 +54,14 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
 const HEADING: &str = "Acceptance of dropcheck on this machine";
 
 const RUNGS: &str = "The rungs of the reconstruction read single channels, planar motion, the flight with \
-                     its modes, or fit all inputs jointly. Random \
-                     sound drops whose stated values are off within their tolerances (in the picture they \
-                     are exact): what each scene, of which a \
+                     its modes, or fit all inputs jointly. Random sound drops whose stated values are off \
+                     within their tolerances (in the picture they are exact): what each scene, of which a \
                      drop may be several, takes; then, for each rung taken, what every rung says of the same \
                      drops.";
 
 const LIMITS: &str = "Recordings: of another program. Campaign: random sound drops, the 95th percentile of \
-                      each error in half-widths of its interval. \
-                      Map: the damages. Held: the share of intervals that hold the truth. All else: the 95th \
-                      percentile of the error of what the \
+                      each error in half-widths of its interval. Map: the damages. Held: the share of \
+                      intervals that hold the truth. All else: the 95th percentile of the error of what the \
                       program takes.";
 
 const ACCEPTANCE_FOOT: &str = "Errors are against truths from outside the methods: drops that another \

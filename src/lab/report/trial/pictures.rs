@@ -1,6 +1,5 @@
 //! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages.
 
-use crate::lab::campaign::written;
 use crate::lab::data::{Trial, TrialFate, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
 use crate::numerics::as_f64;
@@ -10,6 +9,7 @@ use crate::report::pictures::panel::{
     RowWords,
 };
 use crate::report::rounding;
+use crate::report::text::json_word;
 
 /// Height of a panel, and of a row of the map.
 const PANEL: u32 = 520;
@@ -129,10 +129,9 @@ pub(super) fn failures(trial: &Trial) -> Picture {
     let drops = trial.maps.first().and_then(|map| map.sizes.first()).map_or(0, |size| size.drops.len());
     let caption = format!(
         "A row a damage with its least and greatest size, from harmless at the left to gross at the right, \
-         in each size {drops} stripes, a drop each: \
-         whether speed and k lie inside their intervals. At the right the size from which on some drop is \
-         silent, warned of or refused; then the \
-         largest error, in half-widths of the interval."
+         in each size {drops} stripes, a drop each: whether speed and k lie inside their intervals. At the \
+         right the size from which on some drop is silent, warned of or refused; then the largest error, in \
+         half-widths of the interval."
     );
     let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
     maps.sort_by_key(|map| std::cmp::Reverse(gravest(map)));
@@ -178,7 +177,7 @@ fn stripes(map: &TrialMap, fate: TrialFate, middle: f64) -> Vec<Vec<(f64, f64)>>
 /// From which size on what becomes of some drop, the gravest first.
 pub(super) fn fate_words(map: &TrialMap) -> String {
     let from = |fate| {
-        let (size, word) = (rounding::plain(map.first(fate)?.size, 2), written(fate));
+        let (size, word) = (rounding::plain(map.first(fate)?.size, 2), json_word(fate));
         Some(if map.unit.is_empty() { word } else { format!("{word} from {size}") })
     };
     let gravest_first = [TrialFate::Silent, TrialFate::Warned, TrialFate::Refused];

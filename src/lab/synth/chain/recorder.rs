@@ -1,18 +1,17 @@
 //! A signal to what the converter and the store make of it: clipped, in steps, held, lost.
 
 use crate::lab::data::Chain;
+use crate::numerics::whole;
 
 /// A count from a product of time and rate; at least 1.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
 pub(super) fn count(number: f64) -> usize {
-    (number.round() as usize).max(1)
+    whole(number.round()).max(1)
 }
 
 /// The first index that is not before `number`.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
 pub(super) fn ceiling(number: f64) -> usize {
     // A time that was meant to fall on a sample does so in spite of rounding.
-    (number - 1e-6).ceil() as usize
+    whole((number - 1e-6).ceil())
 }
 
 /// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step
