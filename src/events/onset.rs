@@ -2,7 +2,7 @@
 
 use super::transverse;
 use crate::data::{At, CoarseEvent, End, Signal};
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
@@ -102,8 +102,7 @@ pub fn slap_down(
     let start = signal.index_from(between_s.start - WIDTH_S);
     let end = signal.index_from(between_s.end + WIDTH_S);
     let force = signal.force_m_s2.get(start..end)?;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive sample counts")]
-    let [block, width] = [BLOCK_S, WIDTH_S].map(|s| ((s * signal.sample_rate_hz) as usize).max(1));
+    let [block, width] = [BLOCK_S, WIDTH_S].map(|s| as_count(s * signal.sample_rate_hz).max(1));
     let blocks = (width / block).max(1);
     let sums = velocity_sums(force, block, 1.0 / signal.sample_rate_hz);
     let last_sum = sums.len() - 1;

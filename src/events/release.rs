@@ -3,7 +3,7 @@
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, Drop, Samples};
-use crate::numerics::{as_f64, reduce, robust};
+use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
 
@@ -109,8 +109,7 @@ struct Record<'a> {
 impl<'a> Record<'a> {
     /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
     fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-        let size = ((BLOCK_S * channel.sample_rate_hz).round() as usize).max(1);
+        let size = as_count((BLOCK_S * channel.sample_rate_hz).round()).max(1);
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
         blocks.truncate(samples.len() / size);
         let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
@@ -221,8 +220,7 @@ impl<'a> Record<'a> {
     fn departure(&self, step: usize, falling: f64) -> Option<usize> {
         let after = self.blocks.get(step + SUSTAINED..)?;
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
-        #[allow(clippy::cast_precision_loss, reason = "a handful")]
-        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / SUSTAINED as f64;
+        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / as_f64(SUSTAINED);
         let means: Vec<f64> = after.windows(SUSTAINED).map(mean).collect();
         // The scatter of the fall's own means: noise of 1/f departs by itself.
         let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * robust::spread(&means));

@@ -2,7 +2,7 @@
 
 use super::onset::NOISE_FACTOR;
 use crate::data::{At, Signal};
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
@@ -86,8 +86,7 @@ impl Left {
             let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
             [last + (last - before), last - before]
         };
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sample count")]
-        let after = (end_by(LEAST_LEFT)[0] as usize).min(self.flight);
+        let after = as_count(end_by(LEAST_LEFT)[0]).min(self.flight);
         end_by((1.5 * reduce::peak(&self.shares[after..])).clamp(LEAST_LEFT, MOST_LEFT_AT_END))
     }
 }
@@ -169,8 +168,7 @@ fn cumulative(values: &[f64]) -> Vec<f64> {
 
 /// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let half = (1e-4 * sample_rate_hz) as usize;
+    let half = as_count(1e-4 * sample_rate_hz);
     let sums = cumulative(force);
     (0..force.len())
         .map(|i| {

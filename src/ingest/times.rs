@@ -4,7 +4,7 @@
 use super::clock::Refusal;
 use super::shown;
 use super::vocabulary::{split, time_unit_s};
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 use jiff::{Timestamp, civil::DateTime, tz::TimeZone};
 
 /// Units of time that a recorder may have left out, with seconds a unit.
@@ -230,8 +230,7 @@ impl Counted {
         if count < 2 || !(span.is_finite() && span > 0.0) {
             return None;
         }
-        #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
-        let mean = span / (count - 1) as f64;
+        let mean = span / as_f64(count - 1);
         let pairs = times.windows(2).step_by(times.len().div_ceil(LOOKED_AT));
         let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();
         let median = if steps.is_empty() { mean } else { robust::median(&mut steps) };

@@ -1,6 +1,8 @@
 //! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit
 //! among the others.
 
+use super::as_f64;
+
 /// Half-width of a 95 % interval over its standard uncertainty.
 const COVERAGE: f64 = 1.96;
 
@@ -39,9 +41,8 @@ pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
 
 /// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
 #[must_use]
-#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
 pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
-    let count = values.len() as f64;
+    let count = as_f64(values.len());
     let (mean, _) = mean(values)?;
     let square = |of: &dyn Fn(&(f64, f64)) -> f64| values.iter().map(|value| of(value).powi(2)).sum::<f64>();
     Some(Pooled {
@@ -77,9 +78,8 @@ impl Pooled {
 
 /// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three
 /// degrees of freedom on.
-#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
 fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
-    let nu = degrees as f64;
+    let nu = as_f64(degrees);
     let share = 2.0 / (9.0 * nu);
     nu * (1.0 - share + z * share.sqrt()).max(0.0).powi(3)
 }

@@ -1,37 +1,36 @@
 //! Samples to sums, means and extremes, in as many partial results as a processor works on at once: a single
 //! one waits for each step.
 
+use super::{as_count, as_f64};
+
 const LANES: usize = 8;
 
 /// Samples that are averaged into one to come down to about `rate_hz`.
 #[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
 pub fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
-    ((sample_rate_hz / rate_hz) as usize).max(1)
+    as_count(sample_rate_hz / rate_hz).max(1)
 }
 
 /// Means of whole blocks; samples left over at the end are left out.
 #[must_use]
-#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
 pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
     if block < LANES {
         // One after the other: lanes would cost more than the few sums.
-        return samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / block as f64).collect();
+        return samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / as_f64(block)).collect();
     }
-    samples.chunks_exact(block).map(|chunk| sum(chunk) / block as f64).collect()
+    samples.chunks_exact(block).map(|chunk| sum(chunk) / as_f64(block)).collect()
 }
 
 /// Means of blocks, the last one as long as it is, of their finite values each; NaN where there is none.
 #[must_use]
-#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
 pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> Vec<f64> {
     let mean = |chunk: &[T]| {
-        let whole = sum_of(chunk, Into::into) / chunk.len() as f64;
+        let whole = sum_of(chunk, Into::into) / as_f64(chunk.len());
         if whole.is_finite() {
             return whole;
         }
         let finite = || chunk.iter().map(|&x| x.into()).filter(|x: &f64| x.is_finite());
-        finite().sum::<f64>() / finite().count() as f64
+        finite().sum::<f64>() / as_f64(finite().count())
     };
     samples.chunks(block.max(1)).map(mean).collect()
 }

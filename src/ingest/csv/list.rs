@@ -18,6 +18,7 @@ use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
 use crate::ingest::time_base::TimeBaseError;
+use crate::numerics::as_f64;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -213,7 +214,6 @@ struct ListedClock {
 
 impl ListedClock {
     /// As reading takes it; what speaks against it goes to `issues`.
-    #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
     fn of(mut table: Table, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
         let plan = &table.plans[0];
         table.drop_blank()?;
@@ -245,7 +245,7 @@ impl ListedClock {
             to_s: issue.to_s.map(|t| t - first_s),
             ..issue
         }));
-        let of_rate = count.saturating_sub(1) as f64 / uniform.sample_rate_hz;
+        let of_rate = as_f64(count.saturating_sub(1)) / uniform.sample_rate_hz;
         Ok(Self {
             sample_rate_hz: Some(uniform.sample_rate_hz),
             start_s: Some(0.0),
@@ -260,7 +260,6 @@ impl ListedClock {
 
 /// A column of `ranges`, its rows of one sensor; where those of other sensors or topics lie between, on the
 /// clock of its own.
-#[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
 fn listed(
     column: &TableColumn,
     ranges: &[Range],
@@ -274,7 +273,7 @@ fn listed(
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
     let (first_s, last_s) = (time_s(own.rows.first), time_s(own.rows.last));
     let duration_s = first_s.zip(last_s).map(|(first_s, last_s)| last_s - first_s);
-    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| (own.rows.count - 1) as f64 / span_s);
+    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| as_f64(own.rows.count - 1) / span_s);
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {

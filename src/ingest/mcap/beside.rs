@@ -4,6 +4,7 @@ use super::plan::{Beside, Field, Says, Slots, StatedRate, Value};
 use crate::data::Samples;
 use crate::ingest::clock::Refusal;
 use crate::ingest::shown::short;
+use crate::numerics::as_count;
 use std::borrow::Cow;
 
 /// What a message says of the samples of one field.
@@ -100,12 +101,7 @@ impl<'a> SaidBeside<'a> {
             ));
         }
         if let (Some(count), Value::Array(samples)) = (self.count, &mut value) {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "saturates; a larger one changes nothing"
-            )]
-            samples.truncate(count as usize);
+            samples.truncate(as_count(count));
         }
         if let Some(scale) = self.scale {
             let offset = offset.map_or(0.0, |(number, _)| number);

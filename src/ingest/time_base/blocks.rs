@@ -2,14 +2,14 @@
 
 use super::error::{TimeBaseError, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
+use super::missing;
 use super::order::{is_same, no_mixture};
 use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
 use super::uniform::{Block, Uniform};
-use super::{fit, missing};
 use crate::data::{Finding, Samples, Span, TimesFinding};
 use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust};
 
 /// What sorting and doubles came to.
 #[derive(Default)]
@@ -226,7 +226,7 @@ fn place(pieces: &mut [Piece], rate_hz: f64, tolerance: f64, present: usize) -> 
             return Err(TimeBaseError::Jump { from_s, to_s, lost: miss, sample_rate_hz: rate_hz });
         }
         piece.place =
-            if miss.abs() <= tolerance { before.end() } else { before.place + fit::whole(steps.round()) };
+            if miss.abs() <= tolerance { before.end() } else { before.place + as_count(steps.round()) };
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::error::TimeBaseError;
 use crate::ingest::clock::RATE_TOLERANCE;
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -155,7 +155,7 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
             });
         }
         let last = runs[runs.len() - 1];
-        runs.push(Run { first: i + 1, place: last.place + (i - last.first) + whole(steps) });
+        runs.push(Run { first: i + 1, place: last.place + (i - last.first) + as_count(steps) });
     }
     Ok(runs)
 }
@@ -268,13 +268,4 @@ fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
         }
     }
     held_s
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "bounded by the fill limit, not negative"
-)]
-pub(super) fn whole(steps: f64) -> usize {
-    steps as usize
 }

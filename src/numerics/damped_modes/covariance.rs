@@ -3,6 +3,7 @@
 use super::drive::Form;
 use super::projection::{Projected, Projection, SharedByTimes, columns, rms};
 use super::series::{Fit, Oscillation, Series, SeriesFit};
+use crate::numerics::as_f64;
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 
@@ -36,8 +37,7 @@ fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Optio
             jumps: solution.as_slice()[fixed..fixed + jumps].to_vec(),
         });
     }
-    #[allow(clippy::cast_precision_loss, reason = "a handful of series")]
-    let lag = (lag_sum / series.len() as f64).clamp(0.0, 0.95);
+    let lag = (lag_sum / as_f64(series.len())).clamp(0.0, 0.95);
     Some(Fit {
         modes,
         drift,

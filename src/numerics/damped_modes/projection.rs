@@ -4,6 +4,7 @@
 use super::drive::Form;
 use super::ringing::Ringing;
 use super::series::{Oscillation, Series};
+use crate::numerics::as_f64;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn, Owned};
 use std::cell::OnceCell;
@@ -154,9 +155,8 @@ impl Projected {
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
 pub(super) fn rms(residual: &DVector<f64>) -> f64 {
-    (residual.norm_squared() / residual.len() as f64).sqrt()
+    (residual.norm_squared() / as_f64(residual.len())).sqrt()
 }
 
 /// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own
