@@ -52,7 +52,6 @@ const REFINED: u32 = 20;
 /// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The
 /// struck end's channel stands for F; the delay is the one at which its integrals explain the other channel
 /// best. Channels that hardly answer are left out.
-#[must_use]
 pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
     let Some(struck) = transverse(signals, End::First) else { return Vec::new() };
     let Some(cause) = Cause::new(struck, contact_s) else { return Vec::new() };

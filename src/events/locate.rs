@@ -55,7 +55,6 @@ struct Changing<'a> {
 
 impl<'a> Changes<'a> {
     /// Looks at every sample of the transverse channels once.
-    #[must_use]
     pub fn of(recording: &'a Recording) -> Self {
         let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
         Self(transverse.filter_map(Changing::of).collect())
@@ -101,7 +100,6 @@ impl<'a> Changes<'a> {
 
     /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a
     /// notable share of its largest change there, s: what lies far beyond it needs no fine work.
-    #[must_use]
     pub fn last_s(&self, event: &CoarseEvent, (v0_m_s, after_s): (f64, f64)) -> Option<f64> {
         let of_channel = |changing: &Changing| {
             let changes = &changing.changes_m_s;

@@ -21,7 +21,6 @@ const BLOCK_S: f64 = 1e-4;
 const SHARE: f64 = 0.5;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
-#[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
     match signal.end {
@@ -92,7 +91,6 @@ impl<'a> FirstPulse<'a> {
 /// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are
 /// compared, and the largest difference, if above `least_change_m_s`, is the slap-down. On signals that still
 /// ring the rise is sought backwards from the pulse's peak; free of ringing the first rise is taken.
-#[must_use]
 pub fn slap_down(
     signal: &Signal,
     between_s: std::ops::Range<f64>,

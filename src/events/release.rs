@@ -54,7 +54,6 @@ pub struct FreeFall {
 ///
 /// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None`
 /// where the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
-#[must_use]
 pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
     let lean = match channel.axis {
         Axis::Transverse => drop.angle_rad.cos(),

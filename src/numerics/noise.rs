@@ -26,7 +26,6 @@ const LOWEST_SHARE: f64 = 1e-2;
 ///
 /// Mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for fewer than 32
 /// samples.
-#[must_use]
 pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
     let n = quiet.len();
     if n < 32 {
@@ -64,7 +63,6 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
 /// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as
 /// [`spectrum`] gives it; between its bins the density is a power of the frequency, below them it is flat, or
 /// 1/f where it rises. 0 for an empty one.
-#[must_use]
 pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s: f64) -> f64 {
     let (Some(&lowest), Some(&highest)) = (spectrum.first(), spectrum.last()) else { return 0.0 };
     if !(mean_s > 0.0 && integrate_s > 0.0) {

@@ -34,13 +34,11 @@ pub enum ScatterWord {
 }
 
 /// E_n = (a − b) / √(U_a² + U_b²) of values with half-widths (ISO 13528): within ±1 they agree.
-#[must_use]
 pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0) / a.1.hypot(b.1)
 }
 
 /// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
-#[must_use]
 pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
     let count = as_f64(values.len());
     let (mean, _) = mean(values)?;
@@ -63,7 +61,6 @@ fn mean(values: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 impl Pooled {
     /// Whether the repeats scatter as their intervals say; `None` of one.
-    #[must_use]
     pub fn word(&self) -> Option<ScatterWord> {
         let degrees = self.count.checked_sub(1).filter(|degrees| *degrees > 0)?;
         Some(if self.chi_square > chi_square_quantile(degrees, 1.645) {
@@ -89,7 +86,6 @@ fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
 /// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three
 /// are left (largest consistent subset, Cox 2007): one wrong value does not make the right ones look wrong.
 /// Of two that contradict each other both fall out.
-#[must_use]
 pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
     let weight = |i: usize| values[i].1.powi(-2);
     // Sums over those that are kept: without one of them, its share is taken off.

@@ -6,13 +6,11 @@ use super::{as_count, as_f64};
 const LANES: usize = 8;
 
 /// Samples that are averaged into one to come down to about `rate_hz`.
-#[must_use]
 pub fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
     as_count(sample_rate_hz / rate_hz).max(1)
 }
 
 /// Means of whole blocks; samples left over at the end are left out.
-#[must_use]
 pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
     if block < LANES {
         // One after the other: lanes would cost more than the few sums.
@@ -22,7 +20,6 @@ pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
 }
 
 /// Means of blocks, the last one as long as it is, of their finite values each; NaN where there is none.
-#[must_use]
 pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> Vec<f64> {
     let mean = |chunk: &[T]| {
         let whole = sum_of(chunk, Into::into) / as_f64(chunk.len());
@@ -36,7 +33,6 @@ pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> V
 }
 
 /// Smallest |x − y| of neighbours above `least`; infinite where there is none.
-#[must_use]
 pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     let mut smallest = [f64::INFINITY; LANES];
     let Some(next) = samples.get(1..) else { return f64::INFINITY };
@@ -52,7 +48,6 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
 
 /// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often
 /// tell.
-#[must_use]
 pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     const FIRST: usize = 4096;
     let within = |samples: &[f64]| least_step(samples, least);
@@ -64,19 +59,16 @@ pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
 
 /// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where
 /// nothing changes.
-#[must_use]
 pub fn converter_step(samples: &[f64]) -> f64 {
     least_step_beyond(samples, 1e-9 * peak(samples), 0.0)
 }
 
 /// Σ x.
-#[must_use]
 pub fn sum(values: &[f64]) -> f64 {
     sum_of(values, |x| x)
 }
 
 /// Σ f(x).
-#[must_use]
 pub fn sum_of<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
     let (lanes, rest) = values.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
@@ -89,7 +81,6 @@ pub fn sum_of<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
 }
 
 /// Σ x y, as far as the shorter one goes.
-#[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (&a[..a.len().min(b.len())], &b[..b.len().min(a.len())]);
     let ((a_lanes, a_rest), (b_lanes, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
@@ -103,7 +94,6 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Smallest and largest of the finite values and `start`.
-#[must_use]
 pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
     // Whatever is compared with NaN is false: these two comparisons are one instruction each.
     let follow = |(low, high): (&mut f64, &mut f64), x: f64| {
@@ -129,7 +119,6 @@ pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
 }
 
 /// Largest finite |x|; 0 where there is none.
-#[must_use]
 pub fn peak(values: &[f64]) -> f64 {
     let (low, high) = extremes(values, 0.0);
     high.max(-low)

@@ -19,7 +19,6 @@ pub fn median(values: &mut [f64]) -> f64 {
 
 /// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996,
 /// type 7); NaN of none.
-#[must_use]
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
     let place = share * as_f64(last);
@@ -38,20 +37,17 @@ pub fn sampled(values: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 /// How far apart the values of such a sample of `count` lie.
-#[must_use]
 pub fn stride(count: usize) -> usize {
     (count / MOST).max(1)
 }
 
 /// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974),
 /// of many values by a sample.
-#[must_use]
 pub fn spread(values: &[f64]) -> f64 {
     centre_and_spread(values).1
 }
 
 /// The median of such a sample, and [`spread`].
-#[must_use]
 pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
     let mut work: Vec<f64> = sampled(values).collect();
     let centre = median(&mut work);
@@ -62,7 +58,6 @@ pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
 }
 
 /// Mean and root mean square about it; NaN of an empty slice.
-#[must_use]
 pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
     let n = as_f64(values.len());
     let mean = reduce::sum(values) / n;

@@ -19,13 +19,11 @@ pub struct Sinusoid {
 
 impl Sinusoid {
     /// √(a² + b²).
-    #[must_use]
     pub fn amplitude(&self) -> f64 {
         self.cosine.hypot(self.sine)
     }
 
     /// Its value a time after the middle of the samples it was fitted to.
-    #[must_use]
     pub fn at(&self, since_middle_s: f64) -> f64 {
         let (sin, cos) = (TAU * self.frequency_hz * since_middle_s).sin_cos();
         self.cosine * cos + self.sine * sin
@@ -33,7 +31,6 @@ impl Sinusoid {
 }
 
 /// The sinusoid of this frequency beside a constant and a slope; `None` below eight samples or one period.
-#[must_use]
 pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Sinusoid> {
     let n = samples.len();
     let length_s = as_f64(n) / sample_rate_hz;
@@ -65,7 +62,6 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
 
 /// The strongest sinusoid between two frequencies: eleven of them are tried, then eleven between the
 /// neighbours of the best.
-#[must_use]
 pub fn strongest(samples: &[f64], sample_rate_hz: f64, (low_hz, high_hz): (f64, f64)) -> Option<Sinusoid> {
     let best = |low: f64, high: f64, steps: u32| {
         let step = (high - low) / f64::from(steps);

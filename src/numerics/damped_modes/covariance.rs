@@ -9,7 +9,6 @@ use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points
 /// over.
-#[must_use]
 pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let mut fit = coefficients(series, modes, form)?;
     uncertainties(series, &mut fit, form)?;

@@ -36,7 +36,6 @@ struct Tried {
 
 impl Seeds {
     /// The seeds of a band, Hz, for `series` and what drives them.
-    #[must_use]
     pub fn new(series: &[Series], band_hz: (f64, f64), drive: Option<&Drive>) -> Self {
         let form = Form { drift: false, drive };
         let mut modes = Vec::new();

@@ -63,7 +63,6 @@ pub struct Fit {
 impl Fit {
     /// BIC = Σ_j (n_j/κ) ln(RMS_j² + floor_j²) + parameters · ln(Σ n_j/κ)   (21), κ the correlation of the
     /// richest candidate.
-    #[must_use]
     pub fn bic(&self, series: &[Series], correlation: f64) -> f64 {
         let mut points = 0.0;
         let mut score = 0.0;
