@@ -16,6 +16,7 @@
 //! | – | none | two, as near, that differ | refusal |
 //! | – | none | none | refusal |
 
+use super::refusal::Refusal;
 use super::shown;
 use super::statement::Statement;
 use crate::data::{ClockFinding, Finding, HowApart, RatesApart, TimesApart};
@@ -27,22 +28,6 @@ pub(super) const RATE_TOLERANCE: f64 = 1e-3;
 
 /// Rates further apart than this are no two clocks: one of the statements is wrong, and nothing tells which.
 const FAR: f64 = 1e-2;
-
-/// What is wrong with a channel, and how to mend it; the reader adds which file and channel.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{problem}")]
-pub struct Refusal {
-    /// What is wrong, with its numbers.
-    pub problem: String,
-    /// What to write or do.
-    pub remedy: String,
-}
-
-impl Refusal {
-    pub(super) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { problem: problem.into(), remedy: remedy.into() }
-    }
-}
 
 /// What is said of a channel's rate apart from its times.
 #[derive(Debug, Clone, Default)]

@@ -24,7 +24,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::{Limits, Progress, RawChannel, RawRecording};
-use crate::data::{CaskFile, Finding};
+use crate::data::{CaskFile, ChannelSpec, Finding};
 use columns::{HeldColumn, Keep};
 use layout::Layout;
 use lines::Text;
@@ -45,7 +45,10 @@ pub(super) fn read(
 ) -> Result<RawRecording, IngestError> {
     let text = Text::open(path, limits)?;
     let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path, &text))?;
-    let plan = |spec| ColumnPlan::of(path, spec, cask_file.time.as_deref(), &layout);
+    let plan = |spec: &ChannelSpec| {
+        let plan = ColumnPlan::of(path, spec, cask_file.time_of(spec), &layout);
+        plan.map_err(|refusal| error::of_channel(path, &spec.name, refusal))
+    };
     let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
     let wanted = Wanted::of(&plans, &layout);
     // What is set aside is a guess from the first rows; more is taken as it comes.
@@ -60,7 +63,7 @@ pub(super) fn read(
     let mut table = Table { layout: &layout, plans: &plans, wanted: &wanted, columns, stamps };
     table.drop_blank().map_err(|refusal| complaint::of_rows(path, refusal))?;
     let name = |plan: usize| cask_file.channels[plan].name.as_str();
-    let refused = |refused: Refused| error::refused(path, name(refused.plan), refused.refusal);
+    let refused = |refused: Refused| error::of_channel(path, name(refused.plan), refused.refusal);
     issues.extend(table.settle_times().map_err(refused)?);
     issues.extend(table.counter_jumps());
     let own_rows = table.own_rows().map_err(refused)?;

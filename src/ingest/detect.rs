@@ -2,6 +2,7 @@
 
 use super::error::{self, IngestError};
 use super::number;
+use super::refusal::Refusal;
 use super::{opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
@@ -21,7 +22,11 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
     if metadata.is_dir() {
-        return Err(IngestError::Directory { path: path.display().to_string() });
+        let refusal = Refusal::new(
+            "this is a directory, not a recording",
+            "name one recording file; `dropcheck batch` takes several",
+        );
+        return Err(error::of_file(path, refusal));
     }
     let mut file = opened(path).map_err(|source| error::io(path, source))?;
     let mut head = Vec::new();
@@ -169,11 +174,7 @@ fn stranger(path: &Path, head: &[u8]) -> IngestError {
 }
 
 fn unknown(path: &Path, found: &str, mend: &str) -> IngestError {
-    IngestError::UnknownFormat {
-        path: path.display().to_string(),
-        found: found.to_owned(),
-        mend: mend.to_owned(),
-    }
+    error::of_file(path, Refusal::new(format!("not a recording that dropcheck can read: {found}"), mend))
 }
 
 #[cfg(test)]
@@ -247,7 +248,7 @@ mod tests {
     #[test]
     fn a_directory_and_a_missing_file_are_told_apart() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(matches!(format(dir.path()), Err(IngestError::Directory { .. })));
+        assert!(matches!(format(dir.path()), Err(IngestError::Refused { .. })));
         assert!(matches!(format(&dir.path().join("none")), Err(IngestError::Io { .. })));
     }
 }

@@ -25,6 +25,7 @@ pub use room::Hdf5Program;
 pub(super) use room::answer_by;
 pub(super) use room::use_program;
 
+use super::refusal::Refusal;
 use super::{Limits, Progress, RawChannel, RawRecording};
 use super::{error, error::IngestError};
 use crate::data::{CaskFile, ChannelSpec, Source};
@@ -32,7 +33,6 @@ use crate::numerics::as_f64;
 use channel::DatasetChannel;
 use clocks::Clocks;
 use column::DatasetColumn;
-use fault::Fault;
 use room::File;
 use starts::Start;
 use std::collections::HashMap;
@@ -111,8 +111,8 @@ pub(super) fn read(
         let (channel, start) = channel?;
         channels.push(RawChannel { spec: index, ..channel });
         starts.push((spec.source.to_string(), start));
-        let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
-        starts::require_common(&starts).map_err(refused)?;
+        let is_common = starts::require_common(&starts);
+        is_common.map_err(|fault| error::of_channel(path, &spec.name, fault))?;
         progress(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
@@ -162,9 +162,9 @@ fn read_channel(
     time: Option<&str>,
 ) -> Result<(RawChannel, Start), IngestError> {
     let path = &room.file.path;
-    let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
+    let refused = |fault: Refusal| error::of_channel(path, &spec.name, fault);
     let Source::Path(source) = &spec.source else {
-        return Err(refused(Fault::new(
+        return Err(refused(Refusal::new(
             "source gives a topic and a field, but this recording is HDF5",
             "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column",
         )));
@@ -182,7 +182,7 @@ fn read_channel(
     uniform.issues.extend(attributes.issues);
     match attributes.two_units {
         // The cask file's goes before all.
-        Some(two) if spec.unit.is_none() => Err(refused(Fault::from(two).at(source))),
+        Some(two) if spec.unit.is_none() => Err(refused(two.at(source))),
         _ => Ok((RawChannel { spec: 0, uniform, unit: attributes.unit }, based.start)),
     }
 }

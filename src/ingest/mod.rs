@@ -15,6 +15,7 @@ mod limits;
 mod mcap;
 mod number;
 mod opened;
+mod refusal;
 mod statement;
 mod strangers;
 pub mod time_base;

@@ -1,7 +1,7 @@
 //! Numbers in a column or dataset of times to seconds: by the unit that is stated, by 1970, or by a rate that
 //! is stated.
 
-use super::clock::Refusal;
+use super::refusal::Refusal;
 use super::shown;
 use super::vocabulary::{split, time_unit_s};
 use crate::numerics::{as_f64, robust};

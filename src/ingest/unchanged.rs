@@ -2,6 +2,7 @@
 
 use super::error::{self, IngestError};
 use super::opened;
+use super::refusal::Refusal;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs::Metadata;
@@ -20,7 +21,7 @@ const MOST_LOOKS: usize = 50;
 /// What `read` makes of the file at `path`, and the file's SHA-256, which is taken beside it.
 ///
 /// # Errors
-/// What `read` says, at once; [`IngestError::Content`] where the file was not the same all the time.
+/// What `read` says, at once; [`IngestError::Refused`] where the file was not the same all the time.
 pub(super) fn hashed<T>(
     path: &Path,
     read: impl FnOnce() -> Result<T, IngestError>,
@@ -42,12 +43,11 @@ pub(super) fn hashed<T>(
 }
 
 fn changed(path: &Path) -> IngestError {
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the whole file".to_owned(),
-        problem: "it changed while it was being read".to_owned(),
-        mend: "copy it first and name the copy, or wait until it is written".to_owned(),
-    }
+    let refusal = Refusal::new(
+        "it changed while it was being read",
+        "copy it first and name the copy, or wait until it is written",
+    );
+    error::of_file(path, refusal.at("the whole file"))
 }
 
 /// What tells a file from itself at another time.

@@ -1,9 +1,9 @@
 //! What is wrong with a table's rows, columns or times, in words.
 
 use super::super::Limits;
-use super::super::clock::Refusal;
 use super::super::error::{self, IngestError};
 use super::super::number;
+use super::super::refusal::Refusal;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
 use super::lines::{Line, Text};
@@ -17,8 +17,7 @@ pub(super) const TIMES_REMEDY: &str =
 
 /// Rows that are refused as a whole.
 pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
-    let Refusal { problem, remedy } = refusal;
-    IngestError::Content { path: path.display().to_string(), place: "the rows".into(), problem, mend: remedy }
+    error::of_file(path, refusal.at("the rows"))
 }
 
 /// No table at all.
@@ -36,17 +35,12 @@ pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
             "export one row a sample with comma, semicolon or tab between the columns",
         )
     };
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the first 64 KiB".into(),
-        problem: problem.into(),
-        mend: mend.into(),
-    }
+    error::of_file(path, Refusal::new(problem, mend).at("the first 64 KiB"))
 }
 
 /// Times that give no base.
 pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> IngestError {
-    error::refused(path, channel, error.refusal(TIMES_REMEDY))
+    error::of_channel(path, channel, error.refusal(TIMES_REMEDY))
 }
 
 pub(super) fn row_error(
@@ -101,5 +95,5 @@ pub(super) fn row_error(
                 .to_owned(),
         ),
     };
-    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
+    error::of_file(path, Refusal::new(problem, mend).at(&format!("line {line}")))
 }

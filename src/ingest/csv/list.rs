@@ -1,7 +1,8 @@
 //! Delimited text to the list of its columns, on the clock that reading one of them would take.
 
-use super::super::clock::{Claims, Refusal};
+use super::super::clock::Claims;
 use super::super::error::IngestError;
+use super::super::refusal::Refusal;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
 use super::complaint::{self, no_table, row_error};
@@ -144,8 +145,8 @@ pub(in super::super) fn list(
     let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };
-    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|Refusal { problem, remedy }| {
-        issues.push(ClockFinding::Refused(format!("{problem}: {remedy}")).into());
+    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|refusal| {
+        issues.push(ClockFinding::Refused(refusal.beside("")).into());
         ListedClock::default()
     });
     issues.extend(layout.preamble.of_rows(rows, clock.samples));

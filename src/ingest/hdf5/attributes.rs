@@ -6,7 +6,7 @@ use super::column::DatasetColumn;
 use super::names::{self, AttributeRole};
 use super::starts::{self, start_s};
 use crate::data::{AttributeFinding, Finding, Samples, acceleration_unit_m_s2};
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::Meaning;
 
@@ -102,8 +102,8 @@ impl Attributes {
         match all.nearest(units.collect(), |near, far| !are_other_units(near, far), |_| true) {
             Ok(unit) => all.unit = unit,
             Err(two) => {
-                let remedy = "write `unit` into this channel of the cask file".into();
-                all.two_units = Some(Refusal { remedy, ..two });
+                let remedy = "write `unit` into this channel of the cask file";
+                all.two_units = Some(Refusal::new(two.problem, remedy));
             }
         }
         if !column.is_field() {

@@ -2,7 +2,7 @@
 
 use super::plan::{Beside, Field, Says, Slots, StatedRate, Value};
 use crate::data::Samples;
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::short;
 use crate::numerics::as_count;
 use std::borrow::Cow;

@@ -4,7 +4,7 @@ use super::extent::Extent;
 use super::numbers::{append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::PREFIX;
 use crate::ingest::times::Scale;
 

@@ -9,6 +9,7 @@ use super::topics::{Asked, LOG_TIME};
 use super::walk::walk;
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::refusal::Refusal;
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
 use std::path::Path;
 
@@ -24,15 +25,18 @@ pub(in crate::ingest) fn read(
 ) -> Result<RawRecording, IngestError> {
     let specs = &cask_file.channels;
     let (scanned, mut topics) = walk(path, limits, Asked::Sources(cask_file), progress)?.finish();
-    let chosen = chosen(path, specs, &topics, &scanned)?;
+    let refused = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
+    let one =
+        |spec: &ChannelSpec| chosen(path, spec, &topics, &scanned).map_err(|refusal| refused(spec, refusal));
+    let chosen: Vec<ChosenColumn> = specs.iter().map(one).collect::<Result<_, _>>()?;
     for (spec, place) in specs.iter().zip(&chosen) {
         let column = place.column_mut(&mut topics);
         let settled = column.settle_ticks(&spec.source.to_string(), spec.sample_rate_hz);
-        settled.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
+        settled.map_err(|refusal| refused(spec, refusal))?;
         if let Some(time) =
             cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.stamps.good == 0)
         {
-            return Err(complaint::no_named_time(path, spec, time));
+            return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
     }
     let columns = || chosen.iter().map(|place| place.column(&topics));
@@ -45,7 +49,7 @@ pub(in crate::ingest) fn read(
         let column = place.column(&topics);
         issues.extend(message_issues(spec, &told[place.channel].1, column));
         if let Some(change) = column.unit_change() {
-            issues.push(complaint::unit_change(path, spec, change)?);
+            issues.push(complaint::unit_change(spec, change).map_err(|refusal| refused(spec, refusal))?);
         }
         let unit = topic.unit(&topic.plan.fields[place.field], column);
         // A second channel on the same field gets its own copy.
@@ -56,7 +60,7 @@ pub(in crate::ingest) fn read(
         };
         let uniform = column
             .uniform(zero_ns, spec.sample_rate_hz)
-            .map_err(|problem| complaint::no_base(path, spec, problem))?;
+            .map_err(|problem| refused(spec, complaint::no_base(spec, problem)))?;
         channels.push(RawChannel { spec: position, uniform, unit });
     }
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
@@ -81,54 +85,42 @@ impl ChosenColumn {
     }
 }
 
-/// The samples that each channel means: of the longest topic that gave some.
+/// The samples that a channel means: of the longest topic that gave some.
 fn chosen(
     path: &Path,
-    specs: &[ChannelSpec],
+    spec: &ChannelSpec,
     topics: &[Channels],
     scanned: &Scanned,
-) -> Result<Vec<ChosenColumn>, IngestError> {
-    let meant = |spec: &ChannelSpec| {
-        let field = |(at, (topic, _)): (usize, &Channels)| {
-            let path = path::field_in(&spec.source, &topic.name)?;
-            Some((at, topic.plan.fields.iter().position(|field| field.asked.path == path)?))
-        };
-        let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
-        let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
-            let mut names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
-            names.dedup();
-            return Err(complaint::no_topic(path, spec, &names, scanned));
-        };
-        let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));
-        let mut all: Vec<ChosenColumn> = places.collect();
-        let most = all.iter().map(|place| topics[place.topic].0.name.len()).max();
-        all.retain(|place| Some(topics[place.topic].0.name.len()) == most);
-        let picked: Vec<ChosenColumn> =
-            all.iter().copied().filter(|place| is_picked(spec, topics, place)).collect();
-        match (&picked[..], &all[..]) {
-            ([one], _) => Ok(*one),
-            (_, []) => Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
-            (several, all) => {
-                let open = if several.is_empty() { all } else { several };
-                // None to pick of those that are all refused.
-                if let [first, ..] = open
-                    && open.iter().all(|place| place.column(topics).heeded().is_err())
-                {
-                    let heeded = first.column(topics).heeded();
-                    heeded.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
-                }
-                let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
-                let rows = open.iter().filter_map(|place| rows_of(topics, place));
-                Err(complaint::several(
-                    path,
-                    spec,
-                    &topics[longest].0.name,
-                    (numbers.collect(), rows.collect()),
-                ))
-            }
-        }
+) -> Result<ChosenColumn, Refusal> {
+    let field = |(at, (topic, _)): (usize, &Channels)| {
+        let path = path::field_in(&spec.source, &topic.name)?;
+        Some((at, topic.plan.fields.iter().position(|field| field.asked.path == path)?))
     };
-    specs.iter().map(meant).collect()
+    let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
+    let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
+        let mut names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
+        names.dedup();
+        return Err(complaint::no_topic(path, spec, &names, scanned));
+    };
+    let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));
+    let mut all: Vec<ChosenColumn> = places.collect();
+    let most = all.iter().map(|place| topics[place.topic].0.name.len()).max();
+    all.retain(|place| Some(topics[place.topic].0.name.len()) == most);
+    let picked: Vec<ChosenColumn> =
+        all.iter().copied().filter(|place| is_picked(spec, topics, place)).collect();
+    let open = match (&picked[..], &all[..]) {
+        ([one], _) => return Ok(*one),
+        (_, []) => return Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
+        ([], all) => all,
+        (several, _) => several,
+    };
+    // None to pick of those that are all refused.
+    if open.iter().all(|place| place.column(topics).heeded().is_err()) {
+        open[0].column(topics).heeded()?;
+    }
+    let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
+    let rows = open.iter().filter_map(|place| rows_of(topics, place));
+    Err(complaint::several(spec, &topics[longest].0.name, (numbers.collect(), rows.collect())))
 }
 
 /// Where a field of a topic has samples.

@@ -5,8 +5,8 @@ use super::json;
 use super::message_type::MessageType;
 use super::plan::{Beside, Decode, Field, Leaf, Plan, Slots, Value};
 use crate::data::{McapFinding, RowsOf};
-use crate::ingest::clock::Refusal;
 use crate::ingest::limits::MOST_SENSORS;
+use crate::ingest::refusal::Refusal;
 use rayon::prelude::*;
 use std::borrow::Cow;
 

@@ -7,7 +7,8 @@ use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, Told};
 use super::uniform::{Block, Uniform};
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE};
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::statement::Statement;
 

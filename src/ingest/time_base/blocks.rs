@@ -8,7 +8,8 @@ use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
 use super::uniform::{Block, Uniform};
 use crate::data::{Finding, Samples, Span, TimesFinding};
-use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
+use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::refusal::Refusal;
 use crate::numerics::{as_count, as_f64, robust};
 
 /// What sorting and doubles came to.

@@ -10,7 +10,8 @@ use super::error::TimeBaseError;
 use super::missing;
 use super::uniform::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal, of_times};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::digits;
 use crate::numerics::{as_f64, robust};
 

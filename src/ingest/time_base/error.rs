@@ -1,6 +1,6 @@
 //! Why times give no uniform base.
 
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::{digits, short};
 
 /// Why times give no uniform base.
@@ -85,7 +85,7 @@ pub enum TimeBaseError {
 
 impl TimeBaseError {
     /// What is wrong with its own remedy where it has one, else with this.
-    pub(in crate::ingest) fn refusal(self, remedy: &str) -> Refusal {
+    pub(crate) fn refusal(self, remedy: &str) -> Refusal {
         match self {
             Self::Refused(refusal) => refusal,
             other => Refusal::new(other.to_string(), remedy),

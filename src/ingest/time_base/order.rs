@@ -2,7 +2,8 @@
 
 use super::error::TimeBaseError;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Refusal, usual_step};
+use crate::ingest::clock::usual_step;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::short;
 use crate::numerics::as_f64;
 use std::borrow::Cow;

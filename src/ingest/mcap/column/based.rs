@@ -2,7 +2,8 @@
 
 use super::{Column, StatedRate, seconds_from};
 use crate::data::ListedChannel;
-use crate::ingest::clock::{Claims, Refusal};
+use crate::ingest::clock::Claims;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
 use crate::numerics::as_f64;

@@ -3,7 +3,8 @@
 
 use super::{Column, SentTimes, StampCounts, seconds_from};
 use crate::data::{Finding, McapFinding};
-use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
+use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base;
 use crate::ingest::times::{self, Carrier, SentTicks};
 
