@@ -26,7 +26,7 @@ pub(super) use room::answer_by;
 pub(super) use room::use_program;
 
 use super::refusal::Refusal;
-use super::{Limits, Progress, RawChannel, RawRecording};
+use super::{RawChannel, RawRecording, ReadRequest};
 use super::{error, error::IngestError};
 use crate::data::{CaskFile, ChannelSpec, Source};
 use crate::numerics::as_f64;
@@ -89,17 +89,12 @@ fn begin_without_variables(program: &Path) {
     }
 }
 
-/// The channels of `cask_file` from the HDF5 file at `path`.
+/// The channels of `cask_file` from an HDF5 file.
 ///
 /// # Errors
 /// A damaged file, a source that is not there or holds no numbers, times that are none.
-pub(super) fn read(
-    path: &Path,
-    cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
-) -> Result<RawRecording, IngestError> {
-    let file = File::open(path, limits)?;
+pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
+    let file = File::open(request.path, request.limits)?;
     let clocks = Clocks::default();
     let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);
@@ -112,8 +107,8 @@ pub(super) fn read(
         channels.push(RawChannel { spec: index, ..channel });
         starts.push((spec.source.to_string(), start));
         let is_common = starts::require_common(&starts);
-        is_common.map_err(|fault| error::of_channel(path, &spec.name, fault))?;
-        progress(as_f64(index + 1) / as_f64(count));
+        is_common.map_err(|fault| error::of_channel(request.path, &spec.name, fault))?;
+        (request.progress)(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }

@@ -37,6 +37,22 @@ use std::path::Path;
 /// Called with the fraction done, 0 to 1, now and then.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
+/// A recording that is to be read or listed.
+#[derive(Clone, Copy)]
+pub(crate) struct ReadRequest<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) limits: Limits,
+    pub(crate) progress: Progress<'a>,
+}
+
+#[cfg(any(test, fuzzing))]
+impl<'a> ReadRequest<'a> {
+    /// Of which nobody is told how far it is.
+    pub(crate) fn silent(path: &'a Path, limits: Limits) -> Self {
+        Self { path, limits, progress: &|_| () }
+    }
+}
+
 /// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit
 /// and clock.
 #[derive(Debug)]
@@ -98,13 +114,12 @@ pub fn read_within(
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
+    let request = ReadRequest { path, limits, progress };
     let (raw, sha256) = unchanged::hashed(path, || match format {
-        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
+        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(request, cask_file)),
         // No file is told as `Samples`.
-        RecordingFormat::Csv | RecordingFormat::Samples => {
-            rayon::scope(|_| csv::read(path, cask_file, limits, progress))
-        }
-        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
+        RecordingFormat::Csv | RecordingFormat::Samples => rayon::scope(|_| csv::read(request, cask_file)),
+        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(request, cask_file)),
     })?;
     assemble::recording(path, format, sha256, raw, cask_file)
 }
@@ -130,10 +145,11 @@ pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
 /// # Errors
 /// As [`list`]; [`IngestError::TooLarge`] where the file would pass a limit.
 pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
+    let request = ReadRequest { path, limits, progress };
     match detect::format(path)? {
-        RecordingFormat::Mcap => mcap::list(path, limits, progress),
-        RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),
-        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(path, limits, progress),
+        RecordingFormat::Mcap => mcap::list(request),
+        RecordingFormat::Hdf5 => hdf5::list(request),
+        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
     }
 }
 

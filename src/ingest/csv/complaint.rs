@@ -1,6 +1,6 @@
 //! What is wrong with a table's rows, columns or times, in words.
 
-use super::super::Limits;
+use super::super::ReadRequest;
 use super::super::error::{self, IngestError};
 use super::super::number;
 use super::super::refusal::Refusal;
@@ -43,9 +43,9 @@ pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> In
     error::of_channel(path, channel, error.refusal(TIMES_REMEDY))
 }
 
+/// A row that cannot be read.
 pub(super) fn row_error(
-    path: &Path,
-    limits: Limits,
+    ReadRequest { path, limits, .. }: ReadRequest,
     (layout, wanted): (&Layout, &Wanted),
     error: RowError,
 ) -> IngestError {

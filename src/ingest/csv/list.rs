@@ -14,14 +14,13 @@ use super::rows::{self, RowsPart, Sink};
 use super::sensors::{self, Filled};
 use super::table::Table;
 use super::wanted::Wanted;
-use super::{Limits, Progress};
 use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
+use crate::ingest::ReadRequest;
 use crate::ingest::time_base::TimeBaseError;
 use crate::numerics::as_f64;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// What is known of a column, or of its rows of one sensor, after one pass.
 #[derive(Debug, Clone, Default)]
@@ -117,15 +116,12 @@ impl Sink for Survey<'_> {
     }
 }
 
-/// Lists the columns of the text at `path`.
+/// Lists the columns of a text.
 ///
 /// # Errors
 /// A file that cannot be read or holds no rows of numbers.
-pub(in super::super) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
+pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let ReadRequest { path, limits, .. } = request;
     let text = Text::open(path, limits)?;
     let (bytes, encoding) = (text.bytes, text.encoding);
     let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
@@ -140,8 +136,8 @@ pub(in super::super) fn list(
     let plans = [plan(&layout)];
     let kept = Wanted::of(&plans, &layout);
     let mut survey = Survey::of(&layout, &all, &kept);
-    let ending = rows::read(text, &layout, &all, &mut survey, (limits, progress))
-        .map_err(|error| row_error(path, limits, (&layout, &all), error))?;
+    let ending = rows::read(text, &layout, &all, &mut survey, request)
+        .map_err(|error| row_error(request, (&layout, &all), error))?;
     let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };

@@ -1,5 +1,5 @@
 //! A source to a channel as it is taken: its column, what is said of it, its times, its samples on one base.
-//! Reading and listing share it.
+//! ReadRequest and listing share it.
 
 use super::attributes::Attributes;
 use super::clocks::{self, Clocks};

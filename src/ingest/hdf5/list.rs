@@ -14,10 +14,9 @@ use crate::data::{
     is_number,
 };
 use crate::ingest::refusal::Refusal;
-use crate::ingest::{IngestError, Limits, Progress};
+use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
 use crate::numerics::as_f64;
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::rc::Rc;
 
 /// So many channels are listed at most.
@@ -42,17 +41,13 @@ struct Lister {
     broken: Vec<ListedChannel>,
 }
 
-/// Lists what the HDF5 file at `path` holds.
+/// Lists what an HDF5 file holds.
 ///
 /// # Errors
 /// A file that the library cannot open.
-pub(in super::super) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
-    let file = File::open(path, limits)?;
-    let listing = list_objects(&file, progress);
+pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let file = File::open(request.path, request.limits)?;
+    let listing = list_objects(&file, request.progress);
     file.whole().map(|()| listing)
 }
 

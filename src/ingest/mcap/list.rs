@@ -6,26 +6,21 @@ use super::path::source_text;
 use super::plan::AskedField;
 use super::scanned::Scanned;
 use super::topic::{Channels, Gathered, Sensor, Topic};
-use super::topics::Asked;
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
+use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
-use crate::ingest::{Limits, Progress};
 use std::collections::{BTreeMap, HashMap};
-use std::path::Path;
 
-/// Lists what the file at `path` holds.
+/// Lists what a file holds.
 ///
 /// # Errors
 /// Only where the file cannot be read at all.
-pub(in crate::ingest) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
+pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let path = request.path;
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
-    let walked = walk(path, limits, Asked::Everything, progress)?;
+    let walked = walk(request, None)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schema_count(), walked.topics.channel_count());
     let (scanned, mut topics) = walked.finish();

@@ -5,12 +5,12 @@ use super::complaint;
 use super::path;
 use super::scanned::Scanned;
 use super::topic::{Channels, Gathered, Sensor};
-use super::topics::{Asked, LOG_TIME};
+use super::topics::LOG_TIME;
 use super::walk::walk;
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::refusal::Refusal;
-use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
+use crate::ingest::{RawChannel, RawRecording, ReadRequest};
 use std::path::Path;
 
 /// Reads the channels that `cask_file` names.
@@ -18,13 +18,12 @@ use std::path::Path;
 /// # Errors
 /// A topic or field that is not there, or gives no samples on a time base.
 pub(in crate::ingest) fn read(
-    path: &Path,
+    request: ReadRequest,
     cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
 ) -> Result<RawRecording, IngestError> {
+    let path = request.path;
     let specs = &cask_file.channels;
-    let (scanned, mut topics) = walk(path, limits, Asked::Sources(cask_file), progress)?.finish();
+    let (scanned, mut topics) = walk(request, Some(cask_file))?.finish();
     let refused = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
     let one =
         |spec: &ChannelSpec| chosen(path, spec, &topics, &scanned).map_err(|refusal| refused(spec, refusal));

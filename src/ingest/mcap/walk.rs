@@ -7,15 +7,14 @@ use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary};
 use super::summed::Summed;
 use super::topic::{Channels, Part};
-use super::topics::{Asked, Topics};
-use crate::data::{FileEnd, McapFinding};
+use super::topics::Topics;
+use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::error::{self, IngestError};
-use crate::ingest::{Limits, Progress};
+use crate::ingest::{Limits, Progress, ReadRequest};
 use mcap::records::{Record, op};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufReader, Read};
-use std::path::Path;
 
 /// Larger than most chunks' share between two looks at the progress; smaller than any cache.
 const READ_BUFFER_BYTES: usize = 1 << 18;
@@ -52,17 +51,13 @@ impl From<std::io::Error> for Obstacle {
     }
 }
 
-/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked
-/// for.
+/// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
+/// of a cask file name; without one, for a listing, of every numeric field.
 ///
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
-pub(super) fn walk<'a>(
-    path: &Path,
-    limits: Limits,
-    asked: Asked<'a>,
-    progress: Progress,
-) -> Result<Walked<'a>, IngestError> {
+pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Result<Walked<'a>, IngestError> {
+    let ReadRequest { path, limits, progress } = request;
     let walked = File::open(path).map_err(Obstacle::from).and_then(|mut file| {
         let length = file.metadata()?.len();
         let summary = summary::read(&mut file, length, limits.part_bytes())?;
