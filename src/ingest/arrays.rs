@@ -33,10 +33,11 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
                 "take `where` out, and hand over the samples of this sensor alone",
             )));
         }
+        let said = |rate_hz| Statement::by(format!("rate_hz = {rate_hz}"), rate_hz, 0.0);
         let claims = Claims {
             cask_hz: stated.sample_rate_hz,
             are_times_named: false,
-            stated: held.sample_rate_hz.map(of_samples).into_iter().collect(),
+            stated: held.sample_rate_hz.map(said).into_iter().collect(),
         };
         let samples = Samples::F64(held.values.clone());
         let uniform = match &held.times_s {
@@ -50,10 +51,6 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, cask_file)
-}
-
-fn of_samples(rate_hz: f64) -> Statement {
-    Statement { place: format!("rate_hz = {rate_hz}"), rate_hz, rounding: 0.0, distance: 0 }
 }
 
 fn no_rate(held: &HeldSamples) -> Refusal {

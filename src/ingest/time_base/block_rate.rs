@@ -77,12 +77,8 @@ fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Blo
         return Ok(BlockRate { laid_hz, stated_hz: None, issues: Vec::new() });
     };
     let is_window = |told: &Told| nearest_hz < told.rate_hz && content.overlaps(blocks, nearest_hz);
-    let own = told.filter(|told| !told.is_few && !is_window(told)).map(|told| Statement {
-        place: "the stamps of its blocks".into(),
-        rate_hz: told.rate_hz,
-        rounding: told.uncertainty,
-        distance: 0,
-    });
+    let own = told.filter(|told| !told.is_few && !is_window(told));
+    let own = own.map(|told| Statement::by("the stamps of its blocks", told.rate_hz, told.uncertainty));
     let taken = claims.weigh(own.as_ref())?;
     let mut issues = taken.issues;
     // Between many blocks a rate shows in every one, between few it looks like samples that are missing.
@@ -133,8 +129,7 @@ fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refu
     }
     let problem = format!(
         "{count} of {} messages carry the same stamp as the one before though their samples differ: the \
-         stamps are coarser than a block is \
-         long, and do not tell whether one is lost",
+         stamps are coarser than a block is long, and do not tell whether one is lost",
         blocks.len()
     );
     Err(Refusal::new(problem, "have the recorder stamp finer, or write longer blocks"))

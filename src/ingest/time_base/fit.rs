@@ -1,6 +1,6 @@
 //! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
 
-use super::error::TimeBaseError;
+use super::error::{self, TimeBaseError};
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::numerics::{as_count, as_f64, robust};
 use rayon::prelude::*;
@@ -146,13 +146,7 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
         }
         if lost_total > limit {
             let (steps, at) = widest;
-            let (from_s, to_s) = (times_s[at], times_s[at + 1]);
-            return Err(TimeBaseError::Jump {
-                from_s,
-                to_s,
-                lost: steps - 1.0,
-                sample_rate_hz: 1.0 / period_s,
-            });
+            return Err(error::jump(times_s[at], times_s[at + 1], steps - 1.0, 1.0 / period_s));
         }
         let last = runs[runs.len() - 1];
         runs.push(Run { first: i + 1, place: last.place + (i - last.first) + as_count(steps) });
