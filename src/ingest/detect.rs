@@ -19,7 +19,7 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 ///
 /// # Errors
 /// A directory, an unreadable, empty or unknown file, each by its own message.
-pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
+pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
     if metadata.is_dir() {
         let refusal = Refusal::new(

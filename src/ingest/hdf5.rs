@@ -20,10 +20,9 @@ mod types;
 mod wall;
 
 pub(super) use list::list;
-pub use room::Hdf5Program;
 #[cfg(any(test, fuzzing))]
 pub(super) use room::answer_by;
-pub(super) use room::use_program;
+pub use room::{Hdf5Program, use_program};
 
 use super::refusal::Refusal;
 use super::{RawChannel, RawRecording, ReadRequest};
@@ -57,9 +56,10 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     Some(if take_apart(Path::new(&path)) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Closes this process in and answers on standard output what standard input asks of the file at `path`;
-/// whether it could.
-pub(super) fn take_apart(path: &Path) -> bool {
+/// For a process that was started to take the file at `path` apart: closes it in and answers on standard output
+/// what standard input asks, and says whether it could; then the process is to end.
+#[must_use]
+pub fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
     let is_whole = wall.is_whole;
     let mut grant = |bytes, held_bytes| wall.grant(bytes, held_bytes);

@@ -24,8 +24,9 @@ mod unchanged;
 mod vocabulary;
 
 pub use arrays::read_arrays;
+pub use detect::format;
 pub use error::IngestError;
-pub use hdf5::Hdf5Program;
+pub use hdf5::{Hdf5Program, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;
@@ -82,14 +83,6 @@ pub(crate) struct RawRecording {
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::with_photos(cask_file::parse(path)?)?)
-}
-
-/// The format of the recording at `path`, told by its content.
-///
-/// # Errors
-/// [`IngestError`] where it is none that can be read.
-pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    detect::format(path)
 }
 
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
@@ -175,17 +168,4 @@ pub fn serve_hdf5() -> Option<std::process::ExitCode> {
 /// `dropcheck` does. The first stays.
 pub fn read_hdf5_with(program: &Path) {
     read_hdf5_by(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
-}
-
-/// As [`read_hdf5_with`] for a program that needs words and variables of its own, and calls
-/// [`take_hdf5_apart`].
-pub fn read_hdf5_by(program: Hdf5Program) {
-    hdf5::use_program(program);
-}
-
-/// For a process that was started by [`read_hdf5_by`]: closes it in, then answers what the reader asks of the
-/// file at `path`, and says whether it could; then the process is to end.
-#[must_use]
-pub fn take_hdf5_apart(path: &Path) -> bool {
-    hdf5::take_apart(path)
 }

@@ -69,8 +69,7 @@ pub(super) fn row_error(
             format!("column {:?} holds {cell:?}, which is no time, or not written as the ones \
                      before", headed(slot)),
             "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock \
-             times (12:34:56.789); \
-             correct the cell in a copy, or name another column of times"
+             times (12:34:56.789); correct the cell in a copy, or name another column of times"
                 .to_owned(),
         ),
         RowError::Word { line, slot, cell } if number::is_grouped(&cell, Some(layout.dialect.decimal)) => (

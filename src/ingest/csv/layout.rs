@@ -6,7 +6,6 @@ use super::lines::Text;
 use super::preamble::{self, Preamble};
 use super::sensors::{self, Sensors};
 use super::{stamp, time_column};
-use crate::ingest::times::Scale;
 use crate::ingest::{number, vocabulary};
 
 /// How a text is laid out.
@@ -162,11 +161,6 @@ impl Layout {
     /// Every header.
     pub(super) fn names(&self) -> Vec<String> {
         self.columns.iter().map(|column| column.header.clone()).collect()
-    }
-
-    /// What the numbers of a column of times count.
-    pub(super) fn time_scale(&self, column: usize) -> Scale {
-        time_column::scale(&self.columns[column])
     }
 
     /// About how many rows a file of so many bytes holds, a little more.

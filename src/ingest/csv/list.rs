@@ -79,7 +79,7 @@ impl Sink for Survey<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         let kept = self.slots.iter().position(|&kept| kept == slot);
         let value = kept.and_then(|kept| self.keep.word(kept, cell));
-        let is_time = kept.is_some_and(|kept| self.keep.is_time(kept));
+        let is_time = kept.is_some_and(|kept| self.keep.wanted.is_time[kept]);
         if !is_time && value.is_none_or(f64::is_nan) {
             let range = &mut self.ranges[slot][0];
             range.words += 1;

@@ -59,8 +59,7 @@ impl Attributes {
             return Err(Refusal::new(
                 format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
                 "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + \
-                 offset; scale = 1 where the numbers \
-                 are converted already",
+                 offset; scale = 1 where the numbers are converted already",
             ));
         }
         Ok(attributes)
