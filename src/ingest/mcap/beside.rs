@@ -80,8 +80,7 @@ impl<'a> SaidBeside<'a> {
             return Err(Refusal::new(
                 format!("by its layout each message holds {} signals by turns in one array", short(turns)),
                 "name one number of the array, as in `data[0]`, where a message holds one sample of each; \
-                 else have the recorder write an \
-                 array for each signal",
+                 else have the recorder write an array for each signal",
             ));
         }
         // A factor of one changes nothing, nor does an offset of zero.

@@ -1,6 +1,6 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
-use super::column::{CLOCK_IS_SET_NS, Column, StampCounts, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::complaint;
 use super::path;
 use super::scanned::Scanned;
@@ -33,7 +33,7 @@ pub(in crate::ingest) fn read(
         let settled = column.settle_ticks(&spec.source.to_string(), spec.sample_rate_hz);
         settled.map_err(|refusal| refused(spec, refusal))?;
         if let Some(time) =
-            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.stamps.good == 0)
+            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.good_stamps == 0)
         {
             return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
@@ -150,7 +150,7 @@ fn is_picked(spec: &ChannelSpec, topics: &[Channels], place: &ChosenColumn) -> b
 
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Finding> {
-    let (messages, StampCounts { good, bad }) = (gathered.messages, column.stamps);
+    let (messages, good, bad) = (gathered.messages, column.good_stamps, column.bad_stamps);
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
     let found = log_time.into_iter().chain(gathered.undecoded(None)).map(Finding::from);
     let drift = column.log_drift().filter(|_| spec.sample_rate_hz.is_none());

@@ -48,7 +48,7 @@ pub(super) struct Topics<'a> {
     limits: Limits,
     types: MessageTypes,
     /// The first of an id stands.
-    schemas: HashMap<u16, SchemaInfo>,
+    pub(super) schemas: HashMap<u16, SchemaInfo>,
     /// In the order of the file.
     all: Vec<Topic>,
     /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
@@ -58,7 +58,7 @@ pub(super) struct Topics<'a> {
     undecided: BTreeSet<usize>,
     /// The topic of each channel, the first of an id, and its place in the file; `None` where its messages
     /// are not asked for.
-    by_channel: HashMap<u16, Option<(usize, usize)>>,
+    pub(super) by_channel: HashMap<u16, Option<(usize, usize)>>,
     /// The topic and the number of each channel that is asked for, in the order of the file.
     channels: Vec<(usize, u16)>,
     room: Room,
@@ -265,14 +265,6 @@ impl<'a> Topics<'a> {
     /// An empty part, one of so many that are held at a time.
     pub(super) fn part(&self, count: usize) -> Part {
         Part::new(self.asked.is_none().then(|| self.limits.samples_bytes() / (2 * count as u64)))
-    }
-
-    pub(super) fn schema_count(&self) -> usize {
-        self.schemas.len()
-    }
-
-    pub(super) fn channel_count(&self) -> usize {
-        self.by_channel.len()
     }
 
     /// A note on what there was no room to list.
