@@ -22,16 +22,19 @@ const SHARE: f64 = 0.5;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
-    let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
+    let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
+    let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
+    let stretch = from..signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     match signal.end {
-        End::First => first_rise(signal, stretch, sign, coarse.velocity_step_m_s.abs()),
+        End::First => first_rise(signal, stretch, coarse.velocity_step_m_s),
         End::Second => first_stir(signal, stretch),
     }
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that
+/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing rings. A layer that
 /// yields far below the peak and lets go again has struck before the rise that leads to it.
-fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_m_s: f64) -> Option<At> {
+fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
+    let sign = step_m_s.signum();
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
@@ -41,7 +44,7 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_
             gained
         });
         let gained_m_s: Vec<f64> = running.collect();
-        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s);
+        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s.abs());
         let Some(all_m_s) = all_m_s else { return Some(found) };
         let from = before.start;
         let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
@@ -63,26 +66,6 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     let foot = (FOOT * reduce::peak(force)).max(NOISE_FACTOR * signal.noise_m_s2);
     let first = force.iter().position(|f| f.abs() >= foot)?;
     Some(At { time_s: signal.time_s(from + first), u_s: 0.5 / signal.sample_rate_hz })
-}
-
-/// Where first contact is sought.
-struct FirstPulse<'a> {
-    /// The signal.
-    pub signal: &'a Signal,
-    /// The samples among which it lies.
-    pub stretch: std::ops::Range<usize>,
-    /// 1 or −1: to which side the pulse goes.
-    pub sign: f64,
-}
-
-impl<'a> FirstPulse<'a> {
-    /// About a coarse event; on R where L has no transverse channel.
-    pub(crate) fn about(signals: &'a [Signal], coarse: &CoarseEvent) -> Option<Self> {
-        let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
-        let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
-        let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
-        Some(Self { signal, stretch: from..to, sign: coarse.velocity_step_m_s.signum() })
-    }
 }
 
 /// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the

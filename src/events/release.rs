@@ -68,29 +68,9 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .steps(from)
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
-        .filter(|fall| fall.length() > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
-        .max_by(|a, b| a.length().total_cmp(&b.length()))
-        .map(|fall| FreeFall {
-            release_s: channel.time_s(0) + fall.start / channel.sample_rate_hz,
-            end_s: channel.time_s(0) + fall.end / channel.sample_rate_hz,
-            rest_m_s2: fall.rest_m_s2,
-            u_rest_m_s2: fall.u_rest_m_s2,
-        })
-}
-
-/// A free fall by its samples, fractional, counted from the record's first.
-struct SampledFall {
-    start: f64,
-    end: f64,
-    /// As of a [`FreeFall`].
-    rest_m_s2: f64,
-    u_rest_m_s2: f64,
-}
-
-impl SampledFall {
-    fn length(&self) -> f64 {
-        self.end - self.start
-    }
+        .filter(|(_, length)| *length > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .max_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(fall, _)| fall)
 }
 
 /// The samples before first contact and the means of their blocks: a median would stand on a coarse
@@ -146,8 +126,8 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// The fall from a step.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<SampledFall> {
+    /// The fall from a step, and its length in samples.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<(FreeFall, f64)> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
@@ -163,7 +143,9 @@ impl<'a> Record<'a> {
             return None;
         }
         let start = self.crossing(step, falling + 0.5 * rest);
-        Some(SampledFall { start, end, rest_m_s2: rest, u_rest_m_s2: u_rest })
+        let time_s = |sample: f64| self.channel.time_s(0) + sample / self.channel.sample_rate_hz;
+        let (release_s, end_s) = (time_s(start), time_s(end));
+        Some((FreeFall { release_s, end_s, rest_m_s2: rest, u_rest_m_s2: u_rest }, end - start))
     }
 
     /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise
