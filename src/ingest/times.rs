@@ -152,8 +152,7 @@ pub(super) fn seconds_a_unit(
             [named_s, unit_s].into_iter().find(agrees).ok_or_else(|| {
                 Refusal::new(
                     format!(
-                        "the times in {} are in another unit by their name than by their \
-                             unit",
+                        "the times in {} are in another unit by their name than by their unit",
                         carrier.place()
                     ),
                     "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], \
