@@ -12,34 +12,8 @@ pub enum IngestError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     CaskFile(#[from] super::cask_file::fault::CaskFileError),
-    /// The operating system refused.
-    #[error("{path}: {}", bare(.refusal))]
-    #[diagnostic(help("check the name, and that you may read it"))]
-    Io {
-        /// The file.
-        path: String,
-        /// Its reason.
-        refusal: std::io::Error,
-    },
-    /// A part of the file would take more memory than reading may.
-    #[error("{path}: {what} more than {limit}, the limit where reading may take {memory} of memory")]
-    #[diagnostic(help(
-        "a file that claims so much is damaged or made to do harm; if it is sound, allow more: --max-memory \
-         {more}"
-    ))]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Which part, and what it does: "its samples take".
-        what: String,
-        /// The limit of that part.
-        limit: String,
-        /// The memory allowed.
-        memory: String,
-        /// Four times that, as the option takes it.
-        more: String,
-    },
-    /// It is no recording that is read, lacks what a channel names, or contradicts its format.
+    /// The operating system refuses it, a part of it would take more memory than reading may, it is no
+    /// recording that is read, lacks what a channel names, or contradicts its format.
     #[error("{path}: {refusal}")]
     #[diagnostic(help("{}", .refusal.remedy))]
     Refused {
@@ -51,8 +25,8 @@ pub enum IngestError {
 }
 
 /// The operating system's refusal, with the file's name.
-pub(super) fn io(path: &Path, refusal: std::io::Error) -> IngestError {
-    IngestError::Io { path: path.display().to_string(), refusal }
+pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
+    of_file(path, Refusal::new(bare(refusal), "check the name, and that you may read it"))
 }
 
 /// A refusal of the file itself.

@@ -96,7 +96,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// As [`read`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`read`]; [`IngestError::TooLarge`] where the file would pass a limit.
+/// As [`read`]; also where the file would pass a limit.
 pub fn read_within(
     path: &Path,
     cask_file: &CaskFile,
@@ -136,7 +136,7 @@ pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
 /// As [`list`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`list`]; [`IngestError::TooLarge`] where the file would pass a limit.
+/// As [`list`]; also where the file would pass a limit.
 pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
     let request = ReadRequest { path, limits, progress };
     match detect::format(path)? {

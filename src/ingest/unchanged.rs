@@ -78,7 +78,7 @@ fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
 }
 
 fn look(path: &Path) -> Result<(Identity, Option<SystemTime>), IngestError> {
-    std::fs::metadata(path).map(|file| identity(&file)).map_err(|source| error::io(path, source))
+    std::fs::metadata(path).map(|file| identity(&file)).map_err(|source| error::io(path, &source))
 }
 
 /// The file's identity, looked at when a later change must show.
@@ -97,13 +97,13 @@ fn at_rest(path: &Path) -> Result<Identity, IngestError> {
 /// SHA-256 of the file at `path`, lower-case hexadecimal; of its beginning where it `is_needless` in the end.
 ///
 /// # Errors
-/// [`IngestError::Io`] where it cannot be read.
+/// [`IngestError::Refused`] where it cannot be read.
 pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
-    let mut file = opened(path).map_err(|source| error::io(path, source))?;
+    let mut file = opened(path).map_err(|source| error::io(path, &source))?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     while !is_needless.load(Ordering::Relaxed) {
-        let read = file.read(&mut buffer).map_err(|source| error::io(path, source))?;
+        let read = file.read(&mut buffer).map_err(|source| error::io(path, &source))?;
         if read == 0 {
             break;
         }
@@ -169,7 +169,7 @@ mod tests {
             for round in 0..40 {
                 let read = || {
                     std::thread::sleep(Duration::from_millis(round * 3 % 17));
-                    fs::read(&path).map_err(|source| error::io(&path, source))
+                    fs::read(&path).map_err(|source| error::io(&path, &source))
                 };
                 match hashed(&path, read) {
                     Ok((bytes, found)) => assert_eq!(found, hexadecimal(&Sha256::digest(&bytes))),

@@ -57,7 +57,7 @@ pub(super) fn row_error(
             .map_or("", |column| column.header.as_str())
     };
     let (line, problem, mend) = match error {
-        RowError::Io(source) => return error::io(path, source),
+        RowError::Io(source) => return error::io(path, &source),
         RowError::TooMany => {
             return limits.refusal(path, "the samples of the columns read take", limits.samples_bytes());
         }

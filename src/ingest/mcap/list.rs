@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Only where the file cannot be read at all.
 pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     let path = request.path;
-    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
+    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, &source))?.len();
     let walked = walk(request, None)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schemas.len(), walked.topics.by_channel.len());

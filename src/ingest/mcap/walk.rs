@@ -79,7 +79,7 @@ pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Res
         Ok(walk.walked)
     });
     walked.map_err(|obstacle| match obstacle {
-        Obstacle::Io(source) => error::io(path, source),
+        Obstacle::Io(source) => error::io(path, &source),
         Obstacle::Limit(what, limit_bytes) => limits.refusal(path, what, limit_bytes),
     })
 }
