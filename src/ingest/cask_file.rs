@@ -163,11 +163,6 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     }
     Ok(CaskFile {
         path: path.to_owned(),
-        sha256: String::new(),
-        text: String::new(),
-        cask,
-        drop,
-        contact,
         filter,
         tolerances,
         corrections,
@@ -178,6 +173,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         limits,
         letterhead,
         defaults,
+        ..CaskFile::plain(cask, drop, contact)
     })
 }
 

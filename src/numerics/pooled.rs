@@ -41,7 +41,7 @@ pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
 /// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
 pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
     let count = as_f64(values.len());
-    let (mean, _) = mean(values)?;
+    let mean = mean(values)?;
     let square = |of: &dyn Fn(&(f64, f64)) -> f64| values.iter().map(|value| of(value).powi(2)).sum::<f64>();
     Some(Pooled {
         count: values.len(),
@@ -52,11 +52,11 @@ pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
     })
 }
 
-/// Mean weighted with 1/u², and its half-width if the values are independent.
-fn mean(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+/// Mean weighted with 1/u².
+fn mean(values: &[(f64, f64)]) -> Option<f64> {
     let weight: f64 = values.iter().map(|value| value.1.powi(-2)).sum();
     let sum: f64 = values.iter().map(|value| value.0 * value.1.powi(-2)).sum();
-    (weight > 0.0).then(|| (sum / weight, weight.sqrt().recip()))
+    (weight > 0.0).then(|| sum / weight)
 }
 
 impl Pooled {

@@ -125,7 +125,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let text = Text::open(path, limits)?;
     let (bytes, encoding) = (text.bytes, text.encoding);
     let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
-    let time_column = layout.time_column;
+    let time_column = layout.times.taken;
     // Other columns of times are none's: a pair of columns may end before others.
     let is_timed = |column: usize| !layout.holds_times(column);
     let time_of =
@@ -182,7 +182,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
 /// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the
 /// times that were found.
 fn plan(layout: &Layout) -> ColumnPlan {
-    let time_column = layout.time_column;
+    let time_column = layout.times.taken;
     let sensors = layout.sensors.first();
     let is_taken =
         |column: usize| layout.holds_times(column) || sensors.is_some_and(|it| it.column == column);
@@ -316,7 +316,8 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         format!("none: columns count 1, 2, …{unfit}")
     };
     let time = layout
-        .time_column
+        .times
+        .taken
         .and_then(|index| layout.columns.get(index))
         .map_or_else(|| none_found(layout), |column| column.header.clone());
     BTreeMap::from([

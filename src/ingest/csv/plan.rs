@@ -122,7 +122,7 @@ fn listed(words: &[&str]) -> String {
 /// That no column holds times, with the one that looks most like it.
 pub(super) fn no_times(layout: &Layout) -> Option<String> {
     let is_like = |(at, column): &(usize, &TableColumn)| {
-        time_column::is_headed(column) && layout.time_column != Some(*at)
+        time_column::is_headed(column) && layout.times.taken != Some(*at)
     };
     let (_, column) = layout.columns.iter().enumerate().find(is_like)?;
     let TableColumn { header, example, .. } = column;

@@ -156,7 +156,7 @@ impl Decode for Protobuf {
             let wrong_type = || format!("field {number} is not of its schema's type");
             match (&field.action, item) {
                 (Action::Numbers { slot, .. }, item) => {
-                    field.numbers(*slot, &item, slots).ok_or_else(wrong_type)?
+                    field.numbers(*slot, &item, slots).ok_or_else(wrong_type)?;
                 }
                 (Action::Text { slot }, Item::Bytes(bytes)) => {
                     slots.set_text(*slot, bytes);
