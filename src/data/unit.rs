@@ -3,8 +3,8 @@
 /// Standard gravity, m/s²: what "g" means in a data sheet (3rd CGPM, 1901); not the site's gravity.
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
-/// The ways in which units of acceleration are written, in lower case without blanks and powers, with m/s² per
-/// unit.
+/// The ways in which units of acceleration are written, in lower case without blanks and powers, with m/s²
+/// per unit.
 const ACCELERATIONS: [(&str, f64); 7] = [
     ("g gn g0 gee gs g's g_n g_0 gunits gravity standardgravity", STANDARD_GRAVITY_M_S2),
     ("m/s2 m/s/s ms-2 m.s-2 m/sec2 m/sec/sec m/ss m/(s2) mps2 m_s2", 1.0),

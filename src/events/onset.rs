@@ -31,8 +31,8 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     }
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing rings. A layer that
-/// yields far below the peak and lets go again has struck before the rise that leads to it.
+/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing rings.
+/// A layer that yields far below the peak and lets go again has struck before the rise that leads to it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
     let sign = step_m_s.signum();
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;

@@ -56,8 +56,8 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     Some(if take_apart(Path::new(&path)) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// For a process that was started to take the file at `path` apart: closes it in and answers on standard output
-/// what standard input asks, and says whether it could; then the process is to end.
+/// For a process that was started to take the file at `path` apart: closes it in and answers on standard
+/// output what standard input asks, and says whether it could; then the process is to end.
 #[must_use]
 pub fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);

@@ -40,7 +40,7 @@ impl Statement {
             .then(|| Self::by(format!("{name} = {text}"), rate_hz, rounding(number)))
     }
 
-    /// A rate in Hz that `place` says of the samples alone, which may be off by the part `rounding` of itself.
+    /// A rate in Hz that `place` says of the samples alone, off by the part `rounding` of itself at most.
     pub(super) fn by(place: impl Into<String>, rate_hz: f64, rounding: f64) -> Self {
         Self { place: place.into(), rate_hz, rounding, distance: 0 }
     }

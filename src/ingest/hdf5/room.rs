@@ -47,8 +47,8 @@ pub struct Hdf5Program {
 
 static PROGRAM: OnceLock<Hdf5Program> = OnceLock::new();
 
-/// Names the program that takes HDF5 files apart when started with its own words and `__hdf5`, which then calls
-/// [`crate::ingest::take_hdf5_apart`]; the first name stays.
+/// Names the program that takes HDF5 files apart when started with its own words and `__hdf5`, which then
+/// calls [`crate::ingest::take_hdf5_apart`]; the first name stays.
 pub fn use_program(program: Hdf5Program) {
     let _ = PROGRAM.set(program);
 }

@@ -16,7 +16,7 @@ mod settled;
 pub(super) struct MessageTime {
     /// Since 1970.
     ns: i64,
-    /// Whether it is the message's own stamp, and not the log time for a stamp that is zero or not understood;
+    /// Whether it is the message's own stamp, not the log time for one that is zero or not understood;
     /// `None` for the log time of a message without a stamp.
     is_stamp: Option<bool>,
     log_ns: i64,

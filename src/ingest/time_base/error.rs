@@ -62,7 +62,7 @@ pub(super) fn not_finite(number: usize, time_s: f64) -> TimeBaseError {
 pub(super) fn jump(from_s: f64, to_s: f64, lost: f64, rate_hz: f64) -> TimeBaseError {
     let [from_s, to_s, rate_hz] = [from_s, to_s, rate_hz].map(short);
     TimeBaseError::Told(format!(
-        "times jump from {from_s} s to {to_s} s, which would be {lost:.3e} samples at {rate_hz} Hz: no gap of \
-         one record; check the clock, or cut the recording there"
+        "times jump from {from_s} s to {to_s} s, which would be {lost:.3e} samples at {rate_hz} Hz: no gap \
+         of one record; check the clock, or cut the recording there"
     ))
 }
