@@ -1,7 +1,7 @@
 //! Samples to the runs that stand at a limit of the measuring chain.
 
 use crate::data::{Channel, Span};
-use crate::numerics::{reduce, robust};
+use crate::numerics::{as_f64, reduce, robust};
 use std::cell::LazyCell;
 
 /// Fewest samples at an extreme that make a flat top.
@@ -120,17 +120,15 @@ fn roughness(quiet: &[f64]) -> f64 {
 }
 
 /// Whether the inside of a flat run still has the sensor's noise.
-#[allow(clippy::cast_precision_loss, reason = "a run of samples")]
 fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
     let inside = &force[span.from + 1..(span.to - 1).max(span.from + 1)];
     let steps: f64 = inside.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
     let count = inside.len().saturating_sub(1);
-    count > 0 && roughness > 0.0 && (steps / count as f64 / 2.0).sqrt() > NOISE_LEFT * roughness
+    count > 0 && roughness > 0.0 && (steps / as_f64(count) / 2.0).sqrt() > NOISE_LEFT * roughness
 }
 
 /// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest
 /// rounded top.
-#[allow(clippy::cast_precision_loss, reason = "a run of samples")]
 fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let run = span.to - span.from;
     // A quarter of the run beyond it: far enough for the slope to stand out of the noise.
@@ -145,7 +143,7 @@ fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let depth = (high - low + step).max(band / 2.0);
     // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther
     // on.
-    let wider = (run - 1 + 2 * reach) as f64 / (run - 1) as f64;
+    let wider = as_f64(run - 1 + 2 * reach) / as_f64(run - 1);
     // The less steep side counts: a kink has one steep side.
     before.min(after) > depth * (wider.powi(FLATTEST) - 1.0)
 }

@@ -2,7 +2,7 @@
 
 use super::clipping::runs_of_steps;
 use crate::data::{ChannelFinding, Finding, Severity, Signal, Span};
-use crate::numerics::reduce;
+use crate::numerics::{as_f64, reduce};
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
 const SHARE_OF_PEAK: f64 = 0.05;
@@ -87,12 +87,9 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     let (low, high) = reduce::extremes(force, 0.0);
     let height = height(high.max(-low), noise_m_s2);
     let quiet = force.get(..end).unwrap_or_default();
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let repeated = {
-        #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
-        let equal = quiet.iter().zip(quiet.get(1..).unwrap_or_default()).filter(|(a, b)| a == b).count();
-        equal as f64 / quiet.len().max(1) as f64
-    };
+    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
+    let equal_pairs = quiet.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    let repeated = as_f64(equal_pairs) / as_f64(quiet.len().max(1));
     let is_noisy = quiet.len() > 50 && repeated < MOST_REPEATED;
     let jump = |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
     let dropouts: Vec<Span> = equal
@@ -141,11 +138,10 @@ fn repeats(force: &[f64]) -> Vec<Span> {
 }
 
 /// What a straight bridge over a span holds, against 0, m/s.
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
 fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
     let at = |i: Option<usize>| i.and_then(|i| signal.force_m_s2.get(i)).copied().unwrap_or(0.0);
     let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
-    middle.abs() * (span.to - span.from) as f64 / signal.sample_rate_hz
+    middle.abs() * as_f64(span.to - span.from) / signal.sample_rate_hz
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod hum;
 mod offset;
 
 use crate::data::{
-    Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal, Span,
+    Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,
 };
 use crate::numerics::robust;
 use rayon::prelude::*;
@@ -97,7 +97,7 @@ fn signal(
     let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
     let clipped = clipping::clipped(channel, &force, noise_m_s2, before);
-    let gaps = missing(&force);
+    let gaps = clipping::runs(&force, |f| !f.is_finite());
     for f in &mut force {
         if !f.is_finite() {
             *f = 0.0;
@@ -139,15 +139,10 @@ fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant
     }
 }
 
-/// Runs of samples that are no numbers.
-fn missing(force: &[f64]) -> Vec<Span> {
-    clipping::runs(force, |f| !f.is_finite())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::example;
+    use crate::data::{Span, example};
 
     /// A transverse channel of the first end at 10 kHz.
     pub(super) fn signal(force_m_s2: Vec<f64>) -> Signal {
@@ -169,6 +164,9 @@ mod tests {
     #[test]
     fn missing_samples_are_spans() {
         let force = [0.0, f64::NAN, f64::NAN, 1.0, f64::NAN];
-        assert_eq!(missing(&force), [Span { from: 1, to: 3 }, Span { from: 4, to: 5 }]);
+        assert_eq!(
+            clipping::runs(&force, |f| !f.is_finite()),
+            [Span { from: 1, to: 3 }, Span { from: 4, to: 5 }]
+        );
     }
 }

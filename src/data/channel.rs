@@ -18,6 +18,12 @@ pub enum Samples {
     F64(Vec<f64>),
 }
 
+impl Default for Samples {
+    fn default() -> Self {
+        Self::F32(Vec::new())
+    }
+}
+
 impl Samples {
     /// Number of samples.
     #[must_use]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// One source of samples in a recording: a message path, a dataset (or its column), a CSV column.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ListedChannel {
     /// What to write as `source` in a cask file.
     pub source: String,
@@ -41,21 +41,7 @@ pub struct ListedChannel {
 impl ListedChannel {
     /// A source of which only its name and kind are known.
     pub(crate) fn named(source: &str, kind: &str) -> Self {
-        Self {
-            source: source.to_owned(),
-            rows: None,
-            kind: kind.to_owned(),
-            samples: None,
-            messages: None,
-            sample_rate_hz: None,
-            unit: None,
-            start_s: None,
-            duration_s: None,
-            gaps: None,
-            range: None,
-            encoding: String::new(),
-            unreadable: None,
-        }
+        Self { source: source.to_owned(), kind: kind.to_owned(), ..Self::default() }
     }
 }
 

@@ -3,6 +3,18 @@
 /// Standard gravity, m/s²: what "g" means in a data sheet (3rd CGPM, 1901); not the site's gravity.
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
+/// The ways in which units of acceleration are written, in lower case without blanks and powers, with m/s²
+/// per unit.
+const ACCELERATIONS: [(&str, f64); 7] = [
+    ("g gn g0 gee gs g's g_n g_0 gunits gravity standardgravity", STANDARD_GRAVITY_M_S2),
+    ("m/s2 m/s/s ms-2 m.s-2 m/sec2 m/sec/sec m/ss m/(s2) mps2 m_s2", 1.0),
+    ("meterspersecondsquared metrespersecondsquared meterpersecondsquared metrepersecondsquared", 1.0),
+    ("mm/s2 mms-2 mm/s/s", 1e-3),
+    ("cm/s2 cms-2 gal", 1e-2),
+    ("km/s2", 1e3),
+    ("ft/s2", 0.3048),
+];
+
 /// m/s² per unit, for the ways in which an acceleration's unit is written; `None` where it is none of them.
 ///
 /// Case matters only where it could mislead: "Mg" would be a megagram.
@@ -11,47 +23,17 @@ pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
     let plain: String = text
         .trim()
         .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')'))
-        .chars()
-        .filter(|c| !c.is_whitespace() && !matches!(c, '^' | '*' | '·' | '{' | '}'))
-        .map(|c| {
-            if c == '²' {
-                '2'
-            } else if matches!(c, '⁻' | '−') {
-                '-'
-            } else {
-                c
-            }
-        })
-        .collect();
+        .replace('²', "2")
+        .replace(['⁻', '−'], "-")
+        .replace(|c: char| c.is_whitespace() || matches!(c, '^' | '*' | '·' | '{' | '}'), "");
     match plain.as_str() {
         "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
         "Mg" | "MG" => return None,
         _ => {}
     }
-    match plain.to_lowercase().replace('¹', "1").as_str() {
-        "g" | "gn" | "g0" | "gee" | "gs" | "g's" | "g_n" | "g_0" | "gunits" | "gravity"
-        | "standardgravity" => Some(STANDARD_GRAVITY_M_S2),
-        "m/s2"
-        | "m/s/s"
-        | "ms-2"
-        | "m.s-2"
-        | "m/sec2"
-        | "m/sec/sec"
-        | "m/ss"
-        | "m/(s2)"
-        | "meterspersecondsquared"
-        | "metrespersecondsquared"
-        | "meterpersecondsquared"
-        | "metrepersecondsquared"
-        | "mps2"
-        | "m_s2"
-        | "m/s**2" => Some(1.0),
-        "mm/s2" | "mms-2" | "mm/s/s" => Some(1e-3),
-        "cm/s2" | "cms-2" | "gal" => Some(1e-2),
-        "km/s2" => Some(1e3),
-        "ft/s2" => Some(0.3048),
-        _ => None,
-    }
+    let plain = plain.to_lowercase().replace('¹', "1");
+    let is_it = |(names, _): &&(&str, f64)| names.split(' ').any(|name| name == plain);
+    ACCELERATIONS.iter().find(is_it).map(|(_, m_s2)| *m_s2)
 }
 
 /// Whether a unit is one of a rate of turn, such as "deg/s" or "rad/s", or of its change: no acceleration.

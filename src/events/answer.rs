@@ -2,10 +2,10 @@
 
 use super::transverse;
 use crate::data::{Axis, End, Onset, Signal};
-use crate::numerics::as_f64;
 use crate::numerics::projection::residual_square;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::reduce::{block_means, peak};
+use crate::numerics::{as_count, as_f64};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -52,7 +52,6 @@ const REFINED: u32 = 20;
 /// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The
 /// struck end's channel stands for F; the delay is the one at which its integrals explain the other channel
 /// best. Channels that hardly answer are left out.
-#[must_use]
 pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
     let Some(struck) = transverse(signals, End::First) else { return Vec::new() };
     let Some(cause) = Cause::new(struck, contact_s) else { return Vec::new() };
@@ -125,7 +124,7 @@ impl Cause {
             .filter(|values| values.len() >= 2)
             .map(|values| {
                 // Of the same times but for a part of a step, as where both channels have one rate.
-                let (index, share) = (samples(first), first.fract());
+                let (index, share) = (as_count(first), first.fract());
                 let same = if first >= 0.0 && (step - 1.0).abs() < SAME_STEP {
                     values.get(index..index + count + 1)
                 } else {
@@ -137,7 +136,7 @@ impl Cause {
                 let last = values.len().saturating_sub(2);
                 let at = |i: usize| {
                     let position = (first + as_f64(i) * step).max(0.0);
-                    let index = samples(position).min(last);
+                    let index = as_count(position).min(last);
                     let share = (position - as_f64(index)).min(1.0);
                     values[index] + share * (values[index + 1] - values[index])
                 };
@@ -211,8 +210,8 @@ impl<'a> Answering<'a> {
         let rate_hz = self.signal.sample_rate_hz;
         let back_s = (2.0 * length_s).clamp(5e-4, 3e-3);
         let (from, to) = (
-            self.seen.saturating_sub(samples(back_s * rate_hz) + 4),
-            self.seen + samples(length_s * rate_hz),
+            self.seen.saturating_sub(as_count(back_s * rate_hz) + 4),
+            self.seen + as_count(length_s * rate_hz),
         );
         if to - self.seen < ORDERS.len() + 4 {
             return None;
@@ -220,7 +219,7 @@ impl<'a> Answering<'a> {
         let block = (to - from).div_ceil(POINTS);
         let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
         // As long in time where the other channel has another rate.
-        let of_cause = samples(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
+        let of_cause = as_count(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
         let cause = self.cause.in_blocks(of_cause, &ORDERS);
         let noise = self.noise_of_means(block);
         let begin_s = self.signal.time_s(from) + as_f64(block - 1) / 2.0 / rate_hz;
@@ -259,7 +258,7 @@ impl<'a> Answering<'a> {
             let contact_s = self.cause.contact_s;
             let from = signal.index_from(contact_s - 1e-3).min(self.seen.saturating_sub(4));
             let begins = self.seen.max(signal.index_from(contact_s + delay_s));
-            let to = begins + samples(length_s * signal.sample_rate_hz);
+            let to = begins + as_count(length_s * signal.sample_rate_hz);
             let Some(values) = signal.force_m_s2.get(from..to) else { return false };
             let square: f64 = values.iter().map(|v| v * v).sum();
             let stands_out = square > 9.0 * as_f64(values.len()) * self.noise.powi(2);
@@ -283,12 +282,12 @@ impl<'a> Answering<'a> {
         let mut in_favour = 0.0;
         for (later_s, length_s) in LATER_S.iter().flat_map(|&s| LATER_LENGTHS_S.map(|length_s| (s, length_s)))
         {
-            let from = self.seen + samples(later_s * rate_hz);
-            let to = from + samples(length_s * rate_hz);
+            let from = self.seen + as_count(later_s * rate_hz);
+            let to = from + as_count(length_s * rate_hz);
             let block = ((to - from) / POINTS).max(1);
             let Some(force) = signal.force_m_s2.get(from..to) else { continue };
             let values = block_means(force, block);
-            let of_cause = samples(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
+            let of_cause = as_count(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
             let cause = self.cause.in_blocks(of_cause, &ORDERS);
             let begin_s = signal.time_s(from) + as_f64(block - 1) / 2.0 / rate_hz;
             let count = values.len();
@@ -339,11 +338,6 @@ fn scan(over: Range<f64>, steps: u32, function: &impl Fn(f64) -> f64) -> (f64, V
     let step = (over.end - over.start) / f64::from(steps);
     let places = (0..=steps).map(|i| over.start + f64::from(i) * step);
     (step, places.map(|x| (x, function(x))).collect())
-}
-
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-fn samples(position: f64) -> usize {
-    position as usize
 }
 
 #[cfg(test)]

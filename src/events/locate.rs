@@ -2,7 +2,7 @@
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
-use crate::numerics::{reduce, robust};
+use crate::numerics::{as_count, as_f64, reduce, robust};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 
@@ -55,7 +55,6 @@ struct Changing<'a> {
 
 impl<'a> Changes<'a> {
     /// Looks at every sample of the transverse channels once.
-    #[must_use]
     pub fn of(recording: &'a Recording) -> Self {
         let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
         Self(transverse.filter_map(Changing::of).collect())
@@ -92,13 +91,7 @@ impl<'a> Changes<'a> {
         let struck = self.struck()?;
         let changes = &struck.changes_m_s;
         let from_s = event.near_s + APART_FALLS * fall_s;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a float-to-integer cast saturates"
-        )]
-        let from =
-            (((from_s - struck.channel.start_s) / struck.block_s).max(0.0) as usize).min(changes.len());
+        let from = as_count((from_s - struck.channel.start_s) / struck.block_s).min(changes.len());
         let share = |change: &f64| change / event.velocity_step_m_s;
         let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE.start())?;
         let found = struck.event_at(crossing);
@@ -107,7 +100,6 @@ impl<'a> Changes<'a> {
 
     /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a
     /// notable share of its largest change there, s: what lies far beyond it needs no fine work.
-    #[must_use]
     pub fn last_s(&self, event: &CoarseEvent, (v0_m_s, after_s): (f64, f64)) -> Option<f64> {
         let of_channel = |changing: &Changing| {
             let changes = &changing.changes_m_s;
@@ -126,12 +118,7 @@ impl<'a> Changing<'a> {
     fn of(channel: &'a Channel) -> Option<Self> {
         let (block_s, means) = block_means(channel)?;
         let offset = robust::median(&mut means.clone());
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a float-to-integer cast saturates"
-        )]
-        let blocks = ((WIDTH_S / block_s).round() as usize).clamp(1, BLOCKS);
+        let blocks = as_count((WIDTH_S / block_s).round()).clamp(1, BLOCKS);
         let mut sum = 0.0;
         let changes = (0..means.len()).map(|i| {
             sum += (means[i] - offset) * block_s;
@@ -145,9 +132,8 @@ impl<'a> Changing<'a> {
     }
 
     /// When a block ends, s.
-    #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
     fn end_s(&self, block: usize) -> f64 {
-        self.channel.start_s + (block as f64 + 1.0) * self.block_s
+        self.channel.start_s + (as_f64(block) + 1.0) * self.block_s
     }
 
     /// The event whose change of velocity becomes notable at block `crossing`.
@@ -161,14 +147,8 @@ impl<'a> Changing<'a> {
 
 /// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a
 /// missing block as the last.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "sample counts stay below 2^52"
-)]
 fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
-    let size = ((WIDTH_S * channel.sample_rate_hz / BLOCKS as f64).round() as usize).max(1);
+    let size = as_count((WIDTH_S * channel.sample_rate_hz / as_f64(BLOCKS)).round()).max(1);
     let mut blocks = block_means_m_s2(channel, 0..channel.samples.len(), size);
     let mut last = 0.0;
     for block in &mut blocks {
@@ -177,7 +157,7 @@ fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
         }
         last = *block;
     }
-    (!blocks.is_empty()).then_some((size as f64 / channel.sample_rate_hz, blocks))
+    (!blocks.is_empty()).then_some((as_f64(size) / channel.sample_rate_hz, blocks))
 }
 
 #[cfg(test)]

@@ -29,7 +29,6 @@ const LEAST_SHAPE: f64 = 0.2;
 ///
 /// The signal as it is where the other end has none of the same times, or where one of both sits near a node.
 /// Returned with what it is the sum of: signals by name, each with its weight.
-#[must_use]
 pub fn without_first_mode(
     signals: &[Signal],
     end: End,
@@ -72,7 +71,6 @@ fn block_means_m_s2(channel: &Channel, range: Range<usize>, size: usize) -> Vec<
 }
 
 /// The transverse signal nearest to an end: what happens there shows on it first.
-#[must_use]
 pub fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {
     let from_middle = |s: &Signal| if end == End::First { s.position_m } else { -s.position_m };
     signals

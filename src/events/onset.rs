@@ -2,7 +2,7 @@
 
 use super::transverse;
 use crate::data::{At, CoarseEvent, End, Signal};
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
@@ -21,18 +21,20 @@ const BLOCK_S: f64 = 1e-4;
 const SHARE: f64 = 0.5;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
-#[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
-    let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
+    let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
+    let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
+    let stretch = from..signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     match signal.end {
-        End::First => first_rise(signal, stretch, sign, coarse.velocity_step_m_s.abs()),
+        End::First => first_rise(signal, stretch, coarse.velocity_step_m_s),
         End::Second => first_stir(signal, stretch),
     }
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that
-/// yields far below the peak and lets go again has struck before the rise that leads to it.
-fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_m_s: f64) -> Option<At> {
+/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing rings.
+/// A layer that yields far below the peak and lets go again has struck before the rise that leads to it.
+fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
+    let sign = step_m_s.signum();
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
@@ -42,7 +44,7 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_
             gained
         });
         let gained_m_s: Vec<f64> = running.collect();
-        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s);
+        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s.abs());
         let Some(all_m_s) = all_m_s else { return Some(found) };
         let from = before.start;
         let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
@@ -66,33 +68,12 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     Some(At { time_s: signal.time_s(from + first), u_s: 0.5 / signal.sample_rate_hz })
 }
 
-/// Where first contact is sought.
-struct FirstPulse<'a> {
-    /// The signal.
-    pub signal: &'a Signal,
-    /// The samples among which it lies.
-    pub stretch: std::ops::Range<usize>,
-    /// 1 or −1: to which side the pulse goes.
-    pub sign: f64,
-}
-
-impl<'a> FirstPulse<'a> {
-    /// About a coarse event; on R where L has no transverse channel.
-    pub(crate) fn about(signals: &'a [Signal], coarse: &CoarseEvent) -> Option<Self> {
-        let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
-        let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
-        let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
-        Some(Self { signal, stretch: from..to, sign: coarse.velocity_step_m_s.signum() })
-    }
-}
-
 /// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the
 /// record holds none.
 ///
 /// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are
 /// compared, and the largest difference, if above `least_change_m_s`, is the slap-down. On signals that still
 /// ring the rise is sought backwards from the pulse's peak; free of ringing the first rise is taken.
-#[must_use]
 pub fn slap_down(
     signal: &Signal,
     between_s: std::ops::Range<f64>,
@@ -102,8 +83,7 @@ pub fn slap_down(
     let start = signal.index_from(between_s.start - WIDTH_S);
     let end = signal.index_from(between_s.end + WIDTH_S);
     let force = signal.force_m_s2.get(start..end)?;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive sample counts")]
-    let [block, width] = [BLOCK_S, WIDTH_S].map(|s| ((s * signal.sample_rate_hz) as usize).max(1));
+    let [block, width] = [BLOCK_S, WIDTH_S].map(|s| as_count(s * signal.sample_rate_hz).max(1));
     let blocks = (width / block).max(1);
     let sums = velocity_sums(force, block, 1.0 / signal.sample_rate_hz);
     let last_sum = sums.len() - 1;

@@ -3,7 +3,7 @@
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, Drop, Samples};
-use crate::numerics::{as_f64, reduce, robust};
+use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
 
@@ -54,7 +54,6 @@ pub struct FreeFall {
 ///
 /// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None`
 /// where the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
-#[must_use]
 pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
     let lean = match channel.axis {
         Axis::Transverse => drop.angle_rad.cos(),
@@ -69,29 +68,9 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .steps(from)
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
-        .filter(|fall| fall.length() > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
-        .max_by(|a, b| a.length().total_cmp(&b.length()))
-        .map(|fall| FreeFall {
-            release_s: channel.time_s(0) + fall.start / channel.sample_rate_hz,
-            end_s: channel.time_s(0) + fall.end / channel.sample_rate_hz,
-            rest_m_s2: fall.rest_m_s2,
-            u_rest_m_s2: fall.u_rest_m_s2,
-        })
-}
-
-/// A free fall by its samples, fractional, counted from the record's first.
-struct SampledFall {
-    start: f64,
-    end: f64,
-    /// As of a [`FreeFall`].
-    rest_m_s2: f64,
-    u_rest_m_s2: f64,
-}
-
-impl SampledFall {
-    fn length(&self) -> f64 {
-        self.end - self.start
-    }
+        .filter(|(_, length)| *length > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .max_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(fall, _)| fall)
 }
 
 /// The samples before first contact and the means of their blocks: a median would stand on a coarse
@@ -109,8 +88,7 @@ struct Record<'a> {
 impl<'a> Record<'a> {
     /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
     fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-        let size = ((BLOCK_S * channel.sample_rate_hz).round() as usize).max(1);
+        let size = as_count((BLOCK_S * channel.sample_rate_hz).round()).max(1);
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
         blocks.truncate(samples.len() / size);
         let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
@@ -148,8 +126,8 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// The fall from a step.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<SampledFall> {
+    /// The fall from a step, and its length in samples.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<(FreeFall, f64)> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
@@ -165,7 +143,9 @@ impl<'a> Record<'a> {
             return None;
         }
         let start = self.crossing(step, falling + 0.5 * rest);
-        Some(SampledFall { start, end, rest_m_s2: rest, u_rest_m_s2: u_rest })
+        let time_s = |sample: f64| self.channel.time_s(0) + sample / self.channel.sample_rate_hz;
+        let (release_s, end_s) = (time_s(start), time_s(end));
+        Some((FreeFall { release_s, end_s, rest_m_s2: rest, u_rest_m_s2: u_rest }, end - start))
     }
 
     /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise
@@ -221,8 +201,7 @@ impl<'a> Record<'a> {
     fn departure(&self, step: usize, falling: f64) -> Option<usize> {
         let after = self.blocks.get(step + SUSTAINED..)?;
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
-        #[allow(clippy::cast_precision_loss, reason = "a handful")]
-        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / SUSTAINED as f64;
+        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / as_f64(SUSTAINED);
         let means: Vec<f64> = after.windows(SUSTAINED).map(mean).collect();
         // The scatter of the fall's own means: noise of 1/f departs by itself.
         let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * robust::spread(&means));

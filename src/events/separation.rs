@@ -2,7 +2,7 @@
 
 use super::onset::NOISE_FACTOR;
 use crate::data::{At, Signal};
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
@@ -22,7 +22,6 @@ const LEAST_TURNS: usize = 2;
 const LONGEST_CONTACT_S: f64 = 0.05;
 
 /// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
-#[must_use]
 pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
@@ -37,7 +36,6 @@ pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Optio
 /// When L has its impulse on a signal of it that still rings, s, or most of it where the ringing is strong:
 /// no stage of the contact is left then. `None` where the last part of the time to `before_s` does not tell
 /// what it comes to.
-#[must_use]
 pub fn impulse_given(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
     let flight = before_s - LAST_PART * (before_s - contact_s)..before_s;
     let left = Left::of(signal, contact_s, &flight)?;
@@ -86,8 +84,7 @@ impl Left {
             let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
             [last + (last - before), last - before]
         };
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sample count")]
-        let after = (end_by(LEAST_LEFT)[0] as usize).min(self.flight);
+        let after = as_count(end_by(LEAST_LEFT)[0]).min(self.flight);
         end_by((1.5 * reduce::peak(&self.shares[after..])).clamp(LEAST_LEFT, MOST_LEFT_AT_END))
     }
 }
@@ -98,7 +95,6 @@ impl Left {
 /// How far the two are apart, over √3, is in the standard uncertainty. Where that is farther than the force
 /// takes to fall, and the force turns its sign between them, the impulse tells the end, to a third of that
 /// fall.
-#[must_use]
 pub fn by_impulse(signal: &Signal, contact_s: f64, by_force: At, flight_s: &std::ops::Range<f64>) -> At {
     // What a long flight ends with, a touch perhaps, is not asked.
     let flight_s = flight_s.start..flight_s.end.min(flight_s.start + LONGEST_CONTACT_S);
@@ -126,7 +122,6 @@ fn turns(signal: &Signal, from_s: f64, to_s: f64) -> (f64, usize) {
 ///
 /// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the
 /// contact, or a sample.
-#[must_use]
 pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(free_s);
@@ -144,7 +139,6 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
 
 /// How much later than the force a sensor may answer whose seat rings on behind the contact, s: the period of
 /// that ringing over 2π; 0 where the signal, free of the cask's own ringing, is quiet.
-#[must_use]
 pub fn seat_s(signal: &Signal, contact_s: f64, left_s: f64) -> f64 {
     let after_s = left_s - contact_s;
     let (contact, (after, turns)) =
@@ -169,8 +163,7 @@ fn cumulative(values: &[f64]) -> Vec<f64> {
 
 /// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let half = (1e-4 * sample_rate_hz) as usize;
+    let half = as_count(1e-4 * sample_rate_hz);
     let sums = cumulative(force);
     (0..force.len())
         .map(|i| {

@@ -1,8 +1,9 @@
 //! Samples in memory to the channels that a cask file names, on the same time base and in the same units as
 //! those of a file.
 
-use super::clock::{Claims, Refusal};
+use super::clock::Claims;
 use super::error::{self, IngestError};
+use super::refusal::Refusal;
 use super::statement::Statement;
 use super::time_base::{self, ChannelTimes};
 use super::unchanged::hexadecimal;
@@ -24,7 +25,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
     let mut channels = Vec::with_capacity(cask_file.channels.len());
     for (spec, held) in chosen(held, cask_file)?.into_iter().enumerate() {
         let stated = &cask_file.channels[spec];
-        let refused = |refusal| error::refused(path, &stated.name, refusal);
+        let refused = |refusal| error::of_channel(path, &stated.name, refusal);
         if let Some(rows) = &stated.rows {
             let problem = format!("{rows} picks rows of a file, and these are samples in memory");
             return Err(refused(Refusal::new(
@@ -32,10 +33,11 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
                 "take `where` out, and hand over the samples of this sensor alone",
             )));
         }
+        let said = |rate_hz| Statement::by(format!("rate_hz = {rate_hz}"), rate_hz, 0.0);
         let claims = Claims {
             cask_hz: stated.sample_rate_hz,
             are_times_named: false,
-            stated: held.sample_rate_hz.map(of_samples).into_iter().collect(),
+            stated: held.sample_rate_hz.map(said).into_iter().collect(),
         };
         let samples = Samples::F64(held.values.clone());
         let uniform = match &held.times_s {
@@ -44,18 +46,11 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
             None => time_base::from_claims(held.start_s, &claims, samples),
         };
         let mend = "correct the samples or their times, or take this [[channel]] out of the cask file";
-        let uniform = uniform.map_err(|problem| match problem {
-            time_base::TimeBaseError::Refused(refusal) => refused(refusal),
-            problem => error::source(path, &stated.name, problem.to_string(), mend),
-        })?;
+        let uniform = uniform.map_err(|problem| refused(problem.refusal(mend)))?;
         channels.push(RawChannel { spec, uniform, unit: held.unit.clone() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, cask_file)
-}
-
-fn of_samples(rate_hz: f64) -> Statement {
-    Statement { place: format!("rate_hz = {rate_hz}"), rate_hz, rounding: 0.0, distance: 0 }
 }
 
 fn no_rate(held: &HeldSamples) -> Refusal {
@@ -79,19 +74,17 @@ fn chosen<'a>(held: &'a [HeldSamples], cask_file: &CaskFile) -> Result<Vec<&'a H
         let spec = missing.or_else(|| channels.iter().find(of_source)).unwrap_or(&channels[0]);
         let there: Vec<String> = held.iter().map(|held| format!("{:?}", held.name)).collect();
         let there = if there.is_empty() { "none".to_owned() } else { there.join(", ") };
-        error::source(
-            Path::new(NAME),
-            &spec.name,
+        let refusal = Refusal::new(
             format!(
-                "there are no samples {:?}, which is its source, nor are all channels there by \
-                     name",
+                "there are no samples {:?}, which is its source, nor are all channels there by name",
                 spec.source.to_string()
             ),
             format!(
-                "there is: {there}; name the samples of every channel by its `source`, or of every one \
-                     by its `name`"
+                "there is: {there}; name the samples of every channel by its `source`, or of every one by \
+                 its `name`"
             ),
-        )
+        );
+        error::of_channel(Path::new(NAME), &spec.name, refusal)
     })
 }
 

@@ -1,6 +1,7 @@
 //! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
 
 use super::error::{self, IngestError};
+use super::refusal::Refusal;
 use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
@@ -27,7 +28,8 @@ pub(crate) fn recording(
     let mut channels = Vec::with_capacity(raw.channels.len());
     for raw_channel in raw.channels {
         let Some(spec) = cask_file.channels.get(raw_channel.spec) else { continue };
-        channels.push(channel(path, spec, raw_channel, first_s, &mut issues)?);
+        let channel = channel(spec, raw_channel, first_s, &mut issues);
+        channels.push(channel.map_err(|refusal| error::of_channel(path, &spec.name, refusal))?);
     }
     overlap(path, &channels)?;
     Ok(Recording {
@@ -46,45 +48,37 @@ fn overlap(path: &Path, channels: &[Channel]) -> Result<(), IngestError> {
     let Some(first) = channels.iter().min_by(|a, b| end_s(a).total_cmp(&end_s(b))) else { return Ok(()) };
     let Some(late) = channels.iter().find(|channel| channel.start_s > end_s(first)) else { return Ok(()) };
     let s = |time_s: f64| shown::digits(time_s, 6);
-    Err(error::source(
-        path,
-        &late.name,
+    let refusal = Refusal::new(
         format!(
             "it begins at {} s and {} ends at {} s: by their times the two share no moment, so that their \
-             clocks are {} s apart or they are of \
-             different recordings",
+             clocks are {} s apart or they are of different recordings",
             s(late.start_s),
             first.name,
             s(end_s(first)),
             s(late.start_s - first.start_s)
         ),
         "check the clocks of both; name times that they share (`time`; of MCAP messages also `time = \
-         \"log_time\"`), or take one of the \
-         two out",
-    ))
+         \"log_time\"`), or take one of the two out",
+    );
+    Err(error::of_channel(path, &late.name, refusal))
 }
 
 fn channel(
-    path: &Path,
     spec: &ChannelSpec,
     raw: RawChannel,
     first_s: f64,
     issues: &mut Vec<Finding>,
-) -> Result<Channel, IngestError> {
+) -> Result<Channel, Refusal> {
     let samples = &raw.uniform.samples;
     if (0..samples.len()).all(|i| !samples.get(i).is_finite()) {
-        return Err(error::source(
-            path,
-            &spec.name,
+        return Err(Refusal::new(
             format!("{} holds no number: all its samples are NaN, infinite or empty", spec.source),
             "name the source that holds this sensor's samples, or take this [[channel]] out of the cask file",
         ));
     }
     let rate_hz = raw.uniform.sample_rate_hz;
     if !SAMPLE_RATES_HZ.contains(&rate_hz) {
-        return Err(error::source(
-            path,
-            &spec.name,
+        return Err(Refusal::new(
             format!(
                 "the sample rate of {} is {}, outside {} to {} Hz",
                 spec.source,
@@ -96,7 +90,7 @@ fn channel(
              `sample_rate_hz` in this channel of the cask file",
         ));
     }
-    let scale = scale(path, spec, raw.unit.as_deref())?;
+    let scale = scale(spec, raw.unit.as_deref())?;
     issues.extend(scale.contradiction.clone().map(|found| found.on(&spec.name)));
     issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
     Ok(Channel {
@@ -145,7 +139,7 @@ struct UnitScale {
     contradiction: Option<ChannelFinding>,
 }
 
-fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, IngestError> {
+fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
     let recorded = recorded.map(str::trim).filter(|text| !text.is_empty());
     if let Some(unit) = spec.unit {
         let (m_s2, name) = declared(unit);
@@ -155,9 +149,7 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Unit
         return Ok(UnitScale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
     }
     let Some(text) = recorded else {
-        return Err(error::source(
-            path,
-            &spec.name,
+        return Err(Refusal::new(
             format!("neither the recording nor the cask file says the unit of {}", spec.source),
             "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of \
              the cask file",
@@ -165,18 +157,14 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Unit
     };
     match acceleration_unit_m_s2(text) {
         Some(m_s2) => Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
-        None if is_voltage(text) => Err(error::source(
-            path,
-            &spec.name,
+        None if is_voltage(text) => Err(Refusal::new(
             format!("the recording gives {} in {text:?}, a voltage", spec.source),
             format!(
                 "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in this \
                  channel of the cask file"
             ),
         )),
-        None => Err(error::source(
-            path,
-            &spec.name,
+        None => Err(Refusal::new(
             format!(
                 "the recording gives {} in {text:?}, which is no unit of acceleration known here",
                 spec.source
@@ -218,8 +206,8 @@ mod tests {
         ChannelSpec { unit, ..ChannelSpec::plain("A1", End::First, "/daq/a1", 0.0) }
     }
 
-    fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, IngestError> {
-        scale(Path::new("r"), &spec(unit), recorded)
+    fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
+        scale(&spec(unit), recorded)
     }
 
     #[test]
@@ -260,14 +248,17 @@ mod tests {
                 issues: Vec::new(),
             };
             let raw = RawChannel { spec: 0, uniform, unit: Some("g".into()) };
-            channel(Path::new("r"), &spec(None), raw, 0.0, &mut Vec::new())
+            channel(&spec(None), raw, 0.0, &mut Vec::new())
         };
         for rate_hz in [1e-3, 50.0, 1e8] {
             assert!(at(rate_hz).is_ok(), "{rate_hz}");
         }
         for rate_hz in [5e-324, 9e-4, 1.1e8, 1e14, 1e308, f64::INFINITY, f64::NAN] {
             let refused = at(rate_hz).unwrap_err().to_string();
-            assert!(refused.contains("A1") && refused.contains("outside 0.001 to 100000000 Hz"), "{refused}");
+            assert!(
+                refused.contains("/daq/a1 is ") && refused.contains("outside 0.001 to 100000000 Hz"),
+                "{refused}"
+            );
         }
     }
 
@@ -291,10 +282,10 @@ mod tests {
     #[test]
     fn no_unit_anywhere_says_what_to_write() {
         let error = of(None, Some(" ")).unwrap_err();
-        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        let help = error.remedy;
         assert!(help.contains("unit = \"g\""), "{help}");
         let error = of(None, Some("mV")).unwrap_err();
-        assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("sensitivity"));
+        assert!(error.remedy.contains("sensitivity"));
     }
 
     #[test]
@@ -308,8 +299,8 @@ mod tests {
             issues: Vec::new(),
         };
         let raw = RawChannel { spec: 0, uniform, unit: None };
-        let error = channel(Path::new("r"), &spec(Some(Unit::G)), raw, 0.0, &mut Vec::new()).unwrap_err();
-        assert!(error.to_string().contains("channel \"A1\": /daq/a1 holds no number"), "{error}");
+        let error = channel(&spec(Some(Unit::G)), raw, 0.0, &mut Vec::new()).unwrap_err();
+        assert!(error.to_string().contains("/daq/a1 holds no number"), "{error}");
     }
 
     #[test]

@@ -13,9 +13,12 @@ pub(super) mod tolerance;
 mod wording;
 
 use super::opened::bytes_of;
+use super::refusal::Refusal;
+use super::shown::bare;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
+use fault::THE_CASK_FILE;
 pub use fault::{CaskFileError, WrongLine};
 pub use overrides::{key_of_column, with_columns};
 use section::{CASK_FILE, Document, Kind, Section};
@@ -45,10 +48,7 @@ pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
     let pictures = file.test.photos.iter_mut().chain(&mut file.letterhead.logo);
     for photo in pictures.filter(|photo| !photo.media_type.is_empty()) {
         let path = folder.join(&photo.name);
-        let bytes = bytes_of(&path, record::LARGEST_PHOTO_MIB);
-        let io =
-            |refusal| CaskFileError::Io { path: path.display().to_string(), kind: "the photograph", refusal };
-        photo.bytes = bytes.map_err(io)?.into();
+        photo.bytes = bytes(&path, record::LARGEST_PHOTO_MIB, "the photograph")?.into();
     }
     Ok(file)
 }
@@ -87,19 +87,19 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
 
 /// The refusal of a file that is no such file.
 pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
-    CaskFileError::NoCaskFile {
-        path: path.display().to_string(),
-        problem: problem.to_owned(),
-        mend: mend.to_owned(),
-    }
+    CaskFileError::Refused { path: path.display().to_string(), refusal: Refusal::new(problem, mend) }
 }
 
 /// The bytes of a file of this kind.
 pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
-    bytes_of(path, LARGEST_MIB).map_err(|refusal| CaskFileError::Io {
-        path: path.display().to_string(),
-        kind: kind.name,
-        refusal,
+    bytes(path, LARGEST_MIB, kind.name)
+}
+
+fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, CaskFileError> {
+    let option = if name == THE_CASK_FILE { " after --cask" } else { "" };
+    bytes_of(path, most_mib).map_err(|refusal| {
+        let mend = format!("check the name{option}, and that you may read it");
+        no_cask_file(path, &format!("{name} cannot be read: {}", bare(&refusal)), &mend)
     })
 }
 
@@ -163,11 +163,6 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     }
     Ok(CaskFile {
         path: path.to_owned(),
-        sha256: String::new(),
-        text: String::new(),
-        cask,
-        drop,
-        contact,
         filter,
         tolerances,
         corrections,
@@ -178,6 +173,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         limits,
         letterhead,
         defaults,
+        ..CaskFile::plain(cask, drop, contact)
     })
 }
 

@@ -16,6 +16,7 @@
 //! | – | none | two, as near, that differ | refusal |
 //! | – | none | none | refusal |
 
+use super::refusal::Refusal;
 use super::shown;
 use super::statement::Statement;
 use crate::data::{ClockFinding, Finding, HowApart, RatesApart, TimesApart};
@@ -27,22 +28,6 @@ pub(super) const RATE_TOLERANCE: f64 = 1e-3;
 
 /// Rates further apart than this are no two clocks: one of the statements is wrong, and nothing tells which.
 const FAR: f64 = 1e-2;
-
-/// What is wrong with a channel, and how to mend it; the reader adds which file and channel.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{problem}")]
-pub struct Refusal {
-    /// What is wrong, with its numbers.
-    pub problem: String,
-    /// What to write or do.
-    pub remedy: String,
-}
-
-impl Refusal {
-    pub(super) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { problem: problem.into(), remedy: remedy.into() }
-    }
-}
 
 /// What is said of a channel's rate apart from its times.
 #[derive(Debug, Clone, Default)]
@@ -91,7 +76,7 @@ fn agreement(one: &Statement, other: &Statement) -> Agreement {
 
 /// The rate that recorded times tell in Hz, and how uncertain it is as a part of itself.
 pub(super) fn of_times(rate_hz: f64, uncertainty: f64) -> Statement {
-    Statement { place: "the recorded times".into(), rate_hz, rounding: uncertainty, distance: 0 }
+    Statement::by("the recorded times", rate_hz, uncertainty)
 }
 
 impl Claims {
@@ -111,12 +96,8 @@ impl Claims {
     /// [`Refusal`] where nothing states a rate, or two that contradict each other have nothing between them
     /// to decide.
     pub(super) fn weigh(&self, times: Option<&Statement>) -> Result<Taken, Refusal> {
-        let cask_file = self.cask_hz.map(|rate_hz| Statement {
-            place: "sample_rate_hz of the cask file".into(),
-            rate_hz,
-            rounding: 0.0,
-            distance: 0,
-        });
+        let by_cask_file = |rate_hz| Statement::by("sample_rate_hz of the cask file", rate_hz, 0.0);
+        let cask_file = self.cask_hz.map(by_cask_file);
         let is_decided = cask_file.is_some() || self.are_times_named;
         let nearest = self.stated.first();
         // Times that are coarse tell a rate less well than a statement that they bear out.
@@ -229,8 +210,7 @@ impl Clock<'_> {
         if whole.max(worst).max(start) > FAR && !is_decided {
             let remedy = format!(
                 "write which is right into the cask file, under [recording] or in the [[channel]]: time = \
-                 {one} or time = {two}; or \
-                 sample_rate_hz in each [[channel]]"
+                 {one} or time = {two}; or sample_rate_hz in each [[channel]]"
             );
             return Err(Refusal::new(apart.to_string(), remedy));
         }

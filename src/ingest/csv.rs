@@ -23,29 +23,27 @@ mod wanted;
 pub(super) use list::list;
 
 use super::error::{self, IngestError};
-use super::{Limits, Progress, RawChannel, RawRecording};
-use crate::data::{CaskFile, Finding};
+use super::{RawChannel, RawRecording, ReadRequest};
+use crate::data::{CaskFile, ChannelSpec, Finding};
 use columns::{HeldColumn, Keep};
 use layout::Layout;
 use lines::Text;
 use plan::ColumnPlan;
-use std::path::Path;
 use table::{Refused, Table};
 use wanted::Wanted;
 
-/// The channels of `cask_file` from the text at `path`.
+/// The channels of `cask_file` from a text.
 ///
 /// # Errors
 /// A column that is not there or holds words, rows that are no table, times that are none.
-pub(super) fn read(
-    path: &Path,
-    cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
-) -> Result<RawRecording, IngestError> {
+pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
+    let ReadRequest { path, limits, .. } = request;
     let text = Text::open(path, limits)?;
     let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path, &text))?;
-    let plan = |spec| ColumnPlan::of(path, spec, cask_file.time.as_deref(), &layout);
+    let plan = |spec: &ChannelSpec| {
+        let plan = ColumnPlan::of(path, spec, cask_file.time_of(spec), &layout);
+        plan.map_err(|refusal| error::of_channel(path, &spec.name, refusal))
+    };
     let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
     let wanted = Wanted::of(&plans, &layout);
     // What is set aside is a guess from the first rows; more is taken as it comes.
@@ -53,14 +51,14 @@ pub(super) fn read(
     let rows = layout.rows_expected(text.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| HeldColumn::with_capacity(rows)).collect();
     let mut keep = Keep::new(&wanted, columns);
-    let ending = rows::read(text, &layout, &wanted, &mut keep, (limits, progress))
-        .map_err(|error| complaint::row_error(path, limits, (&layout, &wanted), error))?;
+    let ending = rows::read(text, &layout, &wanted, &mut keep, request)
+        .map_err(|error| complaint::row_error(request, (&layout, &wanted), error))?;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     let Keep { columns, stamps, .. } = keep;
     let mut table = Table { layout: &layout, plans: &plans, wanted: &wanted, columns, stamps };
     table.drop_blank().map_err(|refusal| complaint::of_rows(path, refusal))?;
     let name = |plan: usize| cask_file.channels[plan].name.as_str();
-    let refused = |refused: Refused| error::refused(path, name(refused.plan), refused.refusal);
+    let refused = |refused: Refused| error::of_channel(path, name(refused.plan), refused.refusal);
     issues.extend(table.settle_times().map_err(refused)?);
     issues.extend(table.counter_jumps());
     let own_rows = table.own_rows().map_err(refused)?;

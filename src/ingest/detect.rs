@@ -2,6 +2,7 @@
 
 use super::error::{self, IngestError};
 use super::number;
+use super::refusal::Refusal;
 use super::{opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
@@ -18,21 +19,25 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 ///
 /// # Errors
 /// A directory, an unreadable, empty or unknown file, each by its own message.
-pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
+pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
+    let metadata = std::fs::metadata(path).map_err(|source| error::io(path, &source))?;
     if metadata.is_dir() {
-        return Err(IngestError::Directory { path: path.display().to_string() });
+        let refusal = Refusal::new(
+            "this is a directory, not a recording",
+            "name one recording file; `dropcheck batch` takes several",
+        );
+        return Err(error::of_file(path, refusal));
     }
-    let mut file = opened(path).map_err(|source| error::io(path, source))?;
+    let mut file = opened(path).map_err(|source| error::io(path, &source))?;
     let mut head = Vec::new();
-    (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, source))?;
+    (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, &source))?;
     if head.is_empty() {
         return Err(unknown(path, "the file is empty", "take the original from the logger again"));
     }
     if head.starts_with(MCAP_MAGIC) {
         return Ok(RecordingFormat::Mcap);
     }
-    if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
+    if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, &source))? {
         return Ok(RecordingFormat::Hdf5);
     }
     if let Some((what, mend)) = strangers::named(&head) {
@@ -169,11 +174,7 @@ fn stranger(path: &Path, head: &[u8]) -> IngestError {
 }
 
 fn unknown(path: &Path, found: &str, mend: &str) -> IngestError {
-    IngestError::UnknownFormat {
-        path: path.display().to_string(),
-        found: found.to_owned(),
-        mend: mend.to_owned(),
-    }
+    error::of_file(path, Refusal::new(format!("not a recording that dropcheck can read: {found}"), mend))
 }
 
 #[cfg(test)]
@@ -239,15 +240,21 @@ mod tests {
     }
 
     #[cfg(unix)]
-    #[test]
-    fn a_device_is_no_file() {
-        assert!(matches!(format(Path::new("/dev/null")), Err(IngestError::Io { .. })));
+    fn told(path: &Path) -> String {
+        format(path).unwrap_err().to_string()
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_no_file() {
+        assert!(told(Path::new("/dev/null")).contains("a pipe or a device"));
+    }
+
+    #[cfg(unix)]
     #[test]
     fn a_directory_and_a_missing_file_are_told_apart() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(matches!(format(dir.path()), Err(IngestError::Directory { .. })));
-        assert!(matches!(format(&dir.path().join("none")), Err(IngestError::Io { .. })));
+        assert!(told(dir.path()).contains("this is a directory"));
+        assert!(told(&dir.path().join("none")).contains("No such file"));
     }
 }

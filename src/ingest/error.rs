@@ -1,6 +1,6 @@
 //! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
 
-use super::clock::Refusal;
+use super::refusal::Refusal;
 use super::shown::bare;
 use crate::data::shortened;
 use std::path::Path;
@@ -12,102 +12,31 @@ pub enum IngestError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     CaskFile(#[from] super::cask_file::fault::CaskFileError),
-    /// The operating system refused.
-    #[error("{path}: {}", bare(.refusal))]
-    #[diagnostic(help("check the name, and that you may read it"))]
-    Io {
+    /// The operating system refuses it, a part of it would take more memory than reading may, it is no
+    /// recording that is read, lacks what a channel names, or contradicts its format.
+    #[error("{path}: {refusal}")]
+    #[diagnostic(help("{}", .refusal.remedy))]
+    Refused {
         /// The file.
         path: String,
-        /// Its reason.
-        refusal: std::io::Error,
-    },
-    /// A directory stands where a file should.
-    #[error("{path}: this is a directory, not a recording")]
-    #[diagnostic(help("name one recording file; `dropcheck batch` takes several"))]
-    Directory {
-        /// The directory.
-        path: String,
-    },
-    /// The file's content is of no format that is read.
-    #[error("{path}: not a recording that dropcheck can read: {found}")]
-    #[diagnostic(help("{mend}"))]
-    UnknownFormat {
-        /// The file.
-        path: String,
-        /// What it looks like.
-        found: String,
-        /// What to do.
-        mend: String,
-    },
-    /// A channel's source is not in the recording.
-    #[error("{path}: channel {channel:?}: {problem}")]
-    #[diagnostic(help("{mend}"))]
-    Source {
-        /// The recording.
-        path: String,
-        /// The channel's name in the cask file.
-        channel: String,
-        /// What is not there, or what is there instead.
-        problem: String,
-        /// Near names, what there is, what to write.
-        mend: String,
-    },
-    /// A part of the file would take more memory than reading may.
-    #[error("{path}: {what} more than {limit}, the limit where reading may take {memory} of memory")]
-    #[diagnostic(help(
-        "a file that claims so much is damaged or made to do harm; if it is sound, allow more: --max-memory \
-         {more}"
-    ))]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Which part, and what it does: "its samples take".
-        what: String,
-        /// The limit of that part.
-        limit: String,
-        /// The memory allowed.
-        memory: String,
-        /// Four times that, as the option takes it.
-        more: String,
-    },
-    /// The file's content contradicts its format.
-    #[error("{path}: {place}: {problem}")]
-    #[diagnostic(help("{mend}"))]
-    Content {
-        /// The file.
-        path: String,
-        /// Where in it: a byte, a line, a data set.
-        place: String,
-        /// What is wrong there.
-        problem: String,
-        /// What to do.
-        mend: String,
+        /// Where in it, what is wrong there, and what to do.
+        refusal: Refusal,
     },
 }
 
 /// The operating system's refusal, with the file's name.
-pub(super) fn io(path: &Path, refusal: std::io::Error) -> IngestError {
-    IngestError::Io { path: path.display().to_string(), refusal }
+pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
+    of_file(path, Refusal::new(bare(refusal), "check the name, and that you may read it"))
 }
 
-/// A channel whose source is at fault.
-pub(crate) fn source(
-    path: &Path,
-    channel: &str,
-    problem: impl Into<String>,
-    mend: impl Into<String>,
-) -> IngestError {
-    IngestError::Source {
-        path: path.display().to_string(),
-        channel: channel.to_owned(),
-        problem: problem.into(),
-        mend: mend.into(),
-    }
+/// A refusal of the file itself.
+pub(super) fn of_file(path: &Path, refusal: Refusal) -> IngestError {
+    IngestError::Refused { path: path.display().to_string(), refusal }
 }
 
-/// A channel that is refused for its clock.
-pub(super) fn refused(path: &Path, channel: &str, refusal: Refusal) -> IngestError {
-    source(path, channel, refusal.problem, refusal.remedy)
+/// A refusal of a channel of the cask file.
+pub(crate) fn of_channel(path: &Path, channel: &str, refusal: Refusal) -> IngestError {
+    of_file(path, Refusal::new(format!("channel {channel:?}: {refusal}"), refusal.remedy))
 }
 
 /// How alike two words are, 0 to 1, whatever their case.

@@ -1,7 +1,7 @@
 //! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones,
 //! the tests below replay what it kept.
 
-use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
+use super::{Limits, ReadRequest, cask_file, csv, hdf5, mcap, number, time_base};
 use crate::data::{CaskFile, Samples};
 use crate::lab::scene_file;
 use std::io::Write as _;
@@ -53,16 +53,16 @@ fn in_file(bytes: &[u8], read: impl FnOnce(&Path)) {
 fn table(bytes: &[u8]) {
     let limits = Limits::of_memory(0);
     in_file(bytes, |path| {
-        let _ = csv::list(path, limits, &|_| ());
-        let _ = csv::read(path, &TABLE, limits, &|_| ());
+        let _ = csv::list(ReadRequest::silent(path, limits));
+        let _ = csv::read(ReadRequest::silent(path, limits), &TABLE);
     });
 }
 
 fn messages(bytes: &[u8]) {
     let limits = Limits::of_memory(0);
     in_file(bytes, |path| {
-        let _ = mcap::list(path, limits, &|_| ());
-        let _ = mcap::read(path, &TOPICS, limits, &|_| ());
+        let _ = mcap::list(ReadRequest::silent(path, limits));
+        let _ = mcap::read(ReadRequest::silent(path, limits), &TOPICS);
     });
 }
 
@@ -72,9 +72,9 @@ fn answer(bytes: &[u8]) {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/examples/vhlw-rest.h5"));
     let limits = Limits::of_memory(0);
     hdf5::answer_by(bytes);
-    let _ = hdf5::list(path, limits, &|_| ());
+    let _ = hdf5::list(ReadRequest::silent(path, limits));
     hdf5::answer_by(bytes);
-    let _ = hdf5::read(path, &DATASETS, limits, &|_| ());
+    let _ = hdf5::read(ReadRequest::silent(path, limits), &DATASETS);
 }
 
 fn scene(bytes: &[u8]) {

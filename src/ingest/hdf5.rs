@@ -20,19 +20,18 @@ mod types;
 mod wall;
 
 pub(super) use list::list;
-pub use room::Hdf5Program;
 #[cfg(any(test, fuzzing))]
 pub(super) use room::answer_by;
-pub(super) use room::use_program;
+pub use room::{Hdf5Program, use_program};
 
-use super::{Limits, Progress, RawChannel, RawRecording};
+use super::refusal::Refusal;
+use super::{RawChannel, RawRecording, ReadRequest};
 use super::{error, error::IngestError};
 use crate::data::{CaskFile, ChannelSpec, Source};
 use crate::numerics::as_f64;
 use channel::DatasetChannel;
 use clocks::Clocks;
 use column::DatasetColumn;
-use fault::Fault;
 use room::File;
 use starts::Start;
 use std::collections::HashMap;
@@ -57,9 +56,10 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     Some(if take_apart(Path::new(&path)) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Closes this process in and answers on standard output what standard input asks of the file at `path`;
-/// whether it could.
-pub(super) fn take_apart(path: &Path) -> bool {
+/// For a process that was started to take the file at `path` apart: closes it in and answers on standard
+/// output what standard input asks, and says whether it could; then the process is to end.
+#[must_use]
+pub fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
     let is_whole = wall.is_whole;
     let mut grant = |bytes, held_bytes| wall.grant(bytes, held_bytes);
@@ -89,17 +89,12 @@ fn begin_without_variables(program: &Path) {
     }
 }
 
-/// The channels of `cask_file` from the HDF5 file at `path`.
+/// The channels of `cask_file` from an HDF5 file.
 ///
 /// # Errors
 /// A damaged file, a source that is not there or holds no numbers, times that are none.
-pub(super) fn read(
-    path: &Path,
-    cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
-) -> Result<RawRecording, IngestError> {
-    let file = File::open(path, limits)?;
+pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
+    let file = File::open(request.path, request.limits)?;
     let clocks = Clocks::default();
     let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);
@@ -111,9 +106,9 @@ pub(super) fn read(
         let (channel, start) = channel?;
         channels.push(RawChannel { spec: index, ..channel });
         starts.push((spec.source.to_string(), start));
-        let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
-        starts::require_common(&starts).map_err(refused)?;
-        progress(as_f64(index + 1) / as_f64(count));
+        let is_common = starts::require_common(&starts);
+        is_common.map_err(|fault| error::of_channel(request.path, &spec.name, fault))?;
+        (request.progress)(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
@@ -162,9 +157,9 @@ fn read_channel(
     time: Option<&str>,
 ) -> Result<(RawChannel, Start), IngestError> {
     let path = &room.file.path;
-    let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
+    let refused = |fault: Refusal| error::of_channel(path, &spec.name, fault);
     let Source::Path(source) = &spec.source else {
-        return Err(refused(Fault::new(
+        return Err(refused(Refusal::new(
             "source gives a topic and a field, but this recording is HDF5",
             "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column",
         )));
@@ -182,7 +177,7 @@ fn read_channel(
     uniform.issues.extend(attributes.issues);
     match attributes.two_units {
         // The cask file's goes before all.
-        Some(two) if spec.unit.is_none() => Err(refused(Fault::from(two).at(source))),
+        Some(two) if spec.unit.is_none() => Err(refused(two.at(source))),
         _ => Ok((RawChannel { spec: 0, uniform, unit: attributes.unit }, based.start)),
     }
 }

@@ -1,6 +1,7 @@
 //! The memory that reading may take to the largest size of each part of a file.
 
-use super::error::IngestError;
+use super::error::{self, IngestError};
+use super::refusal::Refusal;
 use std::path::Path;
 
 /// What reading may take where nobody says otherwise: sixteen channels of ten million samples fit.
@@ -68,13 +69,16 @@ impl Limits {
 
     /// The refusal of `what`, which would pass `limit_bytes`.
     pub(super) fn refusal(self, path: &Path, what: &str, limit_bytes: u64) -> IngestError {
-        IngestError::TooLarge {
-            path: path.display().to_string(),
-            what: what.to_owned(),
-            limit: in_words(limit_bytes),
-            memory: in_words(self.memory_bytes),
-            more: in_words(self.memory_bytes.saturating_mul(4)).replace(' ', ""),
-        }
+        let [limit, memory, more] =
+            [limit_bytes, self.memory_bytes, self.memory_bytes.saturating_mul(4)].map(in_words);
+        let problem =
+            format!("{what} more than {limit}, the limit where reading may take {memory} of memory");
+        let remedy = format!(
+            "a file that claims so much is damaged or made to do harm; if it is sound, allow more: \
+             --max-memory {}",
+            more.replace(' ', "")
+        );
+        error::of_file(path, Refusal::new(problem, remedy))
     }
 }
 

@@ -15,6 +15,7 @@ mod limits;
 mod mcap;
 mod number;
 mod opened;
+mod refusal;
 mod statement;
 mod strangers;
 pub mod time_base;
@@ -23,8 +24,9 @@ mod unchanged;
 mod vocabulary;
 
 pub use arrays::read_arrays;
+pub use detect::format;
 pub use error::IngestError;
-pub use hdf5::Hdf5Program;
+pub use hdf5::{Hdf5Program, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;
@@ -35,6 +37,22 @@ use std::path::Path;
 
 /// Called with the fraction done, 0 to 1, now and then.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+
+/// A recording that is to be read or listed.
+#[derive(Clone, Copy)]
+pub(crate) struct ReadRequest<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) limits: Limits,
+    pub(crate) progress: Progress<'a>,
+}
+
+#[cfg(any(test, fuzzing))]
+impl<'a> ReadRequest<'a> {
+    /// Of which nobody is told how far it is.
+    pub(crate) fn silent(path: &'a Path, limits: Limits) -> Self {
+        Self { path, limits, progress: &|_| () }
+    }
+}
 
 /// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit
 /// and clock.
@@ -67,14 +85,6 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::with_photos(cask_file::parse(path)?)?)
 }
 
-/// The format of the recording at `path`, told by its content.
-///
-/// # Errors
-/// [`IngestError`] where it is none that can be read.
-pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    detect::format(path)
-}
-
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
 ///
 /// # Errors
@@ -86,7 +96,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// As [`read`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`read`]; [`IngestError::TooLarge`] where the file would pass a limit.
+/// As [`read`]; also where the file would pass a limit.
 pub fn read_within(
     path: &Path,
     cask_file: &CaskFile,
@@ -97,13 +107,12 @@ pub fn read_within(
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
+    let request = ReadRequest { path, limits, progress };
     let (raw, sha256) = unchanged::hashed(path, || match format {
-        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
+        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(request, cask_file)),
         // No file is told as `Samples`.
-        RecordingFormat::Csv | RecordingFormat::Samples => {
-            rayon::scope(|_| csv::read(path, cask_file, limits, progress))
-        }
-        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
+        RecordingFormat::Csv | RecordingFormat::Samples => rayon::scope(|_| csv::read(request, cask_file)),
+        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(request, cask_file)),
     })?;
     assemble::recording(path, format, sha256, raw, cask_file)
 }
@@ -127,12 +136,13 @@ pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
 /// As [`list`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`list`]; [`IngestError::TooLarge`] where the file would pass a limit.
+/// As [`list`]; also where the file would pass a limit.
 pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
+    let request = ReadRequest { path, limits, progress };
     match detect::format(path)? {
-        RecordingFormat::Mcap => mcap::list(path, limits, progress),
-        RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),
-        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(path, limits, progress),
+        RecordingFormat::Mcap => mcap::list(request),
+        RecordingFormat::Hdf5 => hdf5::list(request),
+        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
     }
 }
 
@@ -158,17 +168,4 @@ pub fn serve_hdf5() -> Option<std::process::ExitCode> {
 /// `dropcheck` does. The first stays.
 pub fn read_hdf5_with(program: &Path) {
     read_hdf5_by(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
-}
-
-/// As [`read_hdf5_with`] for a program that needs words and variables of its own, and calls
-/// [`take_hdf5_apart`].
-pub fn read_hdf5_by(program: Hdf5Program) {
-    hdf5::use_program(program);
-}
-
-/// For a process that was started by [`read_hdf5_by`]: closes it in, then answers what the reader asks of the
-/// file at `path`, and says whether it could; then the process is to end.
-#[must_use]
-pub fn take_hdf5_apart(path: &Path) -> bool {
-    hdf5::take_apart(path)
 }

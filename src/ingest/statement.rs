@@ -36,9 +36,13 @@ impl Statement {
             }
             Meaning::Count => return None,
         };
-        let place = format!("{name} = {text}");
-        let rounding = rounding(number);
-        (rate_hz.is_finite() && rate_hz > 0.0).then_some(Self { place, rate_hz, rounding, distance: 0 })
+        (rate_hz.is_finite() && rate_hz > 0.0)
+            .then(|| Self::by(format!("{name} = {text}"), rate_hz, rounding(number)))
+    }
+
+    /// A rate in Hz that `place` says of the samples alone, off by the part `rounding` of itself at most.
+    pub(super) fn by(place: impl Into<String>, rate_hz: f64, rounding: f64) -> Self {
+        Self { place: place.into(), rate_hz, rounding, distance: 0 }
     }
 
     /// The same, said of all that stands in a group or a file.

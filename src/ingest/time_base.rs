@@ -15,6 +15,7 @@ mod uniform;
 pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
 pub use blocks::from_blocks;
 pub use error::TimeBaseError;
+pub(super) use error::check_lengths;
 use error::check_rate;
 pub(super) use pieces::BlockContent;
 pub(super) use stamps::line;
@@ -58,11 +59,47 @@ impl<'a> ChannelTimes<'a> {
     /// # Errors
     /// [`TimeBaseError`] where the times make no record.
     pub fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
-        if self.each_s.len() != samples.len() {
-            return Err(TimeBaseError::Lengths { times: self.each_s.len(), samples: samples.len() });
-        }
+        check_lengths(self.each_s.len(), samples.len())?;
         claims.cask_hz.map_or(Ok(()), check_rate)?;
-        place(self, samples, claims)
+        self.placed(samples, claims)
+    }
+
+    fn placed(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
+        let mut issues = Vec::new();
+        let Ordered { times_s, mut samples, is_coarse } =
+            order::ordered(self.each_s, self.rise, samples, &mut issues)?;
+        if is_coarse {
+            return coarse::place(&times_s, samples, claims, issues);
+        }
+        let fit = if self.rise { self.fit()? } else { BaseFit::new(&times_s)? };
+        let span_s = times_s[times_s.len() - 1] - times_s[0];
+        let rounding = (fit.resolution_s / span_s).min(MOST_ROUNDING);
+        let own = clock::of_times(1.0 / fit.period_s, rounding);
+        let Taken { rate_hz: sample_rate_hz, issues: of_rate, .. } = claims.weigh(Some(&own))?;
+        issues.extend(of_rate);
+        let non_finite = missing::mark(&mut samples, 0, |i| times_s[i], &mut issues);
+        missing::report_gaps(&fit, &times_s, &mut issues);
+        if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
+            let moved = resample::resample(&times_s, &samples, &fit);
+            issues.push(TimesFinding::Jitter(jitter(&fit, &times_s, &moved)).into());
+            let (gaps, time_jitter_s) = (missing::spans(&moved.samples), fit.rms_s);
+            return Ok(Uniform {
+                start_s: moved.start_s,
+                sample_rate_hz,
+                samples: moved.samples,
+                gaps,
+                time_jitter_s,
+                issues,
+            });
+        }
+        let (samples, gaps) = if fit.runs.len() == 1 {
+            (samples, non_finite)
+        } else {
+            let spread = missing::spread(&samples, &fit);
+            let gaps = missing::spans(&spread);
+            (spread, gaps)
+        };
+        Ok(Uniform { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
     }
 
     /// The base nearest to the times as they stand, where they rise.
@@ -108,49 +145,11 @@ pub fn from_rate(start_s: f64, sample_rate_hz: f64, mut samples: Samples) -> Res
         return Err(TimeBaseError::TooFew { count: samples.len() });
     }
     if !start_s.is_finite() {
-        return Err(TimeBaseError::NotFinite { number: 1, time_s: start_s });
+        return Err(error::not_finite(1, start_s));
     }
     let mut issues = Vec::new();
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
-}
-
-fn place(times: &ChannelTimes, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
-    let mut issues = Vec::new();
-    let Ordered { times_s, mut samples, is_coarse } =
-        order::ordered(times.each_s, times.rise, samples, &mut issues)?;
-    if is_coarse {
-        return coarse::place(&times_s, samples, claims, issues);
-    }
-    let fit = if times.rise { times.fit()? } else { BaseFit::new(&times_s)? };
-    let span_s = times_s[times_s.len() - 1] - times_s[0];
-    let rounding = (fit.resolution_s / span_s).min(MOST_ROUNDING);
-    let own = clock::of_times(1.0 / fit.period_s, rounding);
-    let Taken { rate_hz: sample_rate_hz, issues: of_rate, .. } = claims.weigh(Some(&own))?;
-    issues.extend(of_rate);
-    let non_finite = missing::mark(&mut samples, 0, |i| times_s[i], &mut issues);
-    missing::report_gaps(&fit, &times_s, &mut issues);
-    if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
-        let moved = resample::resample(&times_s, &samples, &fit);
-        issues.push(TimesFinding::Jitter(jitter(&fit, &times_s, &moved)).into());
-        let (gaps, time_jitter_s) = (missing::spans(&moved.samples), fit.rms_s);
-        return Ok(Uniform {
-            start_s: moved.start_s,
-            sample_rate_hz,
-            samples: moved.samples,
-            gaps,
-            time_jitter_s,
-            issues,
-        });
-    }
-    let (samples, gaps) = if fit.runs.len() == 1 {
-        (samples, non_finite)
-    } else {
-        let spread = missing::spread(&samples, &fit);
-        let gaps = missing::spans(&spread);
-        (spread, gaps)
-    };
-    Ok(Uniform { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 fn jitter(fit: &BaseFit, times_s: &[f64], moved: &resample::Resampled) -> Jitter {

@@ -1,10 +1,10 @@
 //! Numbers in a column or dataset of times to seconds: by the unit that is stated, by 1970, or by a rate that
 //! is stated.
 
-use super::clock::Refusal;
+use super::refusal::Refusal;
 use super::shown;
 use super::vocabulary::{split, time_unit_s};
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 use jiff::{Timestamp, civil::DateTime, tz::TimeZone};
 
 /// Units of time that a recorder may have left out, with seconds a unit.
@@ -152,8 +152,7 @@ pub(super) fn seconds_a_unit(
             [named_s, unit_s].into_iter().find(agrees).ok_or_else(|| {
                 Refusal::new(
                     format!(
-                        "the times in {} are in another unit by their name than by their \
-                             unit",
+                        "the times in {} are in another unit by their name than by their unit",
                         carrier.place()
                     ),
                     "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], \
@@ -230,8 +229,7 @@ impl Counted {
         if count < 2 || !(span.is_finite() && span > 0.0) {
             return None;
         }
-        #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
-        let mean = span / (count - 1) as f64;
+        let mean = span / as_f64(count - 1);
         let pairs = times.windows(2).step_by(times.len().div_ceil(LOOKED_AT));
         let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();
         let median = if steps.is_empty() { mean } else { robust::median(&mut steps) };

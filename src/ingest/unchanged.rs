@@ -2,6 +2,7 @@
 
 use super::error::{self, IngestError};
 use super::opened;
+use super::refusal::Refusal;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs::Metadata;
@@ -20,7 +21,7 @@ const MOST_LOOKS: usize = 50;
 /// What `read` makes of the file at `path`, and the file's SHA-256, which is taken beside it.
 ///
 /// # Errors
-/// What `read` says, at once; [`IngestError::Content`] where the file was not the same all the time.
+/// What `read` says, at once; [`IngestError::Refused`] where the file was not the same all the time.
 pub(super) fn hashed<T>(
     path: &Path,
     read: impl FnOnce() -> Result<T, IngestError>,
@@ -42,12 +43,11 @@ pub(super) fn hashed<T>(
 }
 
 fn changed(path: &Path) -> IngestError {
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the whole file".to_owned(),
-        problem: "it changed while it was being read".to_owned(),
-        mend: "copy it first and name the copy, or wait until it is written".to_owned(),
-    }
+    let refusal = Refusal::new(
+        "it changed while it was being read",
+        "copy it first and name the copy, or wait until it is written",
+    );
+    error::of_file(path, refusal.at("the whole file"))
 }
 
 /// What tells a file from itself at another time.
@@ -78,7 +78,7 @@ fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
 }
 
 fn look(path: &Path) -> Result<(Identity, Option<SystemTime>), IngestError> {
-    std::fs::metadata(path).map(|file| identity(&file)).map_err(|source| error::io(path, source))
+    std::fs::metadata(path).map(|file| identity(&file)).map_err(|source| error::io(path, &source))
 }
 
 /// The file's identity, looked at when a later change must show.
@@ -97,13 +97,13 @@ fn at_rest(path: &Path) -> Result<Identity, IngestError> {
 /// SHA-256 of the file at `path`, lower-case hexadecimal; of its beginning where it `is_needless` in the end.
 ///
 /// # Errors
-/// [`IngestError::Io`] where it cannot be read.
+/// [`IngestError::Refused`] where it cannot be read.
 pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
-    let mut file = opened(path).map_err(|source| error::io(path, source))?;
+    let mut file = opened(path).map_err(|source| error::io(path, &source))?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     while !is_needless.load(Ordering::Relaxed) {
-        let read = file.read(&mut buffer).map_err(|source| error::io(path, source))?;
+        let read = file.read(&mut buffer).map_err(|source| error::io(path, &source))?;
         if read == 0 {
             break;
         }
@@ -169,7 +169,7 @@ mod tests {
             for round in 0..40 {
                 let read = || {
                     std::thread::sleep(Duration::from_millis(round * 3 % 17));
-                    fs::read(&path).map_err(|source| error::io(&path, source))
+                    fs::read(&path).map_err(|source| error::io(&path, &source))
                 };
                 match hashed(&path, read) {
                     Ok((bytes, found)) => assert_eq!(found, hexadecimal(&Sha256::digest(&bytes))),

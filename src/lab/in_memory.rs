@@ -24,8 +24,7 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
         let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
         let uniform = uniform.map_err(|problem| {
-            let mend = "record the channel over the whole drop";
-            error::source(path, &channel.name, problem.to_string(), mend)
+            error::of_channel(path, &channel.name, problem.refusal("record the channel over the whole drop"))
         })?;
         channels.push(RawChannel { spec, uniform, unit: Some(channel.unit.clone()) });
     }

@@ -3,6 +3,7 @@
 mod ends;
 mod stage;
 
+use super::as_count;
 use stage::StateVariable;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -36,12 +37,7 @@ impl ZeroPhaseLowPass {
         }
         let g = (PI * design_hz / sample_rate_hz).tan();
         // The impulse response decays as e^(−√½ 2π f t): 1e-6 of it is left after 3.1 / f.
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "positive and cut to the signal's length when used"
-        )]
-        let padding = (3.1 * sample_rate_hz / design_hz).ceil() as usize;
+        let padding = as_count((3.1 * sample_rate_hz / design_hz).ceil());
         Some(Self { gain: g, stage: StateVariable::new(g, SQRT_2), padding })
     }
 

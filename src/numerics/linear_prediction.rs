@@ -36,7 +36,6 @@ pub struct LinearPrediction {
 
 /// x_i = c + Σ_k a_k x_(i−k) + e_i   (21c), c and a by least squares in which wild e_i count little; `None`
 /// for too short a series.
-#[must_use]
 pub fn predict_linearly(values: &[f64]) -> Option<LinearPrediction> {
     let before = (values.len() / VALUES_EACH).min(MOST_BEFORE);
     if before < LEAST_BEFORE {

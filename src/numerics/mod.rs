@@ -16,16 +16,14 @@ pub mod sinusoid;
 pub mod spectrum;
 
 /// A count of samples or the like as a number; exact below 2^53.
-#[must_use]
 #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
 pub fn as_f64(count: usize) -> f64 {
     count as f64
 }
 
-/// The count or index that a number holds, towards 0; a number beyond all of them gives the nearest, NaN 0.
-#[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
-pub fn whole(number: f64) -> usize {
+/// A number cut to a count: what is negative or no number to 0, what is too large to the largest.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates so")]
+pub fn as_count(number: f64) -> usize {
     number as usize
 }
 

@@ -1,6 +1,7 @@
 //! A quiet stretch of samples to the spectrum of its noise, and to what that noise adds to an integral.
 
 use super::spectrum::forward;
+use super::{as_count, as_f64};
 use rustfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -25,19 +26,17 @@ const LOWEST_SHARE: f64 = 1e-2;
 ///
 /// Mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for fewer than 32
 /// samples.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
 pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
     let n = quiet.len();
     if n < 32 {
         return Vec::new();
     }
-    let mean = quiet.iter().sum::<f64>() / n as f64;
+    let mean = quiet.iter().sum::<f64>() / as_f64(n);
     let fft = forward(n);
     let mut lines = vec![0.0; n / 2];
     for taper in 1..=TAPERS {
-        let turn = PI * f64::from(taper) / (n + 1) as f64;
-        let weight = |i: usize| (2.0 / (n + 1) as f64).sqrt() * (turn * (i + 1) as f64).sin();
+        let turn = PI * f64::from(taper) / as_f64(n + 1);
+        let weight = |i: usize| (2.0 / as_f64(n + 1)).sqrt() * (turn * as_f64(i + 1)).sin();
         let mut work: Vec<Complex<f64>> =
             quiet.iter().enumerate().map(|(i, x)| Complex::new(weight(i) * (x - mean), 0.0)).collect();
         fft.process(&mut work);
@@ -49,15 +48,10 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
     let mut bins = Vec::new();
     let mut from = FIRST_LINE;
     while from < lines.len() {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a positive count of lines"
-        )]
-        let width = ((BIN_SHARE * from as f64) as usize).max(FIRST_BIN_LINES);
+        let width = as_count(BIN_SHARE * as_f64(from)).max(FIRST_BIN_LINES);
         let to = (from + width).min(lines.len());
-        let frequency_hz = ((from + to - 1) as f64 / 2.0) * sample_rate_hz / n as f64;
-        bins.push((frequency_hz, lines[from..to].iter().sum::<f64>() / (to - from) as f64));
+        let frequency_hz = (as_f64(from + to - 1) / 2.0) * sample_rate_hz / as_f64(n);
+        bins.push((frequency_hz, lines[from..to].iter().sum::<f64>() / as_f64(to - from)));
         from = to;
     }
     bins
@@ -69,7 +63,6 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
 /// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as
 /// [`spectrum`] gives it; between its bins the density is a power of the frequency, below them it is flat, or
 /// 1/f where it rises. 0 for an empty one.
-#[must_use]
 pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s: f64) -> f64 {
     let (Some(&lowest), Some(&highest)) = (spectrum.first(), spectrum.last()) else { return 0.0 };
     if !(mean_s > 0.0 && integrate_s > 0.0) {

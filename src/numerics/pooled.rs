@@ -1,6 +1,8 @@
 //! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit
 //! among the others.
 
+use super::as_f64;
+
 /// Half-width of a 95 % interval over its standard uncertainty.
 const COVERAGE: f64 = 1.96;
 
@@ -32,17 +34,14 @@ pub enum ScatterWord {
 }
 
 /// E_n = (a − b) / √(U_a² + U_b²) of values with half-widths (ISO 13528): within ±1 they agree.
-#[must_use]
 pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0) / a.1.hypot(b.1)
 }
 
 /// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
 pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
-    let count = values.len() as f64;
-    let (mean, _) = mean(values)?;
+    let count = as_f64(values.len());
+    let mean = mean(values)?;
     let square = |of: &dyn Fn(&(f64, f64)) -> f64| values.iter().map(|value| of(value).powi(2)).sum::<f64>();
     Some(Pooled {
         count: values.len(),
@@ -53,16 +52,15 @@ pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
     })
 }
 
-/// Mean weighted with 1/u², and its half-width if the values are independent.
-fn mean(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+/// Mean weighted with 1/u².
+fn mean(values: &[(f64, f64)]) -> Option<f64> {
     let weight: f64 = values.iter().map(|value| value.1.powi(-2)).sum();
     let sum: f64 = values.iter().map(|value| value.0 * value.1.powi(-2)).sum();
-    (weight > 0.0).then(|| (sum / weight, weight.sqrt().recip()))
+    (weight > 0.0).then(|| sum / weight)
 }
 
 impl Pooled {
     /// Whether the repeats scatter as their intervals say; `None` of one.
-    #[must_use]
     pub fn word(&self) -> Option<ScatterWord> {
         let degrees = self.count.checked_sub(1).filter(|degrees| *degrees > 0)?;
         Some(if self.chi_square > chi_square_quantile(degrees, 1.645) {
@@ -77,9 +75,8 @@ impl Pooled {
 
 /// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three
 /// degrees of freedom on.
-#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
 fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
-    let nu = degrees as f64;
+    let nu = as_f64(degrees);
     let share = 2.0 / (9.0 * nu);
     nu * (1.0 - share + z * share.sqrt()).max(0.0).powi(3)
 }
@@ -89,7 +86,6 @@ fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
 /// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three
 /// are left (largest consistent subset, Cox 2007): one wrong value does not make the right ones look wrong.
 /// Of two that contradict each other both fall out.
-#[must_use]
 pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
     let weight = |i: usize| values[i].1.powi(-2);
     // Sums over those that are kept: without one of them, its share is taken off.

@@ -32,7 +32,6 @@ pub struct PriorFit {
 
 impl PriorFit {
     /// The fit without any observation: the priors as they are.
-    #[must_use]
     pub fn of_priors(count: usize) -> Self {
         Self {
             unknowns: vec![0.0; count],
@@ -43,7 +42,6 @@ impl PriorFit {
     }
 
     /// Standard deviation of unknown `index` after the fit, as a share of the one before.
-    #[must_use]
     pub fn left_share(&self, index: usize) -> f64 {
         self.response.row(index).norm()
     }
@@ -51,7 +49,6 @@ impl PriorFit {
 
 /// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start
 /// or the normal matrix is singular.
-#[must_use]
 pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let start = DVector::zeros(count);
     residuals(start.as_slice())?;
@@ -77,7 +74,6 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
 
 /// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`,
 /// any move of it changes more than its size says: its differences are those between both sides.
-#[must_use]
 pub fn derivatives(
     values: &[f64],
     model: Residuals,

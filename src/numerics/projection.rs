@@ -13,7 +13,6 @@ const NEARLY_ALL: f64 = 1e-4;
 /// `values`).
 ///
 /// Modified Gram-Schmidt; regressors that are zero or depend on the others are left out.
-#[must_use]
 pub fn residual_square(values: &[f64], regressors: Vec<Vec<f64>>) -> f64 {
     let mut left = values.to_vec();
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(regressors.len());

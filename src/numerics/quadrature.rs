@@ -5,7 +5,6 @@
 ///
 /// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), the slopes by central differences,
 /// one-sided at the ends.
-#[must_use]
 pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
     const TOGETHER: usize = 8;
     let n = samples.len();

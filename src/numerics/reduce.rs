@@ -1,43 +1,38 @@
 //! Samples to sums, means and extremes, in as many partial results as a processor works on at once: a single
 //! one waits for each step.
 
+use super::{as_count, as_f64};
+
 const LANES: usize = 8;
 
 /// Samples that are averaged into one to come down to about `rate_hz`.
-#[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
 pub fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
-    ((sample_rate_hz / rate_hz) as usize).max(1)
+    as_count(sample_rate_hz / rate_hz).max(1)
 }
 
 /// Means of whole blocks; samples left over at the end are left out.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
 pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
     if block < LANES {
         // One after the other: lanes would cost more than the few sums.
-        return samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / block as f64).collect();
+        return samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / as_f64(block)).collect();
     }
-    samples.chunks_exact(block).map(|chunk| sum(chunk) / block as f64).collect()
+    samples.chunks_exact(block).map(|chunk| sum(chunk) / as_f64(block)).collect()
 }
 
 /// Means of blocks, the last one as long as it is, of their finite values each; NaN where there is none.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
 pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> Vec<f64> {
     let mean = |chunk: &[T]| {
-        let whole = sum_of(chunk, Into::into) / chunk.len() as f64;
+        let whole = sum_of(chunk, Into::into) / as_f64(chunk.len());
         if whole.is_finite() {
             return whole;
         }
         let finite = || chunk.iter().map(|&x| x.into()).filter(|x: &f64| x.is_finite());
-        finite().sum::<f64>() / finite().count() as f64
+        finite().sum::<f64>() / as_f64(finite().count())
     };
     samples.chunks(block.max(1)).map(mean).collect()
 }
 
 /// Smallest |x − y| of neighbours above `least`; infinite where there is none.
-#[must_use]
 pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     let mut smallest = [f64::INFINITY; LANES];
     let Some(next) = samples.get(1..) else { return f64::INFINITY };
@@ -53,7 +48,6 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
 
 /// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often
 /// tell.
-#[must_use]
 pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     const FIRST: usize = 4096;
     let within = |samples: &[f64]| least_step(samples, least);
@@ -65,19 +59,16 @@ pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
 
 /// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where
 /// nothing changes.
-#[must_use]
 pub fn converter_step(samples: &[f64]) -> f64 {
     least_step_beyond(samples, 1e-9 * peak(samples), 0.0)
 }
 
 /// Σ x.
-#[must_use]
 pub fn sum(values: &[f64]) -> f64 {
     sum_of(values, |x| x)
 }
 
 /// Σ f(x).
-#[must_use]
 pub fn sum_of<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
     let (lanes, rest) = values.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
@@ -90,7 +81,6 @@ pub fn sum_of<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
 }
 
 /// Σ x y, as far as the shorter one goes.
-#[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (&a[..a.len().min(b.len())], &b[..b.len().min(a.len())]);
     let ((a_lanes, a_rest), (b_lanes, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
@@ -104,7 +94,6 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Smallest and largest of the finite values and `start`.
-#[must_use]
 pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
     // Whatever is compared with NaN is false: these two comparisons are one instruction each.
     let follow = |(low, high): (&mut f64, &mut f64), x: f64| {
@@ -130,7 +119,6 @@ pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
 }
 
 /// Largest finite |x|; 0 where there is none.
-#[must_use]
 pub fn peak(values: &[f64]) -> f64 {
     let (low, high) = extremes(values, 0.0);
     high.max(-low)

@@ -1,6 +1,6 @@
 //! Samples to centre and spread that a few wild values do not move.
 
-use super::reduce;
+use super::{as_count, as_f64, reduce};
 
 /// Median; NaN of an empty slice. Reorders `values`.
 pub fn median(values: &mut [f64]) -> f64 {
@@ -19,20 +19,13 @@ pub fn median(values: &mut [f64]) -> f64 {
 
 /// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996,
 /// type 7); NaN of none.
-#[must_use]
-#[allow(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "an index into a list"
-)]
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
-    let place = share * last as f64;
-    let below = (place as usize).min(last);
+    let place = share * as_f64(last);
+    let below = as_count(place).min(last);
     let (low, high) = (ascending[below], ascending[(below + 1).min(last)]);
     // Equal neighbours may be infinite.
-    if place > below as f64 { low + (place - below as f64) * (high - low) } else { low }
+    if place > as_f64(below) { low + (place - as_f64(below)) * (high - low) } else { low }
 }
 
 /// Most values that a spread is taken from.
@@ -44,20 +37,17 @@ pub fn sampled(values: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 /// How far apart the values of such a sample of `count` lie.
-#[must_use]
 pub fn stride(count: usize) -> usize {
     (count / MOST).max(1)
 }
 
 /// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974),
 /// of many values by a sample.
-#[must_use]
 pub fn spread(values: &[f64]) -> f64 {
     centre_and_spread(values).1
 }
 
 /// The median of such a sample, and [`spread`].
-#[must_use]
 pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
     let mut work: Vec<f64> = sampled(values).collect();
     let centre = median(&mut work);
@@ -68,10 +58,8 @@ pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
 }
 
 /// Mean and root mean square about it; NaN of an empty slice.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
 pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
+    let n = as_f64(values.len());
     let mean = reduce::sum(values) / n;
     (mean, (reduce::sum_of(values, |v| (v - mean).powi(2)) / n).sqrt())
 }

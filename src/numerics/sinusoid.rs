@@ -1,5 +1,6 @@
 //! Samples to the sinusoid of a known frequency in them, by least squares.
 
+use super::as_f64;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -18,13 +19,11 @@ pub struct Sinusoid {
 
 impl Sinusoid {
     /// √(a² + b²).
-    #[must_use]
     pub fn amplitude(&self) -> f64 {
         self.cosine.hypot(self.sine)
     }
 
     /// Its value a time after the middle of the samples it was fitted to.
-    #[must_use]
     pub fn at(&self, since_middle_s: f64) -> f64 {
         let (sin, cos) = (TAU * self.frequency_hz * since_middle_s).sin_cos();
         self.cosine * cos + self.sine * sin
@@ -32,15 +31,13 @@ impl Sinusoid {
 }
 
 /// The sinusoid of this frequency beside a constant and a slope; `None` below eight samples or one period.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
 pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Sinusoid> {
     let n = samples.len();
-    let length_s = n as f64 / sample_rate_hz;
+    let length_s = as_f64(n) / sample_rate_hz;
     if n < 8 || length_s * frequency_hz < 1.0 || frequency_hz >= 0.5 * sample_rate_hz {
         return None;
     }
-    let middle = (n - 1) as f64 / 2.0;
+    let middle = as_f64(n - 1) / 2.0;
     let mut matrix = nalgebra::Matrix4::zeros();
     let mut right = nalgebra::Vector4::zeros();
     let step = TAU * frequency_hz / sample_rate_hz;
@@ -49,7 +46,7 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     let mut phase = Complex::cis(-step * middle);
     let mut square = 0.0;
     for (i, x) in samples.iter().enumerate() {
-        let row = nalgebra::Vector4::new(phase.re, phase.im, 1.0, (i as f64 - middle) / n as f64);
+        let row = nalgebra::Vector4::new(phase.re, phase.im, 1.0, (as_f64(i) - middle) / as_f64(n));
         matrix.syger(1.0, &row, &row, 1.0);
         right += row * *x;
         square += x * x;
@@ -58,14 +55,13 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     matrix.fill_upper_triangle_with_lower_triangle();
     let inverse = matrix.try_inverse()?;
     let found = inverse * right;
-    let left = (square - found.dot(&right)).max(0.0) / (n - 4) as f64;
+    let left = (square - found.dot(&right)).max(0.0) / as_f64(n - 4);
     let u_amplitude = (left * (inverse[(0, 0)] + inverse[(1, 1)]) / 2.0).sqrt();
     Some(Sinusoid { frequency_hz, cosine: found[0], sine: found[1], u_amplitude })
 }
 
 /// The strongest sinusoid between two frequencies: eleven of them are tried, then eleven between the
 /// neighbours of the best.
-#[must_use]
 pub fn strongest(samples: &[f64], sample_rate_hz: f64, (low_hz, high_hz): (f64, f64)) -> Option<Sinusoid> {
     let best = |low: f64, high: f64, steps: u32| {
         let step = (high - low) / f64::from(steps);

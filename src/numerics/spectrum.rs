@@ -1,5 +1,6 @@
 //! Uniform samples to the magnitude of their Fourier integral.
 
+use super::as_f64;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -29,7 +30,6 @@ pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
 ///
 /// The unit of the magnitude is that of `samples` times seconds.
 #[must_use]
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
 pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     if samples.is_empty() {
         return (Vec::new(), Vec::new());
@@ -39,7 +39,7 @@ pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     work.resize(n, Complex::new(0.0, 0.0));
     forward(n).process(&mut work);
     let bins = n / 2 + 1;
-    let frequency_hz = (0..bins).map(|i| i as f64 * sample_rate_hz / n as f64).collect();
+    let frequency_hz = (0..bins).map(|i| as_f64(i) * sample_rate_hz / as_f64(n)).collect();
     let magnitude = work[..bins].iter().map(|c| c.norm_sqr().sqrt() / sample_rate_hz).collect();
     (frequency_hz, magnitude)
 }

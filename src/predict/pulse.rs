@@ -79,26 +79,7 @@ impl Pulse<'_> {
         };
         if time_s < duration_s { PulseEnd::Strikes(pushed, time_s) } else { PulseEnd::Leaves(pushed) }
     }
-}
 
-/// The root of `missed` near `first`; `None` where the secants do not close in on one.
-fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<f64> {
-    let (mut low, mut high) = ((first, missed(first)), (1.02 * first, missed(1.02 * first)));
-    for _ in 0..ROUNDS {
-        let slope = (high.1 - low.1) / (high.0 - low.0);
-        let next = high.0 - high.1 / slope;
-        if high.1.abs() <= CLOSE_M_S {
-            return (slope > 0.0).then_some(next);
-        }
-        if !(0.0..100.0 * first).contains(&next) {
-            return None;
-        }
-        (low, high) = (high, (next, missed(next)));
-    }
-    None
-}
-
-impl Pulse<'_> {
     /// Friction without limit stops the corner before the normal force has done anything.
     fn stopped(&self, before: &State) -> State {
         if self.friction.is_finite() {
@@ -194,6 +175,23 @@ impl Pulse<'_> {
             }
         })
     }
+}
+
+/// The root of `missed` near `first`; `None` where the secants do not close in on one.
+fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<f64> {
+    let (mut low, mut high) = ((first, missed(first)), (1.02 * first, missed(1.02 * first)));
+    for _ in 0..ROUNDS {
+        let slope = (high.1 - low.1) / (high.0 - low.0);
+        let next = high.0 - high.1 / slope;
+        if high.1.abs() <= CLOSE_M_S {
+            return (slope > 0.0).then_some(next);
+        }
+        if !(0.0..100.0 * first).contains(&next) {
+            return None;
+        }
+        (low, high) = (high, (next, missed(next)));
+    }
+    None
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Curves on grids of their own to values at any time.
 
 use crate::data::{ChannelCurve, Curves, Events, MotionCurve, STANDARD_GRAVITY_M_S2};
-use crate::numerics::{as_f64, whole};
+use crate::numerics::{as_count, as_f64};
 
 /// One quantity of a curve: its name with its unit, its values, and what makes that unit of them.
 pub(super) struct CurveSeries<'a> {
@@ -75,7 +75,7 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     if !(rows.is_finite() && rows <= 4.0 * as_f64(held) + 4.0) {
         return finest.to_vec();
     }
-    (0..whole(rows)).map(|i| finest[0] + (as_f64(i) - before) * step).collect()
+    (0..as_count(rows)).map(|i| finest[0] + (as_f64(i) - before) * step).collect()
 }
 
 /// The grid of a curve's points.
@@ -107,7 +107,7 @@ impl Grid {
             return None;
         }
         let place = place.clamp(0.0, self.last);
-        let below = whole(place);
+        let below = as_count(place);
         let weight = place - as_f64(below);
         Some(if weight < ON_GRID {
             GridPlace { below, weight: 0.0 }

@@ -195,8 +195,7 @@ pub enum ChannelFinding {
     #[error("shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what \
              ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity \
              steps mix what was before with what came after, so k and the slap-down speed are not \
-             determined; fasten the contents, or read the speed from the \
-             film", times_ms(.after_s))]
+             determined; fasten the contents, or read the speed from the film", times_ms(.after_s))]
     Struck { after_s: Vec<f64>, far: f64 },
     /// The channel answers before the first end is struck.
     #[error("answers the first impact {} before the first end is struck, which no body does: \

@@ -131,8 +131,7 @@ pub enum DropFinding {
     SecondUntold { recorded_s: f64 },
     /// Measured and predicted lie apart.
     #[error("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n \
-             = {e_n:.1}): check contact law, angle, mass properties and \
-             scales",
+             = {e_n:.1}): check contact law, angle, mass properties and scales",
         .comparison.measured,
         .comparison.measured_u95,
         .comparison.predicted,
@@ -141,8 +140,7 @@ pub enum DropFinding {
     Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
     /// What was seen otherwise lies apart from the result.
     #[error("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); \
-             check what was observed, and the cask \
-             file",
+             check what was observed, and the cask file",
         .beside.name,
         .beside.result.as_ref().map_or_else(String::new, plus_minus),
         .beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")),

@@ -19,9 +19,8 @@ pub enum McapFinding {
     )]
     BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 },
     /// Bytes that are no record.
-    #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, \
-             {}", if *.resumed { "reading went on at the next chunk of the file's index" } else { "up to the \
-                 end of the file" })]
+    #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}", if *.resumed { "reading \
+             went on at the next chunk of the file's index" } else { "up to the end of the file" })]
     Garbage { at: u64, bytes: u64, resumed: bool },
     /// Damage that is not told place by place.
     #[error("{places} more places of the file are damaged and were left out")]

@@ -21,7 +21,7 @@ pub use slip::{Cure, Slip};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::borrow::Cow;
 
 /// What was found: the check's numbers. Code, severity and sentence are made of them here alone.
@@ -43,10 +43,11 @@ pub enum FindingKind {
     Attribute(AttributeFinding),
 }
 
-/// One finding about a recording or a result.
-#[derive(Debug, Clone, PartialEq)]
+/// One finding about a recording or a result; a row of `quality` in the result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
     /// What it is, with its numbers.
+    #[serde(skip)]
     pub what: FindingKind,
     /// Which check speaks.
     pub code: IssueCode,
@@ -111,24 +112,6 @@ impl Finding {
         self.from_s = Some(from_s);
         self.to_s = Some(to_s);
         self
-    }
-}
-
-/// A row of `quality` in the result.
-#[derive(Serialize)]
-struct Row<'a> {
-    code: IssueCode,
-    severity: Severity,
-    channel: Option<&'a str>,
-    message: &'a str,
-    from_s: Option<f64>,
-    to_s: Option<f64>,
-}
-
-impl Serialize for Finding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let &Self { code, severity, ref channel, ref message, from_s, to_s, .. } = self;
-        Row { code, severity, channel: channel.as_deref(), message, from_s, to_s }.serialize(serializer)
     }
 }
 

@@ -109,11 +109,9 @@ impl Jitter {
     fn doubt_of_clock(&self) -> String {
         match self.rates_hz {
             Some((one_hz, other_hz)) => format!(
-                "; they rise at {one_hz:.6} Hz in one part and at \
-                                                 {other_hz:.6} Hz in another, which is no jitter but a clock \
-                                                 that changed its rate: look at the times; where the samples \
-                                                 were taken evenly, take the times out in a copy and state \
-                                                 sample_rate_hz"
+                "; they rise at {one_hz:.6} Hz in one part and at {other_hz:.6} Hz in another, which is no \
+                 jitter but a clock that changed its rate: look at the times; where the samples were taken \
+                 evenly, take the times out in a copy and state sample_rate_hz"
             ),
             None if self.is_late() => "; so far off is no jitter but a clock that ran at another rate for a \
                                        while, was set or began anew: look at the times"

@@ -33,8 +33,7 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
         return Err(table.wrong(
             height.span.clone(),
             format!(
-                "the section is longer than the cask: height_m {} exceeds length_m \
-                     {length_m}",
+                "the section is longer than the cask: height_m {} exceeds length_m {length_m}",
                 height.value
             ),
             format!("0 to {length_m} m"),

@@ -1,6 +1,6 @@
 //! Why a cask file cannot be used: which file, which line, what was expected there.
 
-use crate::ingest::shown::bare;
+use crate::ingest::refusal::Refusal;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
 /// What a cask file is called in a message.
@@ -9,28 +9,14 @@ pub(crate) const THE_CASK_FILE: &str = "the cask file";
 /// Why a cask file cannot be used.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum CaskFileError {
-    /// The operating system refused.
-    #[error("{path}: {kind} cannot be read: {}", bare(.refusal))]
-    #[diagnostic(help("check the name{}, and that you may read \
-                       it", if *.kind == THE_CASK_FILE { " after --cask" } else { "" }))]
-    Io {
+    /// The operating system refuses it, or it is no text file that a cask file could be.
+    #[error("{path}: {refusal}")]
+    #[diagnostic(help("{}", .refusal.remedy))]
+    Refused {
         /// The file.
         path: String,
-        /// "the cask file", or what else was expected.
-        kind: &'static str,
-        /// Its reason.
-        refusal: std::io::Error,
-    },
-    /// It is no text file that a cask file could be.
-    #[error("{path}: {problem}")]
-    #[diagnostic(help("{mend}"))]
-    NoCaskFile {
-        /// The file.
-        path: String,
-        /// What it is instead.
-        problem: String,
-        /// What to do.
-        mend: String,
+        /// What is wrong, and what to do.
+        refusal: Refusal,
     },
     /// A line of it is wrong.
     #[error(transparent)]

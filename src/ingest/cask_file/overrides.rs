@@ -102,9 +102,8 @@ mod tests {
     use super::*;
 
     const CASK: &str = "# ours\n[cask]\nmass_kg = 10.0\nlength_m = 2.0 # measured\n[drop]\nheight_m = \
-                        1\nangle_deg = 5.0\n\
-                        [[channel]]\nname = \"A1\"\nend = \"first\"\naxis = \"transverse\"\nsource = \
-                        \"a\"\nposition_m = 0.1\n";
+                        1\nangle_deg = 5.0\n[[channel]]\nname = \"A1\"\nend = \"first\"\naxis = \
+                        \"transverse\"\nsource = \"a\"\nposition_m = 0.1\n";
 
     fn with(columns: &[(&str, &str)]) -> Result<CaskFile, CaskFileError> {
         let file = tempfile::NamedTempFile::new().unwrap();

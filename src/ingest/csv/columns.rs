@@ -12,9 +12,10 @@ use std::borrow::Cow;
 /// One wanted column.
 #[derive(Debug, Clone, Default)]
 pub(super) struct HeldColumn {
-    /// All values but these are none, where they keep to a rule.
-    even: Option<Even>,
-    each: Vec<f64>,
+    /// The rule that all values keep, where they keep to one.
+    pub even: Option<Even>,
+    /// The values; none where they keep to a rule.
+    pub each: Vec<f64>,
 }
 
 impl HeldColumn {
@@ -37,16 +38,6 @@ impl HeldColumn {
     /// How many values it holds.
     pub(super) fn len(&self) -> usize {
         self.even.map_or(self.each.len(), |even| even.count)
-    }
-
-    /// The rule that all values keep.
-    pub(super) fn even(&self) -> Option<Even> {
-        self.even
-    }
-
-    /// The values, none where they keep to a rule.
-    pub(super) fn each(&self) -> &[f64] {
-        &self.each
     }
 
     /// The values, whether or not they keep to a rule.
@@ -80,7 +71,7 @@ impl HeldColumn {
 /// Keeps the wanted columns whole.
 #[derive(Debug)]
 pub(super) struct Keep<'a> {
-    wanted: &'a Wanted,
+    pub wanted: &'a Wanted,
     pub columns: Vec<HeldColumn>,
     pub stamps: Stamps,
     /// Of columns that bear out others.
@@ -90,11 +81,6 @@ pub(super) struct Keep<'a> {
 impl<'a> Keep<'a> {
     pub(super) fn new(wanted: &'a Wanted, columns: Vec<HeldColumn>) -> Self {
         Self { wanted, columns, stamps: Stamps::default(), other_stamps: Stamps::default() }
-    }
-
-    /// Whether a slot holds the times of channels, in which a word is at fault.
-    pub(super) fn is_time(&self, slot: usize) -> bool {
-        self.wanted.is_time[slot]
     }
 }
 
@@ -173,7 +159,7 @@ mod tests {
             }
             let is_odd = values != times(first, step, decimals, 300);
             let held = column(&[&values[..cut], &values[cut..]]);
-            prop_assert_eq!(held.even().is_some(), !is_odd);
+            prop_assert_eq!(held.even.is_some(), !is_odd);
             prop_assert_eq!((held.values(), held.len()), (Cow::Borrowed(&values[..]), 300));
             let mut spelled = held.clone();
             prop_assert_eq!(spelled.each_mut(), &values);
@@ -185,7 +171,7 @@ mod tests {
         let values = times(-5, 2, 5, 1000);
         let mut samples = vec![1.0; 1000];
         samples[7] = f64::NAN;
-        let even = column(&[&values]).even().expect("a rule");
+        let even = column(&[&values]).even.expect("a rule");
         for declared_hz in [None, Some(50_010.0), Some(48_000.0)] {
             let claims = Claims::of_cask(declared_hz);
             let ours = even.place(Samples::F64(samples.clone()), &claims).unwrap();
@@ -222,7 +208,7 @@ mod tests {
             assert_eq!((ours, theirs), (counts, counts));
         }
         held.scale(1e-3);
-        let even = held.even().expect("a rule");
+        let even = held.even.expect("a rule");
         let last = even.values().last().unwrap();
         assert!((even.counted().unwrap().rate - 50_000.0).abs() < 1e-6 && (last - 9.983e-3).abs() < 1e-15);
     }
@@ -232,7 +218,7 @@ mod tests {
         for values in
             [vec![], vec![1.0], vec![1.0, 1.0], vec![2.0, 1.0], vec![0.0, 1.0 / 3.0], vec![f64::NAN, 1.0]]
         {
-            assert_eq!(column(&[&values]).even(), None, "{values:?}");
+            assert_eq!(column(&[&values]).even, None, "{values:?}");
         }
     }
 }

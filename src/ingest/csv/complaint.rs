@@ -1,9 +1,9 @@
 //! What is wrong with a table's rows, columns or times, in words.
 
-use super::super::Limits;
-use super::super::clock::Refusal;
+use super::super::ReadRequest;
 use super::super::error::{self, IngestError};
 use super::super::number;
+use super::super::refusal::Refusal;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
 use super::lines::{Line, Text};
@@ -17,8 +17,7 @@ pub(super) const TIMES_REMEDY: &str =
 
 /// Rows that are refused as a whole.
 pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
-    let Refusal { problem, remedy } = refusal;
-    IngestError::Content { path: path.display().to_string(), place: "the rows".into(), problem, mend: remedy }
+    error::of_file(path, refusal.at("the rows"))
 }
 
 /// No table at all.
@@ -36,22 +35,17 @@ pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
             "export one row a sample with comma, semicolon or tab between the columns",
         )
     };
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the first 64 KiB".into(),
-        problem: problem.into(),
-        mend: mend.into(),
-    }
+    error::of_file(path, Refusal::new(problem, mend).at("the first 64 KiB"))
 }
 
 /// Times that give no base.
 pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> IngestError {
-    error::refused(path, channel, error.refusal(TIMES_REMEDY))
+    error::of_channel(path, channel, error.refusal(TIMES_REMEDY))
 }
 
+/// A row that cannot be read.
 pub(super) fn row_error(
-    path: &Path,
-    limits: Limits,
+    ReadRequest { path, limits, .. }: ReadRequest,
     (layout, wanted): (&Layout, &Wanted),
     error: RowError,
 ) -> IngestError {
@@ -63,7 +57,7 @@ pub(super) fn row_error(
             .map_or("", |column| column.header.as_str())
     };
     let (line, problem, mend) = match error {
-        RowError::Io(source) => return error::io(path, source),
+        RowError::Io(source) => return error::io(path, &source),
         RowError::TooMany => {
             return limits.refusal(path, "the samples of the columns read take", limits.samples_bytes());
         }
@@ -75,8 +69,7 @@ pub(super) fn row_error(
             format!("column {:?} holds {cell:?}, which is no time, or not written as the ones \
                      before", headed(slot)),
             "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock \
-             times (12:34:56.789); \
-             correct the cell in a copy, or name another column of times"
+             times (12:34:56.789); correct the cell in a copy, or name another column of times"
                 .to_owned(),
         ),
         RowError::Word { line, slot, cell } if number::is_grouped(&cell, Some(layout.dialect.decimal)) => (
@@ -101,5 +94,5 @@ pub(super) fn row_error(
                 .to_owned(),
         ),
     };
-    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
+    error::of_file(path, Refusal::new(problem, mend).at(&format!("line {line}")))
 }

@@ -14,19 +14,9 @@ pub(super) struct Dialect {
     pub decimal: u8,
 }
 
-/// Likeliest first where a file fits several.
-const DIALECTS: [Dialect; 10] = [
-    Dialect::of(b';', b','),
-    Dialect::of(b';', b'.'),
-    Dialect::of(b'\t', b'.'),
-    Dialect::of(b'\t', b','),
-    Dialect::of(b',', b'.'),
-    Dialect::of(b',', b','),
-    Dialect::of(b'|', b'.'),
-    Dialect::of(b'|', b','),
-    Dialect::of(b' ', b'.'),
-    Dialect::of(b' ', b','),
-];
+/// Delimiters, each with both decimal marks, likeliest first where a file fits several.
+const DIALECTS: [(u8, [u8; 2]); 5] =
+    [(b';', *b",."), (b'\t', *b".,"), (b',', *b".,"), (b'|', *b".,"), (b' ', *b".,")];
 
 /// So many of the last lines of the head decide on the dialect.
 const JUDGED_LINES: usize = 200;
@@ -44,17 +34,14 @@ pub(super) struct Judged {
 }
 
 impl Dialect {
-    const fn of(delimiter: u8, decimal: u8) -> Self {
-        Self { delimiter: Delimiter(delimiter), decimal }
-    }
-
     /// The dialect under which the last of `lines` hold most numbers and fewest words, with what they say
     /// under it.
     pub(super) fn likeliest(lines: &[Line]) -> Option<(Self, Judged)> {
         let filled = lines.iter().rev().filter(|line| !line.text.trim().is_empty());
         let lines: Vec<&Line> = filled.take(JUDGED_LINES).collect();
         let mut best: Option<(Self, Judged)> = None;
-        for dialect in DIALECTS {
+        for (delimiter, decimal) in DIALECTS.iter().flat_map(|(own, marks)| marks.map(|mark| (*own, mark))) {
+            let dialect = Self { delimiter: Delimiter(delimiter), decimal };
             let Some(judged) = dialect.judge(&lines) else { continue };
             if best.as_ref().is_none_or(|(_, held)| judged.score > held.score) {
                 best = Some((dialect, judged));

@@ -81,9 +81,7 @@ impl Even {
     /// # Errors
     /// As [`time_base::ChannelTimes::place`].
     pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
-        if samples.len() != self.count {
-            return Err(TimeBaseError::Lengths { times: self.count, samples: samples.len() });
-        }
+        time_base::check_lengths(self.count, samples.len())?;
         let taken = claims.weigh(Some(&clock::of_times(self.rate(), 0.0)))?;
         time_base::at_taken(self.at(0), taken, samples)
     }

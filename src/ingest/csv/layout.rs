@@ -6,7 +6,6 @@ use super::lines::Text;
 use super::preamble::{self, Preamble};
 use super::sensors::{self, Sensors};
 use super::{stamp, time_column};
-use crate::ingest::times::Scale;
 use crate::ingest::{number, vocabulary};
 
 /// How a text is laid out.
@@ -26,11 +25,8 @@ pub(super) struct Layout {
     pub data_line: u64,
     /// Where the first row begins in [`Text::head`].
     pub data_offset: usize,
-    /// The column of times, where one was found.
-    pub time_column: Option<usize>,
-    nanoseconds: Option<usize>,
-    /// Columns that are certain to hold times, that one and others.
-    sure_times: Vec<usize>,
+    /// The columns of times.
+    pub times: time_column::Found,
     /// Columns that name the sensor of each row.
     pub sensors: Vec<Sensors>,
     /// What else is stated above the rows.
@@ -87,9 +83,7 @@ impl Layout {
             preamble_lines: above as u64,
             data_line: first as u64 + 1,
             data_offset: lines[first].offset,
-            time_column: times.taken,
-            nanoseconds: times.nanoseconds,
-            sure_times: times.sure,
+            times,
             sensors,
             preamble,
             mean_row_bytes: (row_bytes / rows.len()).max(2),
@@ -99,7 +93,7 @@ impl Layout {
 
     /// The column of times of a channel: where several have the header of times, the nearest on its left.
     pub(super) fn time_of(&self, column: usize) -> Option<usize> {
-        let found = self.time_column.filter(|&found| found != column)?;
+        let found = self.times.taken.filter(|&found| found != column)?;
         let is_alike =
             |c: &usize| self.columns[*c].is_numeric && self.columns[*c].header == self.columns[found].header;
         Some((0..column).rev().find(is_alike).unwrap_or(found))
@@ -107,12 +101,12 @@ impl Layout {
 
     /// Whether a column is certain to hold times.
     pub(super) fn holds_times(&self, column: usize) -> bool {
-        self.sure_times.contains(&column) || self.nanoseconds == Some(column)
+        self.times.sure.contains(&column) || self.times.nanoseconds == Some(column)
     }
 
     /// The column to be added to that of times, which holds whole seconds.
     pub(super) fn nanoseconds(&self, time: usize) -> Option<usize> {
-        self.nanoseconds.filter(|_| self.time_column == Some(time))
+        self.times.nanoseconds.filter(|_| self.times.taken == Some(time))
     }
 
     /// The other columns of times, which have to bear out those of column `time`; each with whether other
@@ -121,8 +115,8 @@ impl Layout {
     /// One of the same header with columns between is the clock of those.
     pub(super) fn witnesses(&self, time: usize) -> Vec<(usize, bool)> {
         let is_apart =
-            |&c: &usize| (c.min(time)..c.max(time)).any(|i| i != time && !self.sure_times.contains(&i));
-        let others = self.sure_times.iter().filter(|&&c| c != time).map(|c| (*c, is_apart(c)));
+            |&c: &usize| (c.min(time)..c.max(time)).any(|i| i != time && !self.times.sure.contains(&i));
+        let others = self.times.sure.iter().filter(|&&c| c != time).map(|c| (*c, is_apart(c)));
         others
             .filter(|&(c, is_apart)| !is_apart || self.columns[c].header != self.columns[time].header)
             .collect()
@@ -162,11 +156,6 @@ impl Layout {
     /// Every header.
     pub(super) fn names(&self) -> Vec<String> {
         self.columns.iter().map(|column| column.header.clone()).collect()
-    }
-
-    /// What the numbers of a column of times count.
-    pub(super) fn time_scale(&self, column: usize) -> Scale {
-        time_column::scale(&self.columns[column])
     }
 
     /// About how many rows a file of so many bytes holds, a little more.

@@ -30,7 +30,7 @@ pub(super) struct Text {
 impl Text {
     /// The text at `path`.
     pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
-        let io = |source| error::io(path, source);
+        let io = |source| error::io(path, &source);
         let mut file = File::open(path).map_err(io)?;
         let bytes = file.metadata().map_err(io)?.len();
         let mut head = Vec::new();

@@ -1,7 +1,8 @@
 //! Delimited text to the list of its columns, on the clock that reading one of them would take.
 
-use super::super::clock::{Claims, Refusal};
+use super::super::clock::Claims;
 use super::super::error::IngestError;
+use super::super::refusal::Refusal;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
 use super::complaint::{self, no_table, row_error};
@@ -13,13 +14,13 @@ use super::rows::{self, RowsPart, Sink};
 use super::sensors::{self, Filled};
 use super::table::Table;
 use super::wanted::Wanted;
-use super::{Limits, Progress};
 use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
+use crate::ingest::ReadRequest;
 use crate::ingest::time_base::TimeBaseError;
+use crate::numerics::as_f64;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// What is known of a column, or of its rows of one sensor, after one pass.
 #[derive(Debug, Clone, Default)]
@@ -78,7 +79,7 @@ impl Sink for Survey<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         let kept = self.slots.iter().position(|&kept| kept == slot);
         let value = kept.and_then(|kept| self.keep.word(kept, cell));
-        let is_time = kept.is_some_and(|kept| self.keep.is_time(kept));
+        let is_time = kept.is_some_and(|kept| self.keep.wanted.is_time[kept]);
         if !is_time && value.is_none_or(f64::is_nan) {
             let range = &mut self.ranges[slot][0];
             range.words += 1;
@@ -115,19 +116,16 @@ impl Sink for Survey<'_> {
     }
 }
 
-/// Lists the columns of the text at `path`.
+/// Lists the columns of a text.
 ///
 /// # Errors
 /// A file that cannot be read or holds no rows of numbers.
-pub(in super::super) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
+pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let ReadRequest { path, limits, .. } = request;
     let text = Text::open(path, limits)?;
     let (bytes, encoding) = (text.bytes, text.encoding);
     let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
-    let time_column = layout.time_column;
+    let time_column = layout.times.taken;
     // Other columns of times are none's: a pair of columns may end before others.
     let is_timed = |column: usize| !layout.holds_times(column);
     let time_of =
@@ -138,13 +136,13 @@ pub(in super::super) fn list(
     let plans = [plan(&layout)];
     let kept = Wanted::of(&plans, &layout);
     let mut survey = Survey::of(&layout, &all, &kept);
-    let ending = rows::read(text, &layout, &all, &mut survey, (limits, progress))
-        .map_err(|error| row_error(path, limits, (&layout, &all), error))?;
+    let ending = rows::read(text, &layout, &all, &mut survey, request)
+        .map_err(|error| row_error(request, (&layout, &all), error))?;
     let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };
-    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|Refusal { problem, remedy }| {
-        issues.push(ClockFinding::Refused(format!("{problem}: {remedy}")).into());
+    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|refusal| {
+        issues.push(ClockFinding::Refused(refusal.beside("")).into());
         ListedClock::default()
     });
     issues.extend(layout.preamble.of_rows(rows, clock.samples));
@@ -184,7 +182,7 @@ pub(in super::super) fn list(
 /// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the
 /// times that were found.
 fn plan(layout: &Layout) -> ColumnPlan {
-    let time_column = layout.time_column;
+    let time_column = layout.times.taken;
     let sensors = layout.sensors.first();
     let is_taken =
         |column: usize| layout.holds_times(column) || sensors.is_some_and(|it| it.column == column);
@@ -213,7 +211,6 @@ struct ListedClock {
 
 impl ListedClock {
     /// As reading takes it; what speaks against it goes to `issues`.
-    #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
     fn of(mut table: Table, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
         let plan = &table.plans[0];
         table.drop_blank()?;
@@ -245,7 +242,7 @@ impl ListedClock {
             to_s: issue.to_s.map(|t| t - first_s),
             ..issue
         }));
-        let of_rate = count.saturating_sub(1) as f64 / uniform.sample_rate_hz;
+        let of_rate = as_f64(count.saturating_sub(1)) / uniform.sample_rate_hz;
         Ok(Self {
             sample_rate_hz: Some(uniform.sample_rate_hz),
             start_s: Some(0.0),
@@ -260,7 +257,6 @@ impl ListedClock {
 
 /// A column of `ranges`, its rows of one sensor; where those of other sensors or topics lie between, on the
 /// clock of its own.
-#[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
 fn listed(
     column: &TableColumn,
     ranges: &[Range],
@@ -274,7 +270,7 @@ fn listed(
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
     let (first_s, last_s) = (time_s(own.rows.first), time_s(own.rows.last));
     let duration_s = first_s.zip(last_s).map(|(first_s, last_s)| last_s - first_s);
-    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| (own.rows.count - 1) as f64 / span_s);
+    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| as_f64(own.rows.count - 1) / span_s);
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {
@@ -320,7 +316,8 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         format!("none: columns count 1, 2, …{unfit}")
     };
     let time = layout
-        .time_column
+        .times
+        .taken
         .and_then(|index| layout.columns.get(index))
         .map_or_else(|| none_found(layout), |column| column.header.clone());
     BTreeMap::from([

@@ -1,7 +1,8 @@
 //! A channel of the cask file to what it takes from the table.
 
-use super::super::clock::{Claims, Refusal};
-use super::super::error::{self, IngestError};
+use super::super::clock::Claims;
+use super::super::error;
+use super::super::refusal::Refusal;
 use super::super::times::Scale;
 use super::header::TableColumn;
 use super::layout::Layout;
@@ -22,37 +23,31 @@ pub(super) struct ColumnPlan {
 }
 
 impl ColumnPlan {
-    /// What `spec` asks for, with the times that the cask file names for all channels.
+    /// What `spec` asks for, with the `time` that the cask file names for it.
     pub(super) fn of(
         path: &Path,
         spec: &ChannelSpec,
         time: Option<&str>,
         layout: &Layout,
-    ) -> Result<Self, IngestError> {
+    ) -> Result<Self, Refusal> {
         let Source::Path(source) = &spec.source else {
-            return Err(error::source(
-                path,
-                &spec.name,
+            return Err(Refusal::new(
                 "source gives a topic and a field, but this recording is a table",
                 "write the column's header: source = \"A1\"",
             ));
         };
-        let column = find(path, spec, source, layout)?;
-        let named = spec.time.as_deref().or(time);
-        let time_column = match named {
-            Some(name) => Some(find(path, spec, name, layout)?),
+        let column = find(path, source, layout)?;
+        let time_column = match time {
+            Some(name) => Some(find(path, name, layout)?),
             None => layout.time_of(column),
         };
-        let of_rows =
-            |rows: &RowsOf| Ok::<_, IngestError>((find(path, spec, &rows.column, layout)?, rows.is.clone()));
+        let of_rows = |rows: &RowsOf| Ok((find(path, &rows.column, layout)?, rows.is.clone()));
         let rows = spec.rows.as_ref().map(of_rows).transpose()?;
         let taken = [Some(column), time_column].into_iter().flatten().collect::<Vec<_>>();
         let own = rows.as_ref().map(|(column, is)| (*column, is.as_str()));
         if let Some((header, named)) = layout.mixed(own, &taken) {
             let choice = RowsOf { column: header.to_owned(), is: named[0].to_owned() };
-            return Err(error::source(
-                path,
-                &spec.name,
+            return Err(Refusal::new(
                 format!("its rows are of several sensors: the column {header:?} holds {}", listed(&named)),
                 match own {
                     None => format!("take those of one: {choice}"),
@@ -62,13 +57,11 @@ impl ColumnPlan {
         }
         let claims = Claims {
             cask_hz: spec.sample_rate_hz,
-            are_times_named: named.is_some(),
+            are_times_named: time.is_some(),
             stated: layout.preamble.statements(column),
         };
         if time_column.is_none() && claims.is_empty() {
-            return Err(error::source(
-                path,
-                &spec.name,
+            return Err(Refusal::new(
                 match no_times(layout) {
                     Some(why) => format!("no column of times was found: {why}"),
                     None => format!("no column of times was found among {}", layout.names().join(", ")),
@@ -86,13 +79,11 @@ impl ColumnPlan {
 }
 
 /// The column with that header, with or without its unit, or with that number where there are no headers.
-fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Result<usize, IngestError> {
+fn find(path: &Path, wanted: &str, layout: &Layout) -> Result<usize, Refusal> {
     let found = layout.find(wanted);
     match found.as_slice() {
         [one] => Ok(*one),
-        [] => Err(error::source(
-            path,
-            &spec.name,
+        [] => Err(Refusal::new(
             if layout.header_line > 0 {
                 format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
             } else {
@@ -105,9 +96,7 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
             },
             error::near_names(path, wanted, "column", &layout.names()),
         )),
-        several => Err(error::source(
-            path,
-            &spec.name,
+        several => Err(Refusal::new(
             format!("{} columns are headed {wanted:?}", several.len()),
             "rename all but one of them in a copy of the recording",
         )),
@@ -133,7 +122,7 @@ fn listed(words: &[&str]) -> String {
 /// That no column holds times, with the one that looks most like it.
 pub(super) fn no_times(layout: &Layout) -> Option<String> {
     let is_like = |(at, column): &(usize, &TableColumn)| {
-        time_column::is_headed(column) && layout.time_column != Some(*at)
+        time_column::is_headed(column) && layout.times.taken != Some(*at)
     };
     let (_, column) = layout.columns.iter().enumerate().find(is_like)?;
     let TableColumn { header, example, .. } = column;

@@ -1,6 +1,6 @@
 //! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
 
-use super::super::{Limits, Progress};
+use super::super::{Progress, ReadRequest};
 use super::cells::{Delimiter, bare, skip};
 use super::layout::Layout;
 use super::lines::{self, Text};
@@ -62,10 +62,10 @@ pub(super) fn read(
     layout: &Layout,
     wanted: &Wanted,
     sink: &mut impl Sink,
-    (limits, progress): (Limits, Progress),
+    request: ReadRequest,
 ) -> Result<Option<TableFinding>, RowError> {
-    let sizes = Sizes::of(limits, text.bytes);
-    read_by(text, (layout, wanted), sink, sizes, progress)
+    let sizes = Sizes::of(request.limits, text.bytes);
+    read_by(text, (layout, wanted), sink, sizes, request.progress)
 }
 
 /// The same by pieces and batches of any size; the sizes leave the rows, the error and the ending as they

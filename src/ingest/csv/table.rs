@@ -6,9 +6,11 @@ use super::layout::Layout;
 use super::plan::{self, ColumnPlan};
 use super::sensors;
 use super::stamp::Stamps;
+use super::time_column;
 use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
-use crate::ingest::clock::{Clock, Refusal};
+use crate::ingest::clock::Clock;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use rayon::prelude::*;
@@ -74,18 +76,17 @@ impl Table<'_> {
         if !self.stamps.are_in(self.wanted.slot(time)) {
             let mut users = self.plans.iter().filter(|plan| is_user(plan));
             let stated_hz = users.find_map(|plan| plan.claims.cask_hz);
-            let scale = self.layout.time_scale(time);
+            let scale = time_column::scale(&self.layout.columns[time]);
             let unit_s =
                 times::seconds_a_unit(scale, Carrier::Column(header), || column.counted(), stated_hz);
             column.scale(unit_s.map_err(refused)?);
         }
         // Each of several sensors may have a clock of its own.
-        let fall = begins_anew(column.each()).filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
+        let fall = begins_anew(&column.each).filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
         fall.map_or(Ok(()), |row| {
             let problem = format!(
                 "the times in column {header:?} fall back to where they began at line {}, as below rows of \
-                 extremes (minimum, maximum) or at \
-                 the beginning of another record",
+                 extremes (minimum, maximum) or at the beginning of another record",
                 self.layout.data_line + row as u64
             );
             Err(refused(Refusal::new(problem, "delete the rows above that line in a copy")))
@@ -98,7 +99,7 @@ impl Table<'_> {
         let [own_s, others] = [time, other].map(|column| self.columns[self.wanted.slot(column)].values());
         let slot = self.wanted.slot(other);
         let is_in_s = self.wanted.is_time[slot] || self.layout.columns[other].is_stamped;
-        let scale = if is_in_s { Scale::Known(1.0) } else { self.layout.time_scale(other) };
+        let scale = if is_in_s { Scale::Known(1.0) } else { time_column::scale(&self.layout.columns[other]) };
         let both = || own_s.iter().zip(&*others).filter(|(own, other)| own.is_finite() && other.is_finite());
         let Some((first, last)) = both().next().zip(both().next_back()) else { return Ok(None) };
         let Some(unit_s) = scale.beside(last.0 - first.0, &others) else { return Ok(None) };
@@ -116,7 +117,7 @@ impl Table<'_> {
     pub(super) fn counter_jumps(&self) -> Option<Finding> {
         let column =
             self.layout.counter().filter(|_| self.plans.iter().all(|plan| plan.time_column.is_none()))?;
-        let counts = self.columns[self.wanted.slot(column)].each();
+        let counts = &self.columns[self.wanted.slot(column)].each;
         let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
         // One that begins anew, or counts something else, tells nothing.
         let is_counter = steps().all(|step| step >= 1.0 && step.fract().abs() < f64::EPSILON);
@@ -141,7 +142,7 @@ impl Table<'_> {
         if self.wanted.is_time.contains(&true) {
             return Ok(());
         }
-        let is_row = |row: &usize| self.columns.iter().any(|column| !column.each()[*row].is_nan());
+        let is_row = |row: &usize| self.columns.iter().any(|column| !column.each[*row].is_nan());
         let all = 0..self.columns.first().map_or(0, HeldColumn::len);
         let rows = all.rev().find(is_row).map_or(0, |last| last + 1);
         let blank = rows - (0..rows).filter(is_row).count();
@@ -172,7 +173,7 @@ impl Table<'_> {
 
     fn rows_of(&self, plan: &ColumnPlan) -> Result<Option<Vec<bool>>, Refusal> {
         let held = |column: usize| &self.columns[self.wanted.slot(column)];
-        let has_none = |column: usize| held(column).each().iter().filter(|value| value.is_nan()).count() > 0;
+        let has_none = |column: usize| held(column).each.iter().filter(|value| value.is_nan()).count() > 0;
         let lacks_times = plan.time_column.is_some_and(has_none);
         let lacks_values = has_none(plan.column) && plan.time_column != Some(plan.column);
         if plan.rows.is_none() && !lacks_times && !lacks_values {
@@ -234,7 +235,7 @@ impl Table<'_> {
 }
 
 fn base(column: &HeldColumn) -> Base<'_> {
-    column.even().map_or_else(|| Base::Each(ChannelTimes::new(column.each())), Base::Even)
+    column.even.map_or_else(|| Base::Each(ChannelTimes::new(&column.each)), Base::Even)
 }
 
 fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, TimeBaseError> {

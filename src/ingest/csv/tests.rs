@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode, RowsOf};
+use crate::ingest::{Limits, ReadRequest};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
@@ -18,7 +19,7 @@ pub(super) fn read_bytes(content: &[u8], cask_file: &CaskFile) -> Result<RawReco
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("r.csv");
     std::fs::write(&path, content).unwrap();
-    read(&path, cask_file, Limits::default(), &|_| {})
+    read(ReadRequest::silent(&path, Limits::default()), cask_file)
 }
 
 pub(super) fn values(recording: &RawRecording, channel: usize) -> Vec<f64> {
@@ -177,7 +178,7 @@ fn a_table_is_listed() {
         "Lauf 3\nZeit [ms];A1 [g];Notiz;leer\n0;1,5;ok;\n1;-2,5;ok;\n3;7;;\n4;1;;\n5;1;;\n",
     )
     .unwrap();
-    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&path, Limits::default())).unwrap();
     assert_eq!(
         (listing.counts["rows"], listing.counts["columns"], listing.counts["preamble_lines"]),
         (5, 4, 1)
@@ -384,7 +385,7 @@ fn a_long_table_is_listed_by_sensor() {
         format!("{},left,{i}\n{right}", f64::from(i) / 1e3)
     };
     std::fs::write(&path, table("t,Sensor,A1\n", 61, row)).unwrap();
-    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&path, Limits::default())).unwrap();
     let told: Vec<_> = listing.channels[1..]
         .iter()
         .map(|it| (it.rows.as_ref().unwrap().is.as_str(), it.samples, it.range))

@@ -6,7 +6,7 @@ use super::column::DatasetColumn;
 use super::names::{self, AttributeRole};
 use super::starts::{self, start_s};
 use crate::data::{AttributeFinding, Finding, Samples, acceleration_unit_m_s2};
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::Meaning;
 
@@ -59,8 +59,7 @@ impl Attributes {
             return Err(Refusal::new(
                 format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
                 "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + \
-                 offset; scale = 1 where the numbers \
-                 are converted already",
+                 offset; scale = 1 where the numbers are converted already",
             ));
         }
         Ok(attributes)
@@ -102,8 +101,8 @@ impl Attributes {
         match all.nearest(units.collect(), |near, far| !are_other_units(near, far), |_| true) {
             Ok(unit) => all.unit = unit,
             Err(two) => {
-                let remedy = "write `unit` into this channel of the cask file".into();
-                all.two_units = Some(Refusal { remedy, ..two });
+                let remedy = "write `unit` into this channel of the cask file";
+                all.two_units = Some(Refusal::new(two.problem, remedy));
             }
         }
         if !column.is_field() {

@@ -1,15 +1,15 @@
 //! A source to a channel as it is taken: its column, what is said of it, its times, its samples on one base.
-//! Reading and listing share it.
+//! ReadRequest and listing share it.
 
 use super::attributes::Attributes;
 use super::clocks::{self, Clocks};
 use super::column::DatasetColumn;
-use super::fault::Fault;
 use super::find;
 use super::sensors::RecordSensors;
 use super::starts::{LATEST_S, Start};
 use crate::data::{RowsOf, Samples};
 use crate::ingest::clock::Claims;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
 
 /// A channel before its samples are read.
@@ -44,9 +44,8 @@ impl DatasetChannel {
         cask_hz: Option<f64>,
         time: Option<&str>,
         clocks: &mut Clocks,
-    ) -> Result<Self, Fault> {
-        let mut attributes =
-            Attributes::of(&column).map_err(|refusal| Fault::from(refusal).at(&column.source))?;
+    ) -> Result<Self, Refusal> {
+        let mut attributes = Attributes::of(&column).map_err(|refusal| refusal.at(&column.source))?;
         if let Some(since_s) = &mut attributes.start.since_s {
             *since_s -= *clocks.zero_s.get_or_insert(*since_s);
         }
@@ -69,7 +68,7 @@ impl DatasetChannel {
         &mut self,
         picked: Option<&RowsOf>,
         mut may_read: impl FnMut(&DatasetColumn) -> bool,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Refusal> {
         let named = picked.map(|picked| named_beside(&self.column, &picked.column)).transpose()?;
         let beside = named.map_or_else(|| clocks::sensors_beside(&self.column), |named| vec![named]);
         let mut beside = beside.iter().filter(|ids| ids.length == self.column.length && may_read(ids));
@@ -84,7 +83,7 @@ impl DatasetChannel {
     ///
     /// # Errors
     /// They cannot be read.
-    pub(super) fn samples(&self) -> Result<Samples, Fault> {
+    pub(super) fn samples(&self) -> Result<Samples, Refusal> {
         let samples = self.attributes.scaled(self.column.samples()?);
         Ok(match &self.rows {
             Some(rows) => samples.picked(rows),
@@ -106,8 +105,8 @@ impl DatasetChannel {
         &self,
         samples: Samples,
         mut may_read: impl FnMut(&DatasetColumn) -> bool,
-    ) -> Result<Based, Fault> {
-        let at = |fault: Fault| fault.at(&self.column.source);
+    ) -> Result<Based, Refusal> {
+        let at = |fault: Refusal| fault.at(&self.column.source);
         // A rate that is stated tells the unit of times that state none.
         let stated_hz = self.claims.cask_hz.or(self.claims.stated.first().map(|stated| stated.rate_hz));
         let (mut others, mut unfit) = (self.times.iter(), None);
@@ -140,20 +139,20 @@ impl DatasetChannel {
             let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
             for other in others.filter(|other| self.rows.is_none() && may_read(other)) {
                 let told = clocks::witness((time, &times_s), other, is_decided);
-                uniform.issues.extend(told.map_err(|refusal| at(refusal.into()))?);
+                uniform.issues.extend(told.map_err(at)?);
             }
             return Ok(Based { uniform, span_s: Some(clocks::span_s(&times_s)), start });
         }
         self.by_rate(samples, unfit)
     }
 
-    fn by_rate(&self, samples: Samples, unfit: Option<String>) -> Result<Based, Fault> {
+    fn by_rate(&self, samples: Samples, unfit: Option<String>) -> Result<Based, Refusal> {
         let Attributes { no_rate, start, .. } = &self.attributes;
         let unclear = no_rate.clone().filter(|_| self.claims.cask_hz.is_none());
         let none = || unfit.unwrap_or_else(|| clocks::why_none(&self.column));
         let nothing = || format!("no attribute sample_rate_hz, and {}", none());
         let placed = match unclear.or_else(|| self.claims.is_empty().then(nothing)) {
-            Some(why) => Err(Fault::new(
+            Some(why) => Err(Refusal::new(
                 format!("nothing says when its samples were taken: {why}"),
                 "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"",
             )),
@@ -164,13 +163,13 @@ impl DatasetChannel {
     }
 }
 
-fn refused(error: TimeBaseError) -> Fault {
-    error.refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz").into()
+fn refused(error: TimeBaseError) -> Refusal {
+    error.refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz")
 }
 
 /// What a cask file names; a bare name is looked for beside the samples first, in their own records before
 /// all.
-fn named_beside(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Fault> {
+fn named_beside(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Refusal> {
     let records = column.is_field().then(|| format!("{}.{name}", column.path));
     let mut beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
     let found = beside.find_map(|source| find::find(&column.file, &source).ok()?);

@@ -3,10 +3,10 @@
 use super::answer::{Object, decoded};
 use super::attributes::Attributes;
 use super::column::DatasetColumn;
-use super::fault::Fault;
 use super::{find, names};
 use crate::data::{Finding, Samples};
-use crate::ingest::clock::{Clock, Refusal};
+use crate::ingest::clock::Clock;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::times::{Carrier, Counted, Scale, seconds_a_unit};
 
 /// Names that go before others.
@@ -92,8 +92,8 @@ fn sources(place: &str, column: &DatasetColumn, is_named: fn(&str) -> bool) -> V
 }
 
 /// The numbers of a column of times, with its own scale and offset, and what a unit of them is.
-pub(super) fn counted(times: &DatasetColumn) -> Result<(Vec<f64>, Scale), Fault> {
-    let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source))?;
+pub(super) fn counted(times: &DatasetColumn) -> Result<(Vec<f64>, Scale), Refusal> {
+    let own = Attributes::own(times).map_err(|refusal| refusal.at(&times.source))?;
     let numbers = own.scaled(Samples::F64(times.samples()?.into_f64())).into_f64();
     Ok((numbers, Scale::of(&times.bare_name(), own.unit.as_deref())))
 }
@@ -117,7 +117,7 @@ pub(super) fn seconds(
     times: &DatasetColumn,
     (numbers, scale): (Vec<f64>, Scale),
     stated_hz: Option<f64>,
-) -> Result<Vec<f64>, Fault> {
+) -> Result<Vec<f64>, Refusal> {
     let source = &times.source;
     let carrier = if times.is_field() { Carrier::Field(source) } else { Carrier::Dataset(source) };
     let unit_s = seconds_a_unit(scale, carrier, || Counted::of(&numbers), stated_hz)?;

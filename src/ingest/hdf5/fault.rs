@@ -1,20 +1,9 @@
 //! The HDF5 library's error stacks to one sentence each that a person can act on.
 
-use super::super::error::IngestError;
+use super::super::error::{self, IngestError};
 use super::answer::{Bytes, decoded};
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use std::path::Path;
-
-/// What is wrong with a dataset, and what to do.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{place}{problem}")]
-pub(super) struct Fault {
-    /// What it is about with what parts it from the problem, "/a " or "/a: "; empty where that is said
-    /// elsewhere.
-    place: String,
-    pub problem: String,
-    pub remedy: String,
-}
 
 /// What makes a file that needs more than is built in one that does not.
 pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
@@ -40,60 +29,17 @@ const MEANINGS: [(&str, &str, &str); 8] = [
      "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"),
 ];
 
-impl Fault {
-    pub(super) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { place: String::new(), problem: problem.into(), remedy: remedy.into() }
-    }
-
-    /// What `name` is or has: "/a" and "is empty".
-    pub(super) fn of(name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { place: format!("{name} "), ..Self::new(problem, remedy) }
-    }
-
-    /// The same, said of `name`, unless it says itself what it is about.
-    pub(super) fn at(self, name: &str) -> Self {
-        if self.place.is_empty() { Self { place: format!("{name}: "), ..self } } else { self }
-    }
-
-    /// What a listing says of what it is about: the problem, and the command that cures it where there is
-    /// one.
-    pub(super) fn listed(self) -> String {
-        if self.remedy.contains("h5repack") {
-            format!("{}: {}", self.problem, self.remedy)
-        } else {
-            self.problem
-        }
-    }
-
-    /// The problem alone where it is one of `name`, else with what it is one of.
-    pub(super) fn beside(&self, name: &str) -> String {
-        let is_own = self.place.trim_end_matches([':', ' ']) == name;
-        if is_own { self.problem.clone() } else { self.to_string() }
-    }
-}
-
-impl From<Refusal> for Fault {
-    fn from(Refusal { problem, remedy }: Refusal) -> Self {
-        Self::new(problem, remedy)
-    }
-}
-
 /// A fault of the whole file.
-pub(super) fn of_file(path: &Path, fault: Fault) -> IngestError {
+pub(super) fn of_file(path: &Path, fault: Refusal) -> IngestError {
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: format!("HDF5 file of {size} bytes"),
-        problem: fault.problem,
-        mend: fault.remedy,
-    }
+    error::of_file(path, fault.at(&format!("HDF5 file of {size} bytes")))
 }
 
 /// What the library's words mean, outermost first.
-pub(super) fn of_words(words: &[Bytes]) -> Fault {
+pub(super) fn of_words(words: &[Bytes]) -> Refusal {
     meaning(words).unwrap_or_else(|| {
         let last = texts(words).pop().unwrap_or_else(|| "the library gives no reason".into());
-        Fault::new(
+        Refusal::new(
             format!("it cannot be read: {last}"),
             "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again",
         )
@@ -101,7 +47,7 @@ pub(super) fn of_words(words: &[Bytes]) -> Fault {
 }
 
 /// The same where it is known.
-pub(super) fn meaning(words: &[Bytes]) -> Option<Fault> {
+pub(super) fn meaning(words: &[Bytes]) -> Option<Refusal> {
     let words = texts(words);
     let all = words.join(": ").to_lowercase();
     let (part, problem, remedy) = MEANINGS.iter().find(|(part, ..)| all.contains(part))?;
@@ -109,7 +55,7 @@ pub(super) fn meaning(words: &[Bytes]) -> Option<Fault> {
     let detail = words.iter().find(|word| word.to_lowercase().contains(part));
     let sizes = detail.and_then(|detail| detail.split_once("file: "));
     let sizes = sizes.map_or(String::new(), |(_, sizes)| format!(" ({sizes})"));
-    Some(Fault::new(format!("{problem}{sizes}"), *remedy))
+    Some(Refusal::new(format!("{problem}{sizes}"), *remedy))
 }
 
 fn texts(words: &[Bytes]) -> Vec<String> {

@@ -2,9 +2,10 @@
 
 use super::answer::{Dataset, Filter, NumberType, Object, RecordField, Storage, decoded};
 use super::column::{DatasetColumn, Place};
-use super::fault::{self, Fault, REPACK};
+use super::fault::{self, REPACK};
 use super::room::File;
 use crate::ingest::error;
+use crate::ingest::refusal::Refusal;
 use std::rc::Rc;
 
 /// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was
@@ -27,7 +28,7 @@ fn places(source: &str) -> impl Iterator<Item = &str> {
 ///
 /// # Errors
 /// What stands there is no channel of numbers.
-pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<DatasetColumn>, Fault> {
+pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<DatasetColumn>, Refusal> {
     let source = format!("/{}", source.trim().trim_start_matches('/'));
     let mut other = Ok(None);
     for path in places(&source) {
@@ -44,7 +45,7 @@ pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<DatasetColumn
 }
 
 /// Of the channels of a dataset the one that `source` names; one that is alone may be counted or not.
-fn named(source: &str, mut channels: Vec<DatasetColumn>) -> Result<DatasetColumn, Fault> {
+fn named(source: &str, mut channels: Vec<DatasetColumn>) -> Result<DatasetColumn, Refusal> {
     /// More names no longer fit a message.
     const HANDFUL: usize = 12;
     let is_meant = |column: &DatasetColumn| {
@@ -58,14 +59,14 @@ fn named(source: &str, mut channels: Vec<DatasetColumn>) -> Result<DatasetColumn
     let more = if channels.len() > HANDFUL { " …" } else { "" };
     let (path, stored) = (&channels[0].path, channels[0].dataset.described());
     let problem = format!("{source:?} is none of the {} channel(s) in {path} ({stored})", channels.len());
-    Err(Fault::new(problem, format!("name one: {}{more}", names.join(", "))))
+    Err(Refusal::new(problem, format!("name one: {}{more}", names.join(", "))))
 }
 
 /// The channel that `source` names.
 ///
 /// # Errors
 /// There is none; where nothing stands there, with the sources that are most like it.
-pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<DatasetColumn, Fault> {
+pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<DatasetColumn, Refusal> {
     find(file, source)?.ok_or_else(|| {
         let objects = file.walk();
         let of_dataset = |(path, object): &(String, Rc<Object>)| match &**object {
@@ -75,21 +76,21 @@ pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<DatasetColumn, Fau
         let all: Vec<String> =
             objects.iter().filter_map(of_dataset).flatten().map(|column| column.source).collect();
         let remedy = error::near_names(&file.path, source, "dataset", &all);
-        Fault::new(format!("there is no dataset {source}"), remedy)
+        Refusal::new(format!("there is no dataset {source}"), remedy)
     })
 }
 
 /// What stands at a path instead of a dataset; `None` where nothing does.
-pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
+pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Refusal> {
     match object {
         Object::Nothing | Object::Dataset(_) => None,
-        Object::Group { .. } => Some(Fault::of(
+        Object::Group { .. } => Some(Refusal::of(
             path,
             "is a group, not a dataset",
             "name one of the datasets in it; `dropcheck inspect` lists them",
         )),
-        Object::NamedType => Some(Fault::of(path, "is a type, not a dataset", NUMBERS)),
-        Object::NotFollowed(what) => Some(Fault::new(what, OWN_DATA).at(path)),
+        Object::NamedType => Some(Refusal::of(path, "is a type, not a dataset", NUMBERS)),
+        Object::NotFollowed(what) => Some(Refusal::new(what, OWN_DATA).at(path)),
         Object::Broken(words) => Some(fault::of_words(words).at(path)),
     }
 }
@@ -115,7 +116,7 @@ pub(super) fn channels(
     dataset: &Dataset,
     path: &str,
     most: usize,
-) -> Result<Vec<DatasetColumn>, Fault> {
+) -> Result<Vec<DatasetColumn>, Refusal> {
     refuse_unread(dataset, path)?;
     let shape = shape_of(dataset, path)?;
     let (place, columns, length) = match *shape {
@@ -124,10 +125,10 @@ pub(super) fn channels(
         [length, columns] if columns <= most => (Place::Column, columns, length),
         [rows, columns] => {
             let problem = format!("has {rows} rows and {columns} columns, too many for channels");
-            return Err(Fault::of(path, problem, "save each channel as a dataset of its own"));
+            return Err(Refusal::of(path, problem, "save each channel as a dataset of its own"));
         }
         _ => {
-            return Err(Fault::of(
+            return Err(Refusal::of(
                 path,
                 format!("has {} dimensions", shape.len()),
                 "only one and two dimensions are read; save the channel as a dataset of its own",
@@ -149,7 +150,7 @@ pub(super) fn channels(
         return Ok(several(path, columns, &|_| (number, place.clone())));
     }
     if columns > 1 {
-        return Err(Fault::of(
+        return Err(Refusal::of(
             path,
             "holds records in rows and columns",
             "save them as a table of one dimension, one record a sample",
@@ -168,7 +169,7 @@ pub(super) fn channels(
 
 /// What is not in the recording, or packed by what is not read. A file that was sent may name any other on
 /// this machine, and any filter.
-fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
+fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Refusal> {
     let filter = dataset.filters.iter().find_map(|filter| match filter {
         Filter::Other(what) => Some(what),
         _ => None,
@@ -183,18 +184,18 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
         }
         _ => return Ok(()),
     };
-    Err(Fault::new(what, remedy).at(name))
+    Err(Refusal::new(what, remedy).at(name))
 }
 
 const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack IN OUT` makes one";
 const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";
 
 /// How the numbers of a dataset are read; a fault where it holds none.
-fn number_of(dataset: &Dataset, name: &str) -> Result<NumberType, Fault> {
+fn number_of(dataset: &Dataset, name: &str) -> Result<NumberType, Refusal> {
     dataset.number.ok_or_else(|| {
         let what = decoded(&dataset.type_name);
         if dataset.is_records {
-            Fault::of(
+            Refusal::of(
                 name,
                 format!(
                     "holds {what}: none of numbers, or beside others of varying length or other byte order"
@@ -202,14 +203,14 @@ fn number_of(dataset: &Dataset, name: &str) -> Result<NumberType, Fault> {
                 "save each field of numbers as a dataset of its own",
             )
         } else {
-            Fault::of(name, format!("holds no numbers but {what}"), NUMBERS)
+            Refusal::of(name, format!("holds no numbers but {what}"), NUMBERS)
         }
     })
 }
 
 /// The shape of a dataset; a fault where it is empty, or where the file cannot hold it.
-fn shape_of<'a>(dataset: &'a Dataset, name: &str) -> Result<&'a [usize], Fault> {
-    let wrong = |what: &str| Err(Fault::of(name, what, NUMBERS));
+fn shape_of<'a>(dataset: &'a Dataset, name: &str) -> Result<&'a [usize], Refusal> {
+    let wrong = |what: &str| Err(Refusal::of(name, what, NUMBERS));
     let shape = match dataset.shape.as_deref() {
         Some([]) => return wrong("is a single value"),
         Some(shape) if !shape.contains(&0) => shape,
@@ -218,7 +219,7 @@ fn shape_of<'a>(dataset: &'a Dataset, name: &str) -> Result<&'a [usize], Fault> 
     let claimed = shape.iter().try_fold(dataset.value_bytes, |bytes, &n| bytes.checked_mul(n as u64));
     let stored = dataset.stored_bytes;
     if claimed.is_none_or(|bytes| bytes > stored.saturating_mul(TIGHTEST_PACKING)) {
-        return Err(Fault::of(
+        return Err(Refusal::of(
             name,
             format!("claims {} rows, of which the file holds {stored} bytes", shape[0]),
             "it was never written, or the file is damaged: copy it from the logger again",

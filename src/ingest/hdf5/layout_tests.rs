@@ -3,11 +3,12 @@
 use super::tests::{Made, made, number, told, values};
 use super::*;
 use crate::ingest::csv::tests::cask_file;
+use crate::ingest::{Limits, ReadRequest};
 use hdf5_metno::H5Type;
 use hdf5_metno::types::{FixedAscii, VarLenUnicode};
 
 fn channels(made: &Made, sources: &[&str]) -> Vec<RawChannel> {
-    let read = read(&made.path, &cask_file(sources), Limits::default(), &|_| {});
+    let read = read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(sources));
     read.unwrap_or_else(|error| panic!("{error}")).channels
 }
 
@@ -59,7 +60,7 @@ fn rows_are_channels_where_they_are_few_and_long() {
     for source in ["/plain", "/plain[3]"] {
         assert!(told(&made, source).contains("name one: /plain[0], /plain[1], /plain[2]"), "{source}");
     }
-    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
     let plain: Vec<_> = listing.channels.iter().filter(|c| c.source.starts_with("/plain")).collect();
     assert_eq!(plain.len(), 3);
     assert_eq!((plain[2].samples, plain[2].range), (Some(20_000), Some((-2000.0, 17_999.0))));
@@ -124,7 +125,7 @@ fn a_field_of_records_is_a_channel() {
     ] {
         assert!(told(&made, source).contains(expected), "{source}: {}", told(&made, source));
     }
-    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
     let of_plain: Vec<&str> =
         listing.channels.iter().map(|c| c.source.as_str()).filter(|s| s.contains("plain")).collect();
     assert_eq!(

@@ -4,7 +4,7 @@ use super::answer::Object;
 use super::channel::DatasetChannel;
 use super::clocks::{self, Clocks};
 use super::column::DatasetColumn;
-use super::fault::{self, Fault};
+use super::fault;
 use super::find;
 use super::room::File;
 use super::sensors::RecordSensors;
@@ -13,10 +13,10 @@ use crate::data::{
     AttributeFinding, ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, Samples,
     is_number,
 };
-use crate::ingest::{IngestError, Limits, Progress};
+use crate::ingest::refusal::Refusal;
+use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
 use crate::numerics::as_f64;
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::rc::Rc;
 
 /// So many channels are listed at most.
@@ -41,17 +41,13 @@ struct Lister {
     broken: Vec<ListedChannel>,
 }
 
-/// Lists what the HDF5 file at `path` holds.
+/// Lists what an HDF5 file holds.
 ///
 /// # Errors
 /// A file that the library cannot open.
-pub(in super::super) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
-    let file = File::open(path, limits)?;
-    let listing = list_objects(&file, progress);
+pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let file = File::open(request.path, request.limits)?;
+    let listing = list_objects(&file, request.progress);
     file.whole().map(|()| listing)
 }
 
@@ -78,7 +74,7 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
         progress(as_f64(number + 1) / as_f64(objects.len()));
     }
     if let Err(fault) = starts::require_common(&lister.starts) {
-        lister.listing.issues.push(ClockFinding::Refused(format!("{fault}: {}", fault.remedy)).into());
+        lister.listing.issues.push(ClockFinding::Refused(fault.beside("")).into());
     }
     let Lister { mut listing, broken, .. } = lister;
     listing.channels.extend(broken);
@@ -107,7 +103,7 @@ impl Lister {
                     Ok(channels) => channels.iter().for_each(|column| self.list(column)),
                     Err(fault) => self.listing.channels.push(ListedChannel {
                         encoding: dataset.described(),
-                        unreadable: Some(fault.listed()),
+                        unreadable: Some(why_unreadable(fault)),
                         ..ListedChannel::named(path, "dataset")
                     }),
                 }
@@ -142,7 +138,7 @@ impl Lister {
             let mut listed =
                 ListedChannel { rows, ..ListedChannel::named(&column.source, column.kind_name()) };
             if let Err(fault) = self.fill(column.clone(), &mut listed) {
-                listed.unreadable = Some(fault.listed());
+                listed.unreadable = Some(why_unreadable(fault));
             }
             self.listing.channels.push(listed);
         }
@@ -150,7 +146,7 @@ impl Lister {
 
     /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands
     /// in its place.
-    fn fill(&mut self, column: DatasetColumn, listed: &mut ListedChannel) -> Result<(), Fault> {
+    fn fill(&mut self, column: DatasetColumn, listed: &mut ListedChannel) -> Result<(), Refusal> {
         let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);
         listed.encoding = column.dataset.described();
@@ -170,7 +166,7 @@ impl Lister {
         listed.encoding += &attributes.scaling();
         listed.unit.clone_from(&attributes.unit);
         if let Some(two) = &attributes.two_units {
-            self.doubt(source, &Fault::from(two.clone()).at(source), AttributeFinding::Refused);
+            self.doubt(source, &two.clone().at(source), AttributeFinding::Refused);
         }
         self.listing.issues.extend(attributes.issues.iter().map(|issue| issue.clone().on(source)));
         let is_read = column.length <= MOST_SAMPLES && self.pays_for(column);
@@ -217,10 +213,15 @@ impl Lister {
     }
 
     /// That reading would refuse a channel, in its words.
-    fn doubt<F: Into<Finding>>(&mut self, source: &str, fault: &Fault, refused: fn(String) -> F) {
-        let found: Finding = refused(format!("{}: {}", fault.beside(source), fault.remedy)).into();
+    fn doubt<F: Into<Finding>>(&mut self, source: &str, fault: &Refusal, refused: fn(String) -> F) {
+        let found: Finding = refused(fault.beside(source)).into();
         self.listing.issues.push(found.on(source));
     }
+}
+
+/// The problem of what the list names, and the command that cures it where there is one.
+fn why_unreadable(Refusal { problem, remedy, .. }: Refusal) -> String {
+    if remedy.contains("h5repack") { format!("{problem}: {remedy}") } else { problem }
 }
 
 fn range(samples: &Samples) -> Option<(f64, f64)> {

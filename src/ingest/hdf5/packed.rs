@@ -3,9 +3,10 @@
 
 use super::answer::{Dataset, NumberType, Packing, RecordField, Slab, Storage, StoredChunk};
 use super::column::{DatasetColumn, Place};
-use super::fault::{Fault, REPACK};
+use super::fault::REPACK;
 use crate::data::Samples;
 use crate::ingest::Limits;
+use crate::ingest::refusal::Refusal;
 use libdeflater::Decompressor;
 use rayon::prelude::*;
 use std::fs::File;
@@ -61,7 +62,7 @@ impl DatasetColumn {
     ///
     /// # Errors
     /// They cannot be unpacked.
-    pub(super) fn samples(&self) -> Result<Samples, Fault> {
+    pub(super) fn samples(&self) -> Result<Samples, Refusal> {
         if let Some(numbers) = numbers(self) {
             return Ok(numbers);
         }
@@ -71,7 +72,7 @@ impl DatasetColumn {
                 let problem = format!(
                     "cannot be unpacked from {stored}: damaged, or by other filters than deflate and shuffle"
                 );
-                return Err(Fault::of(
+                return Err(Refusal::of(
                     &self.source,
                     problem,
                     format!("copy the file from the logger again, or {REPACK}"),

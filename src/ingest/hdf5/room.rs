@@ -11,10 +11,11 @@ pub(in crate::ingest) use thread_tests::answer_by;
 
 use super::super::error::IngestError;
 use super::answer::{Object, Query, Reply, Slab, receive, send};
-use super::fault::{self, Fault};
+use super::fault;
 use super::patience::{PATIENCE, ProcessEnd, Watched};
 use crate::data::Samples;
 use crate::ingest::Limits;
+use crate::ingest::refusal::Refusal;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -46,8 +47,9 @@ pub struct Hdf5Program {
 
 static PROGRAM: OnceLock<Hdf5Program> = OnceLock::new();
 
-/// Names the program that takes HDF5 files apart when started with [`WORD`]; the first name stays.
-pub(in super::super) fn use_program(program: Hdf5Program) {
+/// Names the program that takes HDF5 files apart when started with its own words and `__hdf5`, which then
+/// calls [`crate::ingest::take_hdf5_apart`]; the first name stays.
+pub fn use_program(program: Hdf5Program) {
     let _ = PROGRAM.set(program);
 }
 
@@ -65,7 +67,7 @@ pub(super) struct File {
     known: RefCell<HashMap<String, Rc<Object>>>,
     noted_bytes: Cell<usize>,
     /// Why no more can be had from it.
-    lost: OnceCell<Fault>,
+    lost: OnceCell<Refusal>,
 }
 
 impl File {
@@ -74,7 +76,7 @@ impl File {
     /// # Errors
     /// The library does not open it.
     pub(super) fn open(path: &Path, limits: Limits) -> Result<Rc<Self>, IngestError> {
-        let fault = |fault: Fault| fault::of_file(path, fault);
+        let fault = |fault: Refusal| fault::of_file(path, fault);
         let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
         let (user_block, library, is_walled) = match link.answer() {
             Ok((Reply::Opened { user_block, library, is_walled }, _)) => (user_block, library, is_walled),
@@ -128,7 +130,7 @@ impl File {
         slab: Slab,
         count: usize,
         is_wide: bool,
-    ) -> Result<Samples, Fault> {
+    ) -> Result<Samples, Refusal> {
         self.ask(&Query::Read { path: path.to_owned(), is_wide, slab });
         let (mut narrow, mut wide) = (Vec::new(), Vec::new());
         while self.lost.get().is_none() {
@@ -191,7 +193,7 @@ impl File {
         noted_bytes <= MOST_NOTED_BYTES
     }
 
-    fn lose(&self) -> &Fault {
+    fn lose(&self) -> &Refusal {
         self.lost.get_or_init(|| self.link.borrow_mut().end())
     }
 }
@@ -229,7 +231,7 @@ impl Link {
 
     /// As [`Self::end`] where there was no answer at all: the library breaks off by a signal, a program that
     /// is none for it by a status.
-    fn end_before_answer(&mut self) -> Fault {
+    fn end_before_answer(&mut self) -> Refusal {
         match self.process.take().map(Watched::end) {
             Some(ProcessEnd::With(status)) if status.code().is_some_and(|code| code != 0) => {
                 unstarted(&io::Error::other(format!("{status}")))
@@ -239,17 +241,17 @@ impl Link {
     }
 
     /// Ends the process and says why it could not go on.
-    fn end(&mut self) -> Fault {
+    fn end(&mut self) -> Refusal {
         Self::fault(self.process.take().map(Watched::end).as_ref())
     }
 
-    fn fault(ended: Option<&ProcessEnd>) -> Fault {
+    fn fault(ended: Option<&ProcessEnd>) -> Refusal {
         let problem = match ended {
             Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
             Some(ProcessEnd::With(status)) => ending(*status),
             Some(ProcessEnd::ByReader) | None => "gave no answer that can be read".into(),
         };
-        Fault::new(
+        Refusal::new(
             format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
             "copy it from the logger again; if it is sound, `h5repack IN OUT` writes it anew",
         )
@@ -284,7 +286,7 @@ impl Link {
     }
 }
 
-fn unstarted(refusal: &io::Error) -> Fault {
+fn unstarted(refusal: &io::Error) -> Refusal {
     let what = match PROGRAM.get() {
         Some(program) => {
             let why = crate::ingest::shown::bare(refusal);
@@ -292,7 +294,7 @@ fn unstarted(refusal: &io::Error) -> Fault {
         }
         None => "no program was named for it".into(),
     };
-    Fault::new(
+    Refusal::new(
         format!("HDF5 is read by a process of its own, and {what}"),
         "a program that uses this library names it: dropcheck::read_hdf5_with(program), in Python \
          dropcheck.read_hdf5_with(python)",

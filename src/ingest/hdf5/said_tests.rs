@@ -4,6 +4,7 @@ use super::tests::{Made, made, number, text, told, values};
 use super::*;
 use crate::data::{RowsOf, Severity};
 use crate::ingest::csv::tests::cask_file;
+use crate::ingest::{Limits, ReadRequest};
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Group, Location};
 
@@ -46,8 +47,8 @@ fn group(
 
 /// The channels, or the refusal; listing has to say the same.
 fn of(file: &Made, sources: &[&str]) -> Result<Vec<RawChannel>, String> {
-    let read = read(&file.path, &cask_file(sources), Limits::default(), &|_| {});
-    let issues = list(&file.path, Limits::default(), &|_| {}).unwrap().issues;
+    let read = read(ReadRequest::silent(&file.path, Limits::default()), &cask_file(sources));
+    let issues = list(ReadRequest::silent(&file.path, Limits::default())).unwrap().issues;
     let is_told = issues.iter().any(|issue| issue.severity != Severity::Note);
     assert_eq!(read.is_err(), is_told, "{issues:?}");
     read.map(|read| read.channels).map_err(|error| error.to_string())
@@ -180,8 +181,9 @@ fn what_is_no_time_is_none() {
         };
         let source = format!("/{group}/x");
         let beside = made(Some(1100.0));
-        let channel =
-            &read(&beside.path, &cask_file(&[&source]), Limits::default(), &|_| {}).unwrap().channels[0];
+        let channel = &read(ReadRequest::silent(&beside.path, Limits::default()), &cask_file(&[&source]))
+            .unwrap()
+            .channels[0];
         let expected_hz = if is_time { 1000.0 } else { 1100.0 };
         assert!((channel.uniform.sample_rate_hz - expected_hz).abs() < 1e-6, "{unit} {group}");
         if !is_time {
@@ -206,7 +208,9 @@ fn a_named_column_of_times_and_the_index_of_a_frame_are_the_times() {
         text(&letters, "MATLAB_class", "char")
     });
     for source in ["/d[1]", "/df/block0_values[1]"] {
-        let read = &read(&made.path, &cask_file(&[source]), Limits::default(), &|_| {}).unwrap().channels[0];
+        let read = &read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&[source]))
+            .unwrap()
+            .channels[0];
         assert!((read.uniform.sample_rate_hz - 1000.0).abs() < 1e-6, "{source}");
     }
     assert!(told(&made, "/text").contains("no numbers but text or cells of MATLAB"));
@@ -227,7 +231,8 @@ fn samples_of_several_sensors_are_refused_or_picked() {
     let rows_of = |made: &Made, is: Option<&str>| {
         let mut cask = cask_file(&["/x"]);
         cask.channels[0].rows = is.map(|is| RowsOf { column: "sensor_id".into(), is: is.into() });
-        read(&made.path, &cask, Limits::default(), &|_| {}).map(|mut read| read.channels.remove(0))
+        read(ReadRequest::silent(&made.path, Limits::default()), &cask)
+            .map(|mut read| read.channels.remove(0))
     };
     let two = by(&|i| 3 + 4 * (i % 2));
     let message = told(&two, "/x");
@@ -241,7 +246,7 @@ fn samples_of_several_sensors_are_refused_or_picked() {
         assert_eq!(values(&read), vec![expected; 50]);
         assert!((read.uniform.sample_rate_hz - 1000.0).abs() < 1e-6);
     }
-    let listing = list(&two.path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&two.path, Limits::default())).unwrap();
     let listed: Vec<_> = listing.channels.iter().filter(|listed| listed.source == "/x").collect();
     assert_eq!((listed.len(), listed[1].samples, listed[1].range), (2, Some(50), Some((1.0, 1.0))));
     // One sensor, two that follow one another, and as many as samples.

@@ -2,9 +2,9 @@
 //! all.
 
 use super::column::DatasetColumn;
-use super::fault::Fault;
 use crate::data::RowsOf;
 use crate::ingest::limits::MOST_SENSORS;
+use crate::ingest::refusal::Refusal;
 
 /// The sensors of which a column holds samples.
 #[derive(Default)]
@@ -40,14 +40,14 @@ impl RecordSensors {
     ///
     /// # Errors
     /// None is picked, or none that is there.
-    pub(super) fn rows(&self, picked: Option<&RowsOf>) -> Result<Vec<usize>, Fault> {
+    pub(super) fn rows(&self, picked: Option<&RowsOf>) -> Result<Vec<usize>, Refusal> {
         let is = picked.and_then(|picked| picked.is.trim().parse::<f64>().ok());
         let rows: Vec<usize> = (0..self.each.len()).filter(|row| Some(self.each[*row]) == is).collect();
         if !rows.is_empty() {
             return Ok(rows);
         }
         let (Some(first), ids) = (self.all.first(), self.all.iter().map(|one| one.is.as_str())) else {
-            return Err(Fault::new(
+            return Err(Refusal::new(
                 format!(
                     "what is to pick its samples holds no whole number for each, or more than {MOST_SENSORS} \
                      different ones"
@@ -57,7 +57,7 @@ impl RecordSensors {
         };
         let (count, ids) = (self.all.len(), ids.collect::<Vec<_>>().join(", "));
         let column = &first.column;
-        Err(Fault::new(
+        Err(Refusal::new(
             format!(
                 "its samples are those of {count} sensors by turns, by {column} = {ids}, and none of these \
                  is picked"

@@ -1,7 +1,7 @@
 //! What a recording says of the start of each channel to seconds, or to why two channels have no common
 //! clock.
 
-use super::fault::Fault;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::statement::number_and_unit;
 use crate::ingest::times::{dated, since_1970_s};
 use crate::ingest::vocabulary::{split, time_unit_s};
@@ -54,7 +54,7 @@ pub(super) fn start_s(name: &str, text: &str, is_in_s: bool) -> Option<f64> {
 ///
 /// # Errors
 /// There are such.
-pub(super) fn require_common(starts: &[(String, Start)]) -> Result<(), Fault> {
+pub(super) fn require_common(starts: &[(String, Start)]) -> Result<(), Refusal> {
     let is_dated = starts.iter().any(|(_, start)| start.since_s.is_some());
     let is_lost = |start: &Start| start.since_s.is_none() && (is_dated || start.words.is_some());
     if let Some((lost, start)) = starts.iter().find(|(_, start)| is_lost(start))
@@ -63,7 +63,7 @@ pub(super) fn require_common(starts: &[(String, Start)]) -> Result<(), Fault> {
         let [one, two] = [start, known].map(|start| start.words.as_deref().unwrap_or("nothing"));
         let problem =
             format!("states {one} of its start, and {other} {two}: nothing tells how far they are apart");
-        return Err(Fault::of(
+        return Err(Refusal::of(
             lost,
             problem,
             "write into a copy, to each of the two, the attribute start_time_s: when its first sample was \

@@ -3,6 +3,7 @@
 use super::super::csv::tests::cask_file;
 use super::*;
 use crate::data::{IssueCode, Samples, Severity};
+use crate::ingest::{Limits, ReadRequest};
 use hdf5_metno::File;
 use hdf5_metno::types::VarLenUnicode;
 use std::path::PathBuf;
@@ -35,7 +36,7 @@ pub(super) fn values(raw: &RawChannel) -> Vec<f64> {
 }
 
 pub(super) fn told(made: &Made, source: &str) -> String {
-    let error = read(&made.path, &cask_file(&[source]), Limits::default(), &|_| {}).unwrap_err();
+    let error = read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&[source])).unwrap_err();
     let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
     format!("{error} | {help}")
 }
@@ -62,7 +63,8 @@ fn every_number_type_filter_and_attribute_is_read() {
         group.new_dataset_builder().chunk(1000).lzf().with_data(&packed).create("lzf").map(|_| ())
     });
     let names = ["/daq/i16", "/daq/u8", "daq/i32", "/daq/i64", "/daq/f64", "/daq/gz", "/daq/lzf"];
-    let channels = read(&made.path, &cask_file(&names), Limits::default(), &|_| {}).unwrap().channels;
+    let channels =
+        read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&names)).unwrap().channels;
     assert_eq!(values(&channels[0]), [0.0, 1.0, 151.0]);
     assert_eq!((channels[0].unit.as_deref(), channels[1].unit.as_deref()), (Some("g"), Some("m/s^2")));
     let base = &channels[0].uniform;
@@ -100,10 +102,12 @@ fn two_sensors() -> Made {
 #[test]
 fn each_sensor_keeps_its_own_jittering_times() {
     let made = two_sensors();
-    let channels =
-        read(&made.path, &cask_file(&["/fast/acc[1]", "/slow/acc[0]"]), Limits::default(), &|_| {})
-            .unwrap()
-            .channels;
+    let channels = read(
+        ReadRequest::silent(&made.path, Limits::default()),
+        &cask_file(&["/fast/acc[1]", "/slow/acc[0]"]),
+    )
+    .unwrap()
+    .channels;
     for (channel, rate_hz, slope) in [(&channels[0], 1000.0, -1.0), (&channels[1], 250.0, 1.0)] {
         // The sine leaves the fitted slope off by less than its amplitude over the record.
         assert!((channel.uniform.sample_rate_hz / rate_hz - 1.0).abs() < 2e-3);
@@ -123,7 +127,9 @@ fn a_column_of_chunks_is_read_whole() {
         number(&data, "sample_rate", 100.0)?;
         data.write_raw(&flat)
     });
-    let channels = read(&made.path, &cask_file(&["/table[2]"]), Limits::default(), &|_| {}).unwrap().channels;
+    let channels = read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&["/table[2]"]))
+        .unwrap()
+        .channels;
     let expected: Vec<f64> = flat.iter().skip(2).step_by(3).map(|&x| f64::from(x)).collect();
     assert_eq!(values(&channels[0]), expected);
 }
@@ -138,11 +144,11 @@ fn named_times_and_a_declared_rate_are_followed() {
     let mut cask = cask_file(&["/a"]);
     assert!(told(&made, "/a").contains("nothing says when"), "{}", told(&made, "/a"));
     cask.time = Some("clock".into());
-    let channel = &read(&made.path, &cask, Limits::default(), &|_| {}).unwrap().channels[0];
+    let channel = &read(ReadRequest::silent(&made.path, Limits::default()), &cask).unwrap().channels[0];
     assert!((channel.uniform.sample_rate_hz - 50.0).abs() < 1e-9);
     cask.time = None;
     cask.channels[0].sample_rate_hz = Some(80.0);
-    let channel = &read(&made.path, &cask, Limits::default(), &|_| {}).unwrap().channels[0];
+    let channel = &read(ReadRequest::silent(&made.path, Limits::default()), &cask).unwrap().channels[0];
     assert!((channel.uniform.sample_rate_hz - 80.0).abs() < 1e-9);
 }
 
@@ -197,7 +203,7 @@ fn a_cut_file_is_told_as_such() {
 #[test]
 fn everything_is_listed() {
     let made = two_sensors();
-    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
     assert_eq!((listing.counts["groups"], listing.counts["datasets"]), (2, 4));
     let sources: Vec<&str> = listing.channels.iter().map(|channel| channel.source.as_str()).collect();
     assert_eq!(sources[..4], ["/fast/acc[0]", "/fast/acc[1]", "/fast/acc[2]", "/fast/time_s"]);
@@ -216,18 +222,18 @@ fn a_shape_that_would_fill_the_memory_is_refused_before_it_is_read() {
         number(&dataset, "sample_rate_hz", 1e5)
     });
     let cask = cask_file(&["/a"]);
-    assert!(read(&made.path, &cask, Limits::default(), &|_| {}).is_ok());
+    assert!(read(ReadRequest::silent(&made.path, Limits::default()), &cask).is_ok());
     // 40 MB of samples, and half of the least memory is 32 MiB.
-    let refused = read(&made.path, &cask, Limits::of_memory(0), &|_| {}).unwrap_err();
-    assert!(matches!(refused, IngestError::TooLarge { .. }), "{refused}");
-    let listing = list(&made.path, Limits::of_memory(0), &|_| {}).unwrap();
+    let refused = read(ReadRequest::silent(&made.path, Limits::of_memory(0)), &cask).unwrap_err();
+    assert!(refused.to_string().contains("the limit where reading may take 64 MiB"), "{refused}");
+    let listing = list(ReadRequest::silent(&made.path, Limits::of_memory(0))).unwrap();
     assert_eq!((listing.channels[0].samples, listing.channels[0].range), (Some(5_000_000), None));
     // 80 MB from as many kilobytes: a sensor that stands still beside others that do not is in a larger file.
     let bomb = self::made(|file| {
         let zeros = vec![0.0_f64; 10_000_000];
         file.new_dataset_builder().deflate(9).chunk(500_000).with_data(&zeros).create("a").map(drop)
     });
-    let refused = read(&bomb.path, &cask, Limits::of_memory(4 << 30), &|_| {}).unwrap_err();
+    let refused = read(ReadRequest::silent(&bomb.path, Limits::of_memory(4 << 30)), &cask).unwrap_err();
     assert!(refused.to_string().contains("unpack to"), "{refused}");
 }
 
@@ -238,7 +244,7 @@ fn groups_in_a_circle_are_listed_to_an_end() {
         group.link_hard("/g", "again")?;
         group.link_hard("/g", "and_again")
     });
-    assert!(list(&made.path, Limits::default(), &|_| {}).unwrap().counts["groups"] <= 10_000);
+    assert!(list(ReadRequest::silent(&made.path, Limits::default())).unwrap().counts["groups"] <= 10_000);
 }
 
 #[test]
@@ -283,12 +289,13 @@ fn the_nearest_attribute_is_taken_and_another_one_is_told_or_refused() {
     ];
     for (own, outer, expected, severity) in rows {
         let made = nested(&[2; 100], own, outer);
-        let channel =
-            &read(&made.path, &cask_file(&["/daq/a"]), Limits::default(), &|_| {}).unwrap().channels[0];
+        let channel = &read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&["/daq/a"]))
+            .unwrap()
+            .channels[0];
         assert!((values(channel)[99] - expected).abs() < 1e-12, "{own:?} {outer:?}");
         let severities: Vec<Severity> = channel.uniform.issues.iter().map(|issue| issue.severity).collect();
         assert_eq!(severities, Vec::from_iter(severity), "{own:?} {outer:?}: {:?}", channel.uniform.issues);
-        let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+        let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
         assert_eq!(listing.channels[0].range, Some((expected, expected)));
         assert_eq!(listing.issues.len(), severities.len(), "{:?}", listing.issues);
     }
@@ -311,7 +318,7 @@ fn the_nearest_attribute_is_taken_and_another_one_is_told_or_refused() {
         for part in parts {
             assert!(message.contains(part), "{own:?}: {message} without {part}");
         }
-        let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+        let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
         assert_eq!(listing.issues.len(), 1, "{own:?}: {:?}", listing.issues);
     }
 }
@@ -329,8 +336,9 @@ fn chunks_far_wider_than_their_dataset_are_refused_and_small_ones_read() {
         })
     };
     let limits = Limits::of_memory(64 << 20);
-    let read =
-        |made: &Made| read(&made.path, &cask_file(&["/a"]), limits, &|_| {}).map(|raw| raw.channels.len());
+    let read = |made: &Made| {
+        read(ReadRequest::silent(&made.path, limits), &cask_file(&["/a"])).map(|raw| raw.channels.len())
+    };
     assert_eq!(read(&wide(1000, 12)).unwrap(), 1);
     let told = |made: &Made| read(made).unwrap_err().to_string();
     let one = told(&wide(100_000, 12));
@@ -354,9 +362,10 @@ fn a_circle_of_groups_is_walked_through_once_and_an_attribute_looked_at_once() {
         file.link_hard("/", "g/a")?;
         file.link_hard("/", "b")
     });
-    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+    let listing = list(ReadRequest::silent(&made.path, Limits::default())).unwrap();
     let sources: Vec<&str> = listing.channels.iter().map(|channel| &channel.source[..]).collect();
     assert_eq!((sources, listing.channels[0].unit.as_deref()), (vec!["/x"], Some("g")));
-    let deep = read(&made.path, &cask_file(&["/b/g/a/h/a/x"]), Limits::default(), &|_| {}).unwrap();
+    let deep =
+        read(ReadRequest::silent(&made.path, Limits::default()), &cask_file(&["/b/g/a/h/a/x"])).unwrap();
     assert_eq!(values(&deep.channels[0]), [1.0, 2.0, 3.0]);
 }

@@ -2,8 +2,9 @@
 
 use super::plan::{Beside, Field, Says, Slots, StatedRate, Value};
 use crate::data::Samples;
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::short;
+use crate::numerics::as_count;
 use std::borrow::Cow;
 
 /// What a message says of the samples of one field.
@@ -79,8 +80,7 @@ impl<'a> SaidBeside<'a> {
             return Err(Refusal::new(
                 format!("by its layout each message holds {} signals by turns in one array", short(turns)),
                 "name one number of the array, as in `data[0]`, where a message holds one sample of each; \
-                 else have the recorder write an \
-                 array for each signal",
+                 else have the recorder write an array for each signal",
             ));
         }
         // A factor of one changes nothing, nor does an offset of zero.
@@ -100,12 +100,7 @@ impl<'a> SaidBeside<'a> {
             ));
         }
         if let (Some(count), Value::Array(samples)) = (self.count, &mut value) {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "saturates; a larger one changes nothing"
-            )]
-            samples.truncate(count as usize);
+            samples.truncate(as_count(count));
         }
         if let Some(scale) = self.scale {
             let offset = offset.map_or(0.0, |(number, _)| number);

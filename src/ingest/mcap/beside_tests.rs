@@ -5,7 +5,7 @@ use super::super::list::list;
 use super::super::read::read;
 use super::super::written::{ZERO_NS, cask_file, channel, closed, message};
 use crate::data::{CaskFile, RowsOf, Severity};
-use crate::ingest::{Limits, RawRecording};
+use crate::ingest::{Limits, RawRecording, ReadRequest};
 use mcap::WriteOptions;
 use miette::Diagnostic;
 
@@ -36,7 +36,7 @@ fn read_bytes(bytes: &[u8], cask_file: &CaskFile) -> Result<RawRecording, String
     let told = |error: crate::ingest::IngestError| {
         format!("{error} | {}", error.help().map(|help| help.to_string()).unwrap_or_default())
     };
-    with_path(bytes, |path| read(path, cask_file, Limits::default(), &|_| ()).map_err(told))
+    with_path(bytes, |path| read(ReadRequest::silent(path, Limits::default()), cask_file).map_err(told))
 }
 
 /// Rate and first samples, or why it refuses.
@@ -68,7 +68,7 @@ fn a_stamp_that_is_a_number_is_read_in_any_unit_and_the_log_time_held_against_it
         assert!((raw.channels[0].uniform.sample_rate_hz - 1000.0).abs() < 0.01, "{name}: {raw:?}");
         let drift: Vec<_> = raw.issues.iter().filter(|issue| issue.severity == Severity::Warning).collect();
         assert!(drift.len() == 1 && drift[0].message.contains("log times"), "{name}: {:?}", raw.issues);
-        let listing = with_path(&bytes, |path| list(path, Limits::default(), &|_| ())).unwrap();
+        let listing = with_path(&bytes, |path| list(ReadRequest::silent(path, Limits::default()))).unwrap();
         let listed = listing.channels.iter().find(|channel| channel.source == "/x.a").unwrap();
         assert!(listed.sample_rate_hz.is_some_and(|hz| (hz - 1000.0).abs() < 0.01), "{name}: {listed:?}");
     }
@@ -146,7 +146,7 @@ fn sensors_of_one_topic_stay_apart_and_are_picked_by_name() {
     let numbered = file(1, |i| format!("\"timestamp\":{},\"place\":{}", ZERO_NS / 1000 + 500 * i, i % 2));
     cask.channels[0].rows = Some(RowsOf { column: "place".into(), is: "1".into() });
     assert_eq!(told(&numbered, &cask).unwrap().1, [1.0, 3.0, 5.0]);
-    let listing = with_path(&sides, |path| list(path, Limits::default(), &|_| ())).unwrap();
+    let listing = with_path(&sides, |path| list(ReadRequest::silent(path, Limits::default()))).unwrap();
     let rows: Vec<_> = listing
         .channels
         .iter()
@@ -154,7 +154,7 @@ fn sensors_of_one_topic_stay_apart_and_are_picked_by_name() {
         .map(|listed| listed.rows.clone())
         .collect();
     assert!(rows.len() == 2 && rows.iter().all(Option::is_some), "{rows:?}");
-    let listing = with_path(&two, |path| list(path, Limits::default(), &|_| ())).unwrap();
+    let listing = with_path(&two, |path| list(ReadRequest::silent(path, Limits::default()))).unwrap();
     assert!(
         listing
             .channels

@@ -4,59 +4,41 @@ use super::extent::Extent;
 use super::numbers::{append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
-use crate::ingest::clock::Refusal;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::PREFIX;
 use crate::ingest::times::Scale;
 
 mod based;
 mod settled;
 
-/// Where a message's time comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum TimeOrigin {
-    /// Its own stamp.
-    Stamp,
-    /// The log time: it has no stamp.
-    LogTime,
-    /// The log time: its stamp is zero or not understood.
-    LogTimeForBadStamp,
-}
-
 /// The time of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct MessageTime {
     /// Since 1970.
     ns: i64,
-    origin: TimeOrigin,
+    /// Whether it is the message's own stamp, not the log time for one that is zero or not understood;
+    /// `None` for the log time of a message without a stamp.
+    is_stamp: Option<bool>,
     log_ns: i64,
 }
 
 impl MessageTime {
     /// From a message's stamp or else from its log time.
     pub(super) fn of(stamp: Option<&Value>, log_ns: i64) -> Self {
-        let (ns, origin) = match stamp {
-            Some(Value::Stamp(0) | Value::BadStamp) => (log_ns, TimeOrigin::LogTimeForBadStamp),
-            Some(Value::Stamp(ns)) => (*ns, TimeOrigin::Stamp),
-            _ => (log_ns, TimeOrigin::LogTime),
+        let (ns, is_stamp) = match stamp {
+            Some(Value::Stamp(0) | Value::BadStamp) => (log_ns, Some(false)),
+            Some(Value::Stamp(ns)) => (*ns, Some(true)),
+            _ => (log_ns, None),
         };
-        Self { ns, origin, log_ns }
+        Self { ns, is_stamp, log_ns }
     }
 }
 
 /// 6 January 1980, ns since 1970: the origin of GPS time. A clock that shows less counts from its own start.
 pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
 
-/// How many messages of a column carry what stamp.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct StampCounts {
-    /// One that was used.
-    pub(super) good: u64,
-    /// One that is zero or not understood.
-    pub(super) bad: u64,
-}
-
 /// The samples of one field, message by message, in the order of the file.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Column {
     /// Of each message that gave samples, since 1970.
     times_ns: Vec<i64>,
@@ -66,7 +48,10 @@ pub(super) struct Column {
     counts: Vec<usize>,
     /// For a listing.
     pub(super) extent: Option<Extent>,
-    pub(super) stamps: StampCounts,
+    /// How many messages carry a stamp that was used.
+    pub(super) good_stamps: u64,
+    /// How many carry one that is zero or not understood.
+    pub(super) bad_stamps: u64,
     /// The units that messages state, each once, as they come.
     units: Vec<String>,
     /// The rates that messages state, each once, as they come.
@@ -110,20 +95,7 @@ fn state<T: PartialEq>(known: &mut Vec<T>, stated: T) {
 impl Column {
     /// Without samples; with an extent in place of the samples of blocks where it is for a listing.
     pub(super) fn new(is_listed: bool) -> Self {
-        Self {
-            times_ns: Vec::new(),
-            samples: Samples::F32(Vec::new()),
-            counts: Vec::new(),
-            extent: is_listed.then(Extent::default),
-            stamps: StampCounts::default(),
-            units: Vec::new(),
-            rates: Vec::new(),
-            zero_stamp: None,
-            ticks: None,
-            logged: Vec::new(),
-            next_logged: 0,
-            refused: None,
-        }
+        Self { extent: is_listed.then(Extent::default), ..Self::default() }
     }
 
     /// Takes what one message gave; `tick` is the number that is its time, where it carries one.
@@ -152,15 +124,15 @@ impl Column {
             Value::Array(mut samples) if is_kept => append(&mut self.samples, &mut samples),
             _ => {}
         }
-        match time.origin {
-            TimeOrigin::Stamp => self.stamps.good += 1,
-            TimeOrigin::LogTimeForBadStamp => {
-                self.stamps.bad += 1;
-                self.zero_stamp = Some(self.times_ns.len() - 1);
-            }
-            TimeOrigin::LogTime => {}
-        }
         let place = self.times_ns.len() - 1;
+        match time.is_stamp {
+            Some(true) => self.good_stamps += 1,
+            Some(false) => {
+                self.bad_stamps += 1;
+                self.zero_stamp = Some(place);
+            }
+            None => {}
+        }
         if let Some((tick, beside)) = tick {
             let (field, scale) = (&beside.field, beside.scale());
             let ticks =
@@ -215,7 +187,7 @@ impl Column {
     /// will do.
     fn is_prefix(&self) -> bool {
         let held = self.samples.len();
-        self.extent.as_ref().is_none_or(|extent| held < PREFIX && held as u64 == extent.samples)
+        self.extent.as_ref().is_none_or(|extent| held < PREFIX && held == extent.samples)
     }
 
     /// Takes single numbers for blocks of one sample: some writers leave out the brackets of such a block.
@@ -250,7 +222,7 @@ impl Column {
         self.counts.append(&mut other.counts);
         match &mut other.samples {
             Samples::F32(samples) => samples.clear(),
-            Samples::F64(_) => other.samples = Samples::F32(Vec::new()),
+            wide @ Samples::F64(_) => *wide = Samples::default(),
         }
         if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
             own.append(std::mem::take(more));
@@ -265,9 +237,8 @@ impl Column {
         }
         self.next_logged = self.next_logged.max(before + std::mem::take(&mut other.next_logged));
         self.refused = self.refused.take().or(other.refused.take());
-        let StampCounts { good, bad } = std::mem::take(&mut other.stamps);
-        self.stamps.good += good;
-        self.stamps.bad += bad;
+        self.good_stamps += std::mem::take(&mut other.good_stamps);
+        self.bad_stamps += std::mem::take(&mut other.bad_stamps);
         other.units.drain(..).for_each(|unit| state(&mut self.units, unit));
         other.rates.drain(..).for_each(|rate| state(&mut self.rates, rate));
     }
@@ -285,13 +256,13 @@ impl Column {
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own
     /// start.
     pub(super) fn settle_clock(&mut self) {
-        let (1, Some(position)) = (self.stamps.bad, self.zero_stamp) else { return };
+        let (1, Some(position)) = (self.bad_stamps, self.zero_stamp) else { return };
         let is_own_clock = |(at, time_ns): (usize, &i64)| at == position || time_ns.abs() < CLOCK_IS_SET_NS;
-        if self.stamps.good == 0 || !self.times_ns.iter().enumerate().all(is_own_clock) {
+        if self.good_stamps == 0 || !self.times_ns.iter().enumerate().all(is_own_clock) {
             return;
         }
         self.times_ns[position] = 0;
-        self.stamps = StampCounts { good: self.stamps.good + 1, bad: 0 };
+        (self.good_stamps, self.bad_stamps) = (self.good_stamps + 1, 0);
     }
 
     /// Whether there are no samples.

@@ -4,14 +4,15 @@ use super::path;
 use super::scanned::Scanned;
 use super::topic::{Channels, Gathered, Topic};
 use crate::data::{ChannelSpec, Finding, McapFinding, RowsOf, Source, two_units};
-use crate::ingest::error::{self, IngestError};
+use crate::ingest::error;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::TimeBaseError;
 use std::collections::BTreeSet;
 use std::path::Path;
 
 /// No topic of the file fits the source.
-pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scanned: &Scanned) -> IngestError {
-    let fault = |problem: String, mend: String| error::source(path, &spec.name, problem, mend);
+pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scanned: &Scanned) -> Refusal {
+    let fault = |problem: String, mend: String| Refusal::new(problem, mend);
     let wanted = match &spec.source {
         Source::Path(text) | Source::TopicField { topic: text, .. } => text,
     };
@@ -40,11 +41,10 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
 /// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that
 /// are asked for.
 pub(super) fn several(
-    path: &Path,
     spec: &ChannelSpec,
     topic: &str,
     (numbers, rows): (BTreeSet<u16>, Vec<&RowsOf>),
-) -> IngestError {
+) -> Refusal {
     /// More no longer fit a terminal's few lines.
     const HANDFUL: usize = 8;
     let listed = |words: Vec<String>| {
@@ -60,9 +60,7 @@ pub(super) fn several(
     };
     let channels = listed(numbers.iter().map(|number| format!("channel = {number}")).collect());
     if numbers.len() > 1 {
-        return error::source(
-            path,
-            &spec.name,
+        return Refusal::new(
             format!("{asked}: {} MCAP channels write on the topic {topic}", numbers.len()),
             format!(
                 "name one: source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of \
@@ -77,14 +75,12 @@ pub(super) fn several(
             listed(rows.iter().map(ToString::to_string).collect())
         ),
     };
-    error::source(path, &spec.name, asked, mend)
+    Refusal::new(asked, mend)
 }
 
 /// The field that is named as the time is in no message.
-pub(super) fn no_named_time(path: &Path, spec: &ChannelSpec, time: &str) -> IngestError {
-    error::source(
-        path,
-        &spec.name,
+pub(super) fn no_named_time(spec: &ChannelSpec, time: &str) -> Refusal {
+    Refusal::new(
         format!("no message of {} holds a time that rises in the field {time:?}", spec.source),
         "name the field of its messages that holds their time, `time = \"log_time\"` for the time of \
          logging, or take `time` out",
@@ -97,9 +93,9 @@ pub(super) fn no_samples(
     spec: &ChannelSpec,
     (topic, channels): &Channels,
     scanned: &Scanned,
-) -> IngestError {
+) -> Refusal {
     let gathered = &channels[0].1;
-    let fault = |problem: String, mend: &str| error::source(path, &spec.name, problem, mend);
+    let fault = |problem: String, mend: &str| Refusal::new(problem, mend);
     let Topic { name, leaves, unreadable, .. } = topic;
     let Gathered { messages, malformed, first_problem, leaves: seen, .. } = gathered;
     let field = path::field_in(&spec.source, name).unwrap_or_default().to_string();
@@ -138,27 +134,21 @@ pub(super) fn no_samples(
 }
 
 /// The samples are there, and find no time base.
-pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: TimeBaseError) -> IngestError {
+pub(super) fn no_base(spec: &ChannelSpec, problem: TimeBaseError) -> Refusal {
     let refusal = problem.refusal(
         "check the stamps of this topic; `sample_rate_hz` in this channel of the cask file overrides the \
          recording's rate",
     );
-    error::source(path, &spec.name, format!("{}: {}", spec.source, refusal.problem), refusal.remedy)
+    refusal.at(&spec.source.to_string())
 }
 
 /// The unit changes between messages: a warning where the cask file states one.
-pub(super) fn unit_change(
-    path: &Path,
-    spec: &ChannelSpec,
-    [first, other]: [&str; 2],
-) -> Result<Finding, IngestError> {
+pub(super) fn unit_change(spec: &ChannelSpec, [first, other]: [&str; 2]) -> Result<Finding, Refusal> {
     if spec.unit.is_some() {
         let (first, other) = (first.to_owned(), other.to_owned());
         return Ok(Finding::from(McapFinding::TwoUnits { first, other, source: None }).on(&spec.name));
     }
-    Err(error::source(
-        path,
-        &spec.name,
+    Err(Refusal::new(
         format!("{}: {}", spec.source, two_units(first, other)),
         "cut the recording where it changes, or where only the word is wrong write `unit` in this channel of \
          the cask file",

@@ -7,7 +7,7 @@ use crate::data::{Samples, is_number};
 /// What a listing shows of samples, which it does not keep of blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Extent {
-    pub(super) samples: u64,
+    pub(super) samples: usize,
     /// The least and the largest that is a number.
     pub(super) range: Option<(f64, f64)>,
     /// Stretches of blocks that are none.
@@ -37,7 +37,7 @@ impl Extent {
     fn see_all(&mut self, samples: impl ExactSizeIterator<Item = f64>, is_block: bool) -> u64 {
         /// FNV-1a, 64 bits at a time.
         const PRIME: u64 = 0x0100_0000_01b3;
-        self.samples += samples.len() as u64;
+        self.samples += samples.len();
         let (mut digest, mut was_finite) = (0xcbf2_9ce4_8422_2325_u64, true);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in samples {

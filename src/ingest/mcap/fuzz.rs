@@ -18,7 +18,7 @@ fn decode<D: Decode>(leaves: &[Leaf], decoder: impl FnOnce(&Plan) -> D, message:
 }
 
 pub(in super::super) fn json(bytes: &[u8]) {
-    decode(&json::leaves(bytes), Json::new, bytes);
+    decode(&json::Fields::of(bytes).leaves, Json::new, bytes);
 }
 
 /// The length of the descriptors in two bytes, the descriptors, a message.
@@ -26,7 +26,7 @@ pub(in super::super) fn protobuf(bytes: &[u8]) {
     let Some((&length, rest)) = bytes.split_first_chunk() else { return };
     let (schema, message) = rest.split_at(rest.len().min(u16::from_le_bytes(length).into()));
     if let Ok(kind) = descriptors::message_type("dropcheck.AccelerationBlock", schema) {
-        decode(&protobuf::leaves(&kind), |plan| Protobuf::new(plan, &kind), message);
+        decode(&protobuf::leaves(&kind), |plan| Protobuf::new(&plan.root, &kind), message);
     }
 }
 

@@ -32,9 +32,8 @@ impl Json {
     }
 
     fn walk(&self, text: &[u8], slots: &mut Slots) -> Result<(), String> {
-        let mut walk = JsonWalk { slots };
         let from = past_spaces(text, 0);
-        match walk.value(&self.root, &text[from..]) {
+        match slots.value(&self.root, &text[from..]) {
             Ok(used) if past_spaces(text, from + used) == text.len() => Ok(()),
             Err(WalkFault::Value(problem)) => Err(problem),
             // The grammar says where a text ceases to be JSON.
@@ -97,12 +96,8 @@ impl From<serde_json::Error> for WalkFault {
     }
 }
 
-/// A walk along a message: what stands at a place goes into the slots of its node.
-struct JsonWalk<'a> {
-    slots: &'a mut Slots,
-}
-
-impl JsonWalk<'_> {
+/// A walk along a message in JSON: what stands at a place goes into the slots of its node.
+impl Slots {
     /// The value at the start of `text`; how many bytes it takes.
     fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
         let numbers = node.slot(Want::Numbers);
@@ -145,8 +140,8 @@ impl JsonWalk<'_> {
     }
 
     fn array(&mut self, node: &Node, slot: usize, samples: Vec<f64>) {
-        self.slots.set(slot, Value::Array(Samples::F64(samples)));
-        self.slots.pick(slot, &node.elements());
+        self.set(slot, Value::Array(Samples::F64(samples)));
+        self.pick(slot, &node.elements());
     }
 
     /// A value other than a run of plain numbers: one, words, a time, or what holds such at places of their
@@ -162,16 +157,16 @@ impl JsonWalk<'_> {
             }
             (Some(slot), _) => {
                 if let Some(value) = number(value) {
-                    self.slots.set(slot, Value::Number { value, is_narrow: false });
+                    self.set(slot, Value::Number { value, is_narrow: false });
                 }
             }
             (None, _) => {}
         }
         if let (Some(slot), Tree::String(text)) = (node.slot(Want::Text), value) {
-            self.slots.set_text(slot, text.as_bytes());
+            self.set_text(slot, text.as_bytes());
         }
         if let (Some(slot), Some(stamp)) = (node.slot(Want::Stamp), stamp(value)) {
-            self.slots.set(slot, stamp);
+            self.set(slot, stamp);
             return Ok(());
         }
         for (step, child) in &node.children {
@@ -264,11 +259,6 @@ fn past_spaces(text: &[u8], mut at: usize) -> usize {
         at += 1;
     }
     at
-}
-
-/// The numeric fields of one message; none where it does not parse.
-pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
-    Fields::of(message).leaves
 }
 
 /// What a message holds.

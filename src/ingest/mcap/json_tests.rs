@@ -62,7 +62,8 @@ fn one_element_and_the_whole_array_can_both_be_wanted() {
 #[test]
 fn leaves_are_the_numbers_without_the_stamp() {
     let text = br#"{"timestamp":{"sec":1,"nsec":2},"a":{"b":1},"s":[1.5,null],"w":"x","o":[{"p":1}]}"#;
-    let paths: Vec<(String, bool)> = leaves(text)
+    let paths: Vec<(String, bool)> = Fields::of(text)
+        .leaves
         .into_iter()
         .filter(|leaf| leaf.is_signal)
         .map(|leaf| (leaf.path, leaf.is_array))

@@ -2,39 +2,33 @@
 
 use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::extent::Extent;
-use super::path::source_text;
 use super::plan::AskedField;
 use super::scanned::Scanned;
 use super::topic::{Channels, Gathered, Sensor, Topic};
-use super::topics::Asked;
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
+use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
-use crate::ingest::{Limits, Progress};
 use std::collections::{BTreeMap, HashMap};
-use std::path::Path;
 
-/// Lists what the file at `path` holds.
+/// Lists what a file holds.
 ///
 /// # Errors
 /// Only where the file cannot be read at all.
-pub(in crate::ingest) fn list(
-    path: &Path,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Listing, IngestError> {
-    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
-    let walked = walk(path, limits, Asked::Everything, progress)?;
+pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+    let path = request.path;
+    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, &source))?.len();
+    let walked = walk(request, None)?;
     let unlisted = walked.topics.unlisted();
-    let counts = walked.scanned.counts.named(walked.topics.schema_count(), walked.topics.channel_count());
+    let counts = walked.scanned.counts.named(walked.topics.schemas.len(), walked.topics.by_channel.len());
     let (scanned, mut topics) = walked.finish();
     let mut issues = scanned.findings(None);
     for (topic, gathered) in each(&mut topics) {
         issues.extend(gathered.undecoded(Some(&topic.name)).map(Finding::from));
         for sensor in &mut gathered.sensors {
             for (field, column) in topic.plan.fields.iter().zip(&mut sensor.columns) {
-                let source = source_text(&topic.name, &field.asked.path.to_string());
+                let source = format!("{}.{}", topic.name, field.asked.path);
                 if let Err(refusal) = column.settle_ticks(&source, None) {
                     column.refuse(refusal);
                 }
@@ -133,7 +127,7 @@ fn listed(
             Some(number) => {
                 format!("{{ topic = {:?}, field = \"{path}\", channel = {number} }}", topic.name)
             }
-            None => source_text(&topic.name, &path.to_string()),
+            None => format!("{}.{path}", topic.name),
         };
         if let Some(units) = column.unit_change()
             && !said_units
@@ -148,7 +142,7 @@ fn listed(
         }
         let mut channel = ListedChannel {
             rows,
-            samples: Some(samples),
+            samples: Some(samples as u64),
             messages: Some(messages),
             unit: topic.unit(field, &column),
             range,

@@ -5,6 +5,7 @@ use crate::data::{IssueCode, Severity};
 use crate::ingest::mcap::written::{
     IMU_TEXT, ZERO_NS, block_descriptors, channel, closed, imu, json_file, message, protobuf_block,
 };
+use crate::ingest::{Limits, ReadRequest};
 use mcap::{Compression, WriteOptions};
 use re_cdr::LittleEndian;
 
@@ -12,7 +13,7 @@ fn listing(bytes: &[u8]) -> Listing {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("recording");
     std::fs::write(&path, bytes).unwrap();
-    list(&path, Limits::default(), &|_| ()).unwrap()
+    list(ReadRequest::silent(&path, Limits::default())).unwrap()
 }
 
 #[test]

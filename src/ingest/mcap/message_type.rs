@@ -147,7 +147,7 @@ impl MessageType {
     pub(super) fn decoder(&self, plan: &Plan) -> Box<dyn Decode> {
         match self {
             Self::Json => Box::new(Json::new(plan)),
-            Self::Protobuf(message) => Box::new(Protobuf::new(plan, message)),
+            Self::Protobuf(message) => Box::new(Protobuf::new(&plan.root, message)),
             Self::Cdr(fields) => Box::new(Cdr::new(plan, fields)),
         }
     }

@@ -94,11 +94,6 @@ pub(super) fn field_in(source: &Source, topic: &str) -> Option<FieldPath> {
     }
 }
 
-/// What to write as `source` for a field of a topic.
-pub(super) fn source_text(topic: &str, field: &str) -> String {
-    format!("{topic}.{field}")
-}
-
 fn bare(topic: &str) -> &str {
     topic.strip_prefix('/').unwrap_or(topic)
 }

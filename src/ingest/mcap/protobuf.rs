@@ -1,8 +1,7 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
 use super::plan::{
-    Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want,
-    unix_ns,
+    Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
 use super::wire::{Item, Wire};
 use crate::data::Samples;
@@ -64,15 +63,9 @@ fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<(u32, u32)> {
     Some((number(&SECONDS_NAMES)?, number(&NANOSECONDS_NAMES)?))
 }
 
-/// Decodes protobuf messages by a plan.
-#[derive(Debug)]
-pub(super) struct Protobuf {
-    root: ProtobufMessage,
-}
-
-/// What to do with the fields of a message.
+/// Decodes protobuf messages by a plan: what to do with the fields of a message.
 #[derive(Debug, Default)]
-struct ProtobufMessage {
+pub(super) struct Protobuf {
     fields: Vec<ProtobufField>,
     /// What a field without presence is worth when it is not on the wire.
     defaults: Vec<(usize, Value)>,
@@ -101,51 +94,47 @@ enum Action {
         seconds: u32,
         nanoseconds: u32,
     },
-    Descend(ProtobufMessage),
+    Descend(Protobuf),
     /// One message of a repeated one.
-    Elements(Vec<(usize, ProtobufMessage)>),
+    Elements(Vec<(usize, Protobuf)>),
 }
 
 impl Protobuf {
-    /// For the fields of `plan` in messages of type `message`; fields that it lacks stay missing.
-    pub(super) fn new(plan: &Plan, message: &MessageDescriptor) -> Self {
-        Self { root: compile(&plan.root, message) }
-    }
-}
-
-fn compile(node: &Node, message: &MessageDescriptor) -> ProtobufMessage {
-    let mut compiled = ProtobufMessage::default();
-    for field in message.fields().filter(|field| !field.is_map()) {
-        let Some(child) = node.field(field.name()).or_else(|| node.field(field.json_name())) else {
-            continue;
-        };
-        if let Some(action) = action(child, &field) {
-            match &action {
-                Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
-                    compiled.defaults.push((*slot, number(0.0, &field.kind())));
+    /// For the fields below `node` in messages of type `message`; fields that it lacks stay missing.
+    pub(super) fn new(node: &Node, message: &MessageDescriptor) -> Self {
+        let mut compiled = Self::default();
+        for field in message.fields().filter(|field| !field.is_map()) {
+            let Some(child) = node.field(field.name()).or_else(|| node.field(field.json_name())) else {
+                continue;
+            };
+            if let Some(action) = action(child, &field) {
+                match &action {
+                    Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
+                        compiled.defaults.push((*slot, number(0.0, &field.kind())));
+                    }
+                    Action::Stamp { slot, .. } => compiled.defaults.push((*slot, Value::Stamp(0))),
+                    _ => {}
                 }
-                Action::Stamp { slot, .. } => compiled.defaults.push((*slot, Value::Stamp(0))),
-                _ => {}
+                let (number, kind, is_list) = (field.number(), field.kind(), field.is_list());
+                compiled.fields.push(ProtobufField { number, kind, is_list, action });
             }
-            let (number, kind, is_list) = (field.number(), field.kind(), field.is_list());
-            compiled.fields.push(ProtobufField { number, kind, is_list, action });
         }
+        compiled
     }
-    compiled
 }
 
 fn action(child: &Node, field: &FieldDescriptor) -> Option<Action> {
     match field.kind() {
         Kind::Message(inner) if field.is_list() => {
             let elements = child.children.iter().filter_map(|(step, node)| match step {
-                super::path::Step::Index(index) => Some((*index, compile(node, &inner))),
+                super::path::Step::Index(index) => Some((*index, Protobuf::new(node, &inner))),
                 super::path::Step::Name(_) => None,
             });
             Some(Action::Elements(elements.collect()))
         }
         Kind::Message(inner) => match (child.slot(Want::Stamp), seconds_and_nanoseconds(&inner)) {
             (Some(slot), Some((seconds, nanoseconds))) => Some(Action::Stamp { slot, seconds, nanoseconds }),
-            _ => Some(Action::Descend(compile(child, &inner))),
+            _ => Some(Action::Descend(Protobuf::new(child, &inner))),
         },
         Kind::String => child.slot(Want::Text).map(|slot| Action::Text { slot }),
         kind if is_number(&kind) => {
@@ -157,21 +146,18 @@ fn action(child: &Node, field: &FieldDescriptor) -> Option<Action> {
 
 impl Decode for Protobuf {
     fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
-        self.root.decode(data, slots)
-    }
-}
-
-impl ProtobufMessage {
-    fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
         for (slot, value) in &self.defaults {
             slots.set(*slot, value.clone());
         }
-        let mut wire = Wire::new(data);
+        let mut wire = Wire(data);
         let mut seen: Vec<(u32, usize)> = Vec::new();
         while let Some((number, item)) = wire.item()? {
             let Some(field) = self.fields.iter().find(|field| field.number == number) else { continue };
+            let wrong_type = || format!("field {number} is not of its schema's type");
             match (&field.action, item) {
-                (Action::Numbers { slot, .. }, item) => field.numbers(*slot, &item, slots)?,
+                (Action::Numbers { slot, .. }, item) => {
+                    field.numbers(*slot, &item, slots).ok_or_else(wrong_type)?;
+                }
                 (Action::Text { slot }, Item::Bytes(bytes)) => {
                     slots.set_text(*slot, bytes);
                 }
@@ -185,7 +171,7 @@ impl ProtobufMessage {
                         message.decode(bytes, slots)?;
                     }
                 }
-                _ => return Err(format!("field {number} is not of its schema's type")),
+                _ => return Err(wrong_type()),
             }
         }
         for field in &self.fields {
@@ -208,39 +194,25 @@ fn counted(seen: &mut Vec<(u32, usize)>, number: u32) -> usize {
 }
 
 impl ProtobufField {
-    fn numbers(&self, slot: usize, item: &Item, slots: &mut Slots) -> Result<(), String> {
+    /// Takes what a field holds; `None` where that is not of its schema's type.
+    fn numbers(&self, slot: usize, item: &Item, slots: &mut Slots) -> Option<()> {
         if !self.is_list {
-            let value = scalar(&self.kind, item).ok_or_else(|| self.wrong_type())?;
-            slots.set(slot, number(value, &self.kind));
-            return Ok(());
+            slots.set(slot, number(scalar(&self.kind, item)?, &self.kind));
+            return Some(());
         }
-        let Some(place) = slots.values.get_mut(slot) else { return Ok(()) };
+        let Some(place) = slots.values.get_mut(slot) else { return Some(()) };
         if !matches!(place, Value::Array(_)) {
-            *place = Value::Array(if matches!(self.kind, Kind::Float) {
-                Samples::F32(Vec::new())
-            } else {
-                Samples::F64(Vec::new())
-            });
+            let is_narrow = matches!(self.kind, Kind::Float);
+            *place = Value::Array(if is_narrow { Samples::default() } else { Samples::F64(Vec::new()) });
         }
-        let Value::Array(samples) = place else { return Ok(()) };
+        let Value::Array(samples) = place else { return Some(()) };
         match (item, samples) {
-            (Item::Bytes(packed), samples) => {
-                unpack(&self.kind, packed, samples).ok_or_else(|| self.wrong_type())
-            }
-            (Item::Fixed32(bytes), Samples::F32(samples)) => {
-                samples.push(f32::from_le_bytes(*bytes));
-                Ok(())
-            }
-            (one, Samples::F64(samples)) => {
-                samples.push(scalar(&self.kind, one).ok_or_else(|| self.wrong_type())?);
-                Ok(())
-            }
-            _ => Err(self.wrong_type()),
+            (Item::Bytes(packed), samples) => return unpack(&self.kind, packed, samples),
+            (Item::Fixed32(bytes), Samples::F32(samples)) => samples.push(f32::from_le_bytes(*bytes)),
+            (one, Samples::F64(samples)) => samples.push(scalar(&self.kind, one)?),
+            _ => return None,
         }
-    }
-
-    fn wrong_type(&self) -> String {
-        format!("field {} is not of its schema's type", self.number)
+        Some(())
     }
 }
 
@@ -250,7 +222,7 @@ fn number(value: f64, kind: &Kind) -> Value {
 
 fn stamp_ns(bytes: &[u8], seconds: u32, nanoseconds: u32) -> Result<i64, String> {
     let (mut whole, mut part) = (0, 0);
-    let mut wire = Wire::new(bytes);
+    let mut wire = Wire(bytes);
     while let Some((number, item)) = wire.item()? {
         let value = match item {
             Item::Varint(value) => value.cast_signed(),
@@ -298,8 +270,8 @@ fn unpack(kind: &Kind, packed: &[u8], samples: &mut Samples) -> Option<()> {
             rest.is_empty().then_some(())
         }
         (kind, Samples::F64(samples)) => {
-            let mut wire = Wire::new(packed);
-            while !wire.is_empty() {
+            let mut wire = Wire(packed);
+            while !wire.0.is_empty() {
                 let item = match kind {
                     Kind::Double | Kind::Fixed64 | Kind::Sfixed64 => Item::Fixed64(wire.fixed().ok()?),
                     Kind::Float | Kind::Fixed32 | Kind::Sfixed32 => Item::Fixed32(wire.fixed().ok()?),

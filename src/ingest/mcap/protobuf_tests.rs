@@ -3,7 +3,7 @@
 use super::*;
 use crate::ingest::mcap::descriptors::message_type;
 use crate::ingest::mcap::path::FieldPath;
-use crate::ingest::mcap::plan::AskedField;
+use crate::ingest::mcap::plan::{AskedField, Plan};
 use crate::ingest::mcap::written::{ZERO_NS, block_descriptors, protobuf_block};
 use prost_reflect::prost::Message as _;
 use prost_reflect::prost_types::field_descriptor_proto::Type;
@@ -20,7 +20,7 @@ fn decoded(
     let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
     slots.clear(plan.count);
-    Protobuf::new(&plan, &message).decode(data, &mut slots)?;
+    Protobuf::new(&plan.root, &message).decode(data, &mut slots)?;
     let field = &plan.fields[0];
     let said = slots.beside(field);
     let stamp = said.stamp.cloned().unwrap_or_default();

@@ -1,15 +1,16 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
-use super::column::{CLOCK_IS_SET_NS, Column, StampCounts, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::complaint;
 use super::path;
 use super::scanned::Scanned;
 use super::topic::{Channels, Gathered, Sensor};
-use super::topics::{Asked, LOG_TIME};
+use super::topics::LOG_TIME;
 use super::walk::walk;
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
 use crate::ingest::error::{self, IngestError};
-use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
+use crate::ingest::refusal::Refusal;
+use crate::ingest::{RawChannel, RawRecording, ReadRequest};
 use std::path::Path;
 
 /// Reads the channels that `cask_file` names.
@@ -17,22 +18,24 @@ use std::path::Path;
 /// # Errors
 /// A topic or field that is not there, or gives no samples on a time base.
 pub(in crate::ingest) fn read(
-    path: &Path,
+    request: ReadRequest,
     cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
 ) -> Result<RawRecording, IngestError> {
+    let path = request.path;
     let specs = &cask_file.channels;
-    let (scanned, mut topics) = walk(path, limits, Asked::Sources(cask_file), progress)?.finish();
-    let chosen = chosen(path, specs, &topics, &scanned)?;
+    let (scanned, mut topics) = walk(request, Some(cask_file))?.finish();
+    let refused = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
+    let one =
+        |spec: &ChannelSpec| chosen(path, spec, &topics, &scanned).map_err(|refusal| refused(spec, refusal));
+    let chosen: Vec<ChosenColumn> = specs.iter().map(one).collect::<Result<_, _>>()?;
     for (spec, place) in specs.iter().zip(&chosen) {
         let column = place.column_mut(&mut topics);
         let settled = column.settle_ticks(&spec.source.to_string(), spec.sample_rate_hz);
-        settled.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
+        settled.map_err(|refusal| refused(spec, refusal))?;
         if let Some(time) =
-            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.stamps.good == 0)
+            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.good_stamps == 0)
         {
-            return Err(complaint::no_named_time(path, spec, time));
+            return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
     }
     let columns = || chosen.iter().map(|place| place.column(&topics));
@@ -45,7 +48,7 @@ pub(in crate::ingest) fn read(
         let column = place.column(&topics);
         issues.extend(message_issues(spec, &told[place.channel].1, column));
         if let Some(change) = column.unit_change() {
-            issues.push(complaint::unit_change(path, spec, change)?);
+            issues.push(complaint::unit_change(spec, change).map_err(|refusal| refused(spec, refusal))?);
         }
         let unit = topic.unit(&topic.plan.fields[place.field], column);
         // A second channel on the same field gets its own copy.
@@ -56,7 +59,7 @@ pub(in crate::ingest) fn read(
         };
         let uniform = column
             .uniform(zero_ns, spec.sample_rate_hz)
-            .map_err(|problem| complaint::no_base(path, spec, problem))?;
+            .map_err(|problem| refused(spec, complaint::no_base(spec, problem)))?;
         channels.push(RawChannel { spec: position, uniform, unit });
     }
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
@@ -81,54 +84,42 @@ impl ChosenColumn {
     }
 }
 
-/// The samples that each channel means: of the longest topic that gave some.
+/// The samples that a channel means: of the longest topic that gave some.
 fn chosen(
     path: &Path,
-    specs: &[ChannelSpec],
+    spec: &ChannelSpec,
     topics: &[Channels],
     scanned: &Scanned,
-) -> Result<Vec<ChosenColumn>, IngestError> {
-    let meant = |spec: &ChannelSpec| {
-        let field = |(at, (topic, _)): (usize, &Channels)| {
-            let path = path::field_in(&spec.source, &topic.name)?;
-            Some((at, topic.plan.fields.iter().position(|field| field.asked.path == path)?))
-        };
-        let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
-        let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
-            let mut names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
-            names.dedup();
-            return Err(complaint::no_topic(path, spec, &names, scanned));
-        };
-        let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));
-        let mut all: Vec<ChosenColumn> = places.collect();
-        let most = all.iter().map(|place| topics[place.topic].0.name.len()).max();
-        all.retain(|place| Some(topics[place.topic].0.name.len()) == most);
-        let picked: Vec<ChosenColumn> =
-            all.iter().copied().filter(|place| is_picked(spec, topics, place)).collect();
-        match (&picked[..], &all[..]) {
-            ([one], _) => Ok(*one),
-            (_, []) => Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
-            (several, all) => {
-                let open = if several.is_empty() { all } else { several };
-                // None to pick of those that are all refused.
-                if let [first, ..] = open
-                    && open.iter().all(|place| place.column(topics).heeded().is_err())
-                {
-                    let heeded = first.column(topics).heeded();
-                    heeded.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
-                }
-                let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
-                let rows = open.iter().filter_map(|place| rows_of(topics, place));
-                Err(complaint::several(
-                    path,
-                    spec,
-                    &topics[longest].0.name,
-                    (numbers.collect(), rows.collect()),
-                ))
-            }
-        }
+) -> Result<ChosenColumn, Refusal> {
+    let field = |(at, (topic, _)): (usize, &Channels)| {
+        let path = path::field_in(&spec.source, &topic.name)?;
+        Some((at, topic.plan.fields.iter().position(|field| field.asked.path == path)?))
     };
-    specs.iter().map(meant).collect()
+    let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
+    let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
+        let mut names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
+        names.dedup();
+        return Err(complaint::no_topic(path, spec, &names, scanned));
+    };
+    let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));
+    let mut all: Vec<ChosenColumn> = places.collect();
+    let most = all.iter().map(|place| topics[place.topic].0.name.len()).max();
+    all.retain(|place| Some(topics[place.topic].0.name.len()) == most);
+    let picked: Vec<ChosenColumn> =
+        all.iter().copied().filter(|place| is_picked(spec, topics, place)).collect();
+    let open = match (&picked[..], &all[..]) {
+        ([one], _) => return Ok(*one),
+        (_, []) => return Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
+        ([], all) => all,
+        (several, _) => several,
+    };
+    // None to pick of those that are all refused.
+    if open.iter().all(|place| place.column(topics).heeded().is_err()) {
+        open[0].column(topics).heeded()?;
+    }
+    let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
+    let rows = open.iter().filter_map(|place| rows_of(topics, place));
+    Err(complaint::several(spec, &topics[longest].0.name, (numbers.collect(), rows.collect())))
 }
 
 /// Where a field of a topic has samples.
@@ -159,7 +150,7 @@ fn is_picked(spec: &ChannelSpec, topics: &[Channels], place: &ChosenColumn) -> b
 
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Finding> {
-    let (messages, StampCounts { good, bad }) = (gathered.messages, column.stamps);
+    let (messages, good, bad) = (gathered.messages, column.good_stamps, column.bad_stamps);
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
     let found = log_time.into_iter().chain(gathered.undecoded(None)).map(Finding::from);
     let drift = column.log_drift().filter(|_| spec.sample_rate_hz.is_none());

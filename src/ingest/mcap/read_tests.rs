@@ -6,6 +6,7 @@ use crate::ingest::mcap::written::{
     IMU_TEXT, ZERO_NS, block_descriptors, cask_file, channel, closed, fill_json, imu, json_block, json_file,
     message, protobuf_block,
 };
+use crate::ingest::{Limits, ReadRequest};
 use mcap::{Compression, WriteOptions};
 use re_cdr::LittleEndian;
 use std::io::Cursor;
@@ -14,7 +15,7 @@ fn read_bytes(bytes: &[u8], cask_file: &CaskFile) -> Result<RawRecording, String
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("recording");
     std::fs::write(&path, bytes).unwrap();
-    read(&path, cask_file, Limits::default(), &|_| ()).map_err(|error| {
+    read(ReadRequest::silent(&path, Limits::default()), cask_file).map_err(|error| {
         format!(
             "{error} | {}",
             miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default()
@@ -178,7 +179,7 @@ fn a_listing_says_what_reading_refuses() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("recording");
     std::fs::write(&path, stamped(90, 512, 10, "")).unwrap();
-    let listing = crate::ingest::mcap::list(&path, Limits::default(), &|_| ()).unwrap();
+    let listing = crate::ingest::mcap::list(ReadRequest::silent(&path, Limits::default())).unwrap();
     assert_eq!((listing.channels[0].samples, listing.channels[0].sample_rate_hz), (Some(46_080), None));
     assert!(listing.issues[0].message.starts_with("/a.samples: "), "{:?}", listing.issues);
     assert!(listing.issues[0].message.contains("carry the same stamp"), "{:?}", listing.issues);

@@ -5,8 +5,8 @@ use super::json;
 use super::message_type::MessageType;
 use super::plan::{Beside, Decode, Field, Leaf, Plan, Slots, Value};
 use crate::data::{McapFinding, RowsOf};
-use crate::ingest::clock::Refusal;
 use crate::ingest::limits::MOST_SENSORS;
+use crate::ingest::refusal::Refusal;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -109,7 +109,7 @@ impl Gathered {
             let value = slots.samples(field);
             let said = slots.beside(field);
             if value == Value::Missing && self.leaves.is_empty() && topic.is_json() {
-                self.leaves = json::leaves(message.data);
+                self.leaves = json::Fields::of(message.data).leaves;
             }
             let column = self.column_of(said.sensor.as_ref(), at, is_listed);
             said.unit.into_iter().for_each(|unit| column.state_unit(unit));

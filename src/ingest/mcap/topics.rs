@@ -25,15 +25,6 @@ pub(super) const LOG_TIME: &str = "log_time";
 pub(super) const LISTS_OF_RECORDS: &str =
     "its messages hold lists of records: a message a record is read, or an array of numbers for each field";
 
-/// What is asked of a file.
-#[derive(Clone, Copy)]
-pub(super) enum Asked<'a> {
-    /// The fields that the channels of a cask file name.
-    Sources(&'a CaskFile),
-    /// Every numeric field, for a listing.
-    Everything,
-}
-
 /// What may still be listed, and what was left out.
 struct Room {
     left: usize,
@@ -52,11 +43,12 @@ impl Room {
 
 /// The schemas, channels and topics met so far, and how to take their messages.
 pub(super) struct Topics<'a> {
-    asked: Asked<'a>,
+    /// Whose channels name the fields that are asked for; every numeric one is for a listing.
+    asked: Option<&'a CaskFile>,
     limits: Limits,
     types: MessageTypes,
     /// The first of an id stands.
-    schemas: HashMap<u16, SchemaInfo>,
+    pub(super) schemas: HashMap<u16, SchemaInfo>,
     /// In the order of the file.
     all: Vec<Topic>,
     /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
@@ -66,7 +58,7 @@ pub(super) struct Topics<'a> {
     undecided: BTreeSet<usize>,
     /// The topic of each channel, the first of an id, and its place in the file; `None` where its messages
     /// are not asked for.
-    by_channel: HashMap<u16, Option<(usize, usize)>>,
+    pub(super) by_channel: HashMap<u16, Option<(usize, usize)>>,
     /// The topic and the number of each channel that is asked for, in the order of the file.
     channels: Vec<(usize, u16)>,
     room: Room,
@@ -76,7 +68,7 @@ pub(super) struct Topics<'a> {
 
 impl<'a> Topics<'a> {
     /// For a file of `file_bytes`.
-    pub(super) fn new(asked: Asked<'a>, limits: Limits, file_bytes: u64) -> Self {
+    pub(super) fn new(asked: Option<&'a CaskFile>, limits: Limits, file_bytes: u64) -> Self {
         Self {
             asked,
             limits,
@@ -143,12 +135,12 @@ impl<'a> Topics<'a> {
             name => format!("{} ({name})", channel.message_encoding),
         };
         let is_asked = match self.asked {
-            Asked::Sources(file) => {
+            Some(file) => {
                 file.channels.iter().any(|spec| path::field_in(&spec.source, &channel.topic).is_some())
             }
-            Asked::Everything => self.room.takes(channel.topic.len() + encoding.len()),
+            None => self.room.takes(channel.topic.len() + encoding.len()),
         };
-        if matches!(self.asked, Asked::Everything) && !is_asked {
+        if self.asked.is_none() && !is_asked {
             self.room.topics_out += 1;
             return None;
         }
@@ -158,7 +150,8 @@ impl<'a> Topics<'a> {
             None => {}
             Some(Err(reason)) => {
                 topic.unreadable = Some(reason);
-                topic.plan = Plan::new(&self.asked_of(&topic.name), &[], |_| false);
+                let asked = self.asked.map_or_else(Vec::new, |file| asked_of(file, &topic.name));
+                topic.plan = Plan::new(&asked, &[], |_| false);
             }
             Some(Ok(message_type)) => {
                 let leaves = message_type.leaves();
@@ -179,37 +172,13 @@ impl<'a> Topics<'a> {
     /// Settles which fields of messages with such `leaves` are taken.
     fn prepare(&mut self, topic: &mut Topic, leaves: Vec<Leaf>) {
         let asked = match self.asked {
-            Asked::Sources(_) => self.asked_of(&topic.name),
-            Asked::Everything => self.listed(topic, &leaves),
+            Some(file) => asked_of(file, &topic.name),
+            None => self.listed(topic, &leaves),
         };
         let Some(message_type) = &topic.message_type else { return };
         topic.plan = Plan::new(&asked, &leaves, |path| message_type.has(path));
         topic.decoder = Some(message_type.decoder(&topic.plan));
         topic.leaves = leaves;
-    }
-
-    /// The fields of a topic that sources name, none of them known to be an array.
-    fn asked_of(&self, topic: &str) -> Vec<AskedField> {
-        let Asked::Sources(file) = self.asked else { return Vec::new() };
-        let within = |field: &str| {
-            let whole = path::field_in(&Source::Path(field.to_owned()), topic);
-            whole.or_else(|| FieldPath::parse(field.trim_start_matches('/')))
-        };
-        let asked = |spec: &ChannelSpec| {
-            let path = path::field_in(&spec.source, topic)?;
-            let beside = |field: &str| {
-                let own = within(field)?;
-                let nearer = path.enclosing().map(|message| FieldPath([message.0, own.0.clone()].concat()));
-                Some(nearer.collect())
-            };
-            let times = file.time_of(spec).map(|time| match time {
-                LOG_TIME => Vec::new(),
-                time => beside(time).unwrap_or_default(),
-            });
-            let sensor = spec.rows.as_ref().and_then(|rows| within(&rows.column));
-            Some(AskedField { path, is_array: false, times, sensor })
-        };
-        file.channels.iter().filter_map(asked).collect()
     }
 
     /// The leaves of a topic that there is room to list.
@@ -256,7 +225,7 @@ impl<'a> Topics<'a> {
             return;
         }
         let mut topic = std::mem::take(&mut self.all[at]);
-        let is_asked = matches!(self.asked, Asked::Sources(_));
+        let is_asked = self.asked.is_some();
         let is_large = message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES;
         if is_large && !is_asked {
             topic.message_type = None;
@@ -295,16 +264,7 @@ impl<'a> Topics<'a> {
 
     /// An empty part, one of so many that are held at a time.
     pub(super) fn part(&self, count: usize) -> Part {
-        let is_listed = matches!(self.asked, Asked::Everything);
-        Part::new(is_listed.then(|| self.limits.samples_bytes() / (2 * count as u64)))
-    }
-
-    pub(super) fn schema_count(&self) -> usize {
-        self.schemas.len()
-    }
-
-    pub(super) fn channel_count(&self) -> usize {
-        self.by_channel.len()
+        Part::new(self.asked.is_none().then(|| self.limits.samples_bytes() / (2 * count as u64)))
     }
 
     /// A note on what there was no room to list.
@@ -333,4 +293,27 @@ impl<'a> Topics<'a> {
         }
         topics
     }
+}
+
+/// The fields of a topic that sources name, none of them known to be an array.
+fn asked_of(file: &CaskFile, topic: &str) -> Vec<AskedField> {
+    let within = |field: &str| {
+        let whole = path::field_in(&Source::Path(field.to_owned()), topic);
+        whole.or_else(|| FieldPath::parse(field.trim_start_matches('/')))
+    };
+    let asked = |spec: &ChannelSpec| {
+        let path = path::field_in(&spec.source, topic)?;
+        let beside = |field: &str| {
+            let own = within(field)?;
+            let nearer = path.enclosing().map(|message| FieldPath([message.0, own.0.clone()].concat()));
+            Some(nearer.collect())
+        };
+        let times = file.time_of(spec).map(|time| match time {
+            LOG_TIME => Vec::new(),
+            time => beside(time).unwrap_or_default(),
+        });
+        let sensor = spec.rows.as_ref().and_then(|rows| within(&rows.column));
+        Some(AskedField { path, is_array: false, times, sensor })
+    };
+    file.channels.iter().filter_map(asked).collect()
 }

@@ -7,15 +7,15 @@ use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary};
 use super::summed::Summed;
 use super::topic::{Channels, Part};
-use super::topics::{Asked, Topics};
-use crate::data::{FileEnd, McapFinding};
+use super::topics::Topics;
+use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::error::{self, IngestError};
-use crate::ingest::{Limits, Progress};
+use crate::ingest::{Limits, Progress, ReadRequest};
 use mcap::records::{Record, op};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufReader, Read};
-use std::path::Path;
+use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Larger than most chunks' share between two looks at the progress; smaller than any cache.
 const READ_BUFFER_BYTES: usize = 1 << 18;
@@ -52,17 +52,13 @@ impl From<std::io::Error> for Obstacle {
     }
 }
 
-/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked
-/// for.
+/// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
+/// of a cask file name; without one, for a listing, of every numeric field.
 ///
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
-pub(super) fn walk<'a>(
-    path: &Path,
-    limits: Limits,
-    asked: Asked<'a>,
-    progress: Progress,
-) -> Result<Walked<'a>, IngestError> {
+pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Result<Walked<'a>, IngestError> {
+    let ReadRequest { path, limits, progress } = request;
     let walked = File::open(path).map_err(Obstacle::from).and_then(|mut file| {
         let length = file.metadata()?.len();
         let summary = summary::read(&mut file, length, limits.part_bytes())?;
@@ -83,7 +79,7 @@ pub(super) fn walk<'a>(
         Ok(walk.walked)
     });
     walked.map_err(|obstacle| match obstacle {
-        Obstacle::Io(source) => error::io(path, source),
+        Obstacle::Io(source) => error::io(path, &source),
         Obstacle::Limit(what, limit_bytes) => limits.refusal(path, what, limit_bytes),
     })
 }
@@ -106,13 +102,6 @@ struct Walk<'a> {
     walked: Walked<'a>,
 }
 
-/// Whether the walk goes on after a record.
-#[derive(PartialEq)]
-enum Next {
-    Go,
-    Stop,
-}
-
 impl Walk<'_> {
     fn run(&mut self, progress: Progress) -> Result<(), Obstacle> {
         for (opcode, body) in self.summary.iter().flat_map(Summary::records) {
@@ -124,7 +113,7 @@ impl Walk<'_> {
         }
         self.skip(self.at)?;
         let mut said_at = 0;
-        while self.record()? == Next::Go {
+        while self.record()?.is_continue() {
             self.keep_within()?;
             if self.at - said_at >= READ_BUFFER_BYTES as u64 {
                 said_at = self.at;
@@ -171,12 +160,12 @@ impl Walk<'_> {
     }
 
     /// One record at the file's level.
-    fn record(&mut self) -> Result<Next, Obstacle> {
+    fn record(&mut self) -> Result<ControlFlow<()>, Obstacle> {
         let (at, left) = (self.at, self.length.saturating_sub(self.at));
         if left < RECORD_HEADER_BYTES {
             self.settle()?;
             self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside: "record" });
-            return Ok(Next::Stop);
+            return Ok(Break(()));
         }
         let mut header = [0; 9];
         self.file.read_exact(&mut header)?;
@@ -194,13 +183,13 @@ impl Walk<'_> {
             self.settle()?;
             let inside = record_name(opcode);
             self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside });
-            return Ok(Next::Stop);
+            return Ok(Break(()));
         }
         self.whole_record(opcode, claimed)
     }
 
     /// A record other than a chunk that lies wholly in the file.
-    fn whole_record(&mut self, opcode: u8, length: u64) -> Result<Next, Obstacle> {
+    fn whole_record(&mut self, opcode: u8, length: u64) -> Result<ControlFlow<()>, Obstacle> {
         let (start, is_behind_data) = (self.at, self.is_behind_data());
         self.at += RECORD_HEADER_BYTES + length;
         let is_data =
@@ -210,7 +199,7 @@ impl Walk<'_> {
         }
         if !is_data && !matches!(opcode, op::STATISTICS | op::FOOTER) {
             self.skip(length)?;
-            return Ok(Next::Go);
+            return Ok(Continue(()));
         }
         self.settle()?;
         within("one of its messages takes", length, self.limits.part_bytes())?;
@@ -241,11 +230,11 @@ impl Walk<'_> {
         if let Err(why) = outcome {
             scanned.losses.push_records(opcode, start, 1, why);
         }
-        Ok(Next::Go)
+        Ok(Continue(()))
     }
 
     /// A chunk, which waits until there are enough to be unpacked beside one another.
-    fn chunk(&mut self, claimed: u64, available: u64) -> Result<Next, Obstacle> {
+    fn chunk(&mut self, claimed: u64, available: u64) -> Result<ControlFlow<()>, Obstacle> {
         // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's
         // length.
         self.file.get_mut().sum = None;
@@ -275,7 +264,7 @@ impl Walk<'_> {
         if is_full || is_last {
             self.settle()?;
         }
-        Ok(if is_last { Next::Stop } else { Next::Go })
+        Ok(if is_last { Break(()) } else { Continue(()) })
     }
 
     /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their
@@ -325,7 +314,7 @@ impl Walk<'_> {
     }
 
     /// After bytes that are no record: the next chunk that the summary's index names, else the end.
-    fn resume_after_garbage(&mut self) -> Result<Next, Obstacle> {
+    fn resume_after_garbage(&mut self) -> Result<ControlFlow<()>, Obstacle> {
         self.settle()?;
         let at = self.at;
         let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
@@ -333,20 +322,20 @@ impl Walk<'_> {
         let resumed = next.is_some();
         self.walked.scanned.losses.push(McapFinding::Garbage { at, bytes: to - at, resumed });
         if !resumed {
-            return Ok(Next::Stop);
+            return Ok(Break(()));
         }
         self.file.seek_relative((to - at).cast_signed() - RECORD_HEADER_BYTES.cast_signed())?;
         self.at = to;
-        Ok(Next::Go)
+        Ok(Continue(()))
     }
 
-    fn end_magic(&mut self) -> Result<Next, Obstacle> {
+    fn end_magic(&mut self) -> Result<ControlFlow<()>, Obstacle> {
         let mut magic = Vec::new();
         (&mut self.file).take(mcap::MAGIC.len() as u64).read_to_end(&mut magic)?;
         if magic != mcap::MAGIC {
             self.walked.scanned.losses.end(FileEnd::InMagic { at: self.at });
         }
-        Ok(Next::Stop)
+        Ok(Break(()))
     }
 }
 

@@ -15,25 +15,15 @@ pub(super) enum Item<'a> {
 
 /// The bytes not yet read.
 #[derive(Debug)]
-pub(super) struct Wire<'a> {
-    rest: &'a [u8],
-}
+pub(super) struct Wire<'a>(pub(super) &'a [u8]);
 
 impl<'a> Wire<'a> {
-    pub(super) fn new(data: &'a [u8]) -> Self {
-        Self { rest: data }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.rest.is_empty()
-    }
-
     /// The next field, `None` at the end.
     ///
     /// # Errors
     /// The bytes end within it, or are none.
     pub(super) fn item(&mut self) -> Result<Option<(u32, Item<'a>)>, String> {
-        if self.rest.is_empty() {
+        if self.0.is_empty() {
             return Ok(None);
         }
         let tag = self.varint()?;
@@ -43,8 +33,8 @@ impl<'a> Wire<'a> {
             1 => Item::Fixed64(self.fixed()?),
             2 => {
                 let length = usize::try_from(self.varint()?).unwrap_or(usize::MAX);
-                let (bytes, rest) = self.rest.split_at_checked(length).ok_or_else(ends)?;
-                self.rest = rest;
+                let (bytes, rest) = self.0.split_at_checked(length).ok_or_else(ends)?;
+                self.0 = rest;
                 Item::Bytes(bytes)
             }
             5 => Item::Fixed32(self.fixed()?),
@@ -60,8 +50,8 @@ impl<'a> Wire<'a> {
     pub(super) fn varint(&mut self) -> Result<u64, String> {
         let mut value = 0;
         for position in 0..10 {
-            let (&byte, rest) = self.rest.split_first().ok_or_else(ends)?;
-            self.rest = rest;
+            let (&byte, rest) = self.0.split_first().ok_or_else(ends)?;
+            self.0 = rest;
             value |= u64::from(byte & 0x7f) << (7 * position);
             if byte < 0x80 {
                 return Ok(value);
@@ -75,8 +65,8 @@ impl<'a> Wire<'a> {
     /// # Errors
     /// There are fewer.
     pub(super) fn fixed<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        let (bytes, rest) = self.rest.split_first_chunk().ok_or_else(ends)?;
-        self.rest = rest;
+        let (bytes, rest) = self.0.split_first_chunk().ok_or_else(ends)?;
+        self.0 = rest;
         Ok(*bytes)
     }
 }
@@ -92,7 +82,7 @@ mod tests {
     #[test]
     fn every_wire_type_is_read_and_a_cut_message_is_an_error() {
         let bytes = [0x08, 0x96, 0x01, 0x15, 1, 0, 0, 0, 0x1a, 2, 7, 8, 0x21, 1, 2, 3, 4, 5, 6, 7, 8];
-        let mut wire = Wire::new(&bytes);
+        let mut wire = Wire(&bytes);
         assert_eq!(wire.item(), Ok(Some((1, Item::Varint(150)))));
         assert_eq!(wire.item(), Ok(Some((2, Item::Fixed32([1, 0, 0, 0])))));
         assert_eq!(wire.item(), Ok(Some((3, Item::Bytes(&[7, 8])))));
@@ -100,7 +90,7 @@ mod tests {
         assert_eq!(wire.item(), Ok(None));
         let whole = [0, 3, 8, 12, 21];
         for end in 0..bytes.len() {
-            let mut wire = Wire::new(&bytes[..end]);
+            let mut wire = Wire(&bytes[..end]);
             let outcome = std::iter::from_fn(|| wire.item().transpose()).collect::<Result<Vec<_>, _>>();
             assert_eq!(outcome.is_ok(), whole.contains(&end), "{end}");
         }
@@ -108,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_length_beyond_the_message_takes_no_memory() {
-        assert!(Wire::new(&[0x0a, 0xff, 0xff, 0xff, 0xff, 0x0f, 1]).item().is_err());
-        assert!(Wire::new(&[0xff; 11]).item().is_err());
+        assert!(Wire(&[0x0a, 0xff, 0xff, 0xff, 0xff, 0x0f, 1]).item().is_err());
+        assert!(Wire(&[0xff; 11]).item().is_err());
     }
 }

@@ -7,7 +7,8 @@ use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, Told};
 use super::uniform::{Block, Uniform};
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE};
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::statement::Statement;
 
@@ -76,12 +77,8 @@ fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Blo
         return Ok(BlockRate { laid_hz, stated_hz: None, issues: Vec::new() });
     };
     let is_window = |told: &Told| nearest_hz < told.rate_hz && content.overlaps(blocks, nearest_hz);
-    let own = told.filter(|told| !told.is_few && !is_window(told)).map(|told| Statement {
-        place: "the stamps of its blocks".into(),
-        rate_hz: told.rate_hz,
-        rounding: told.uncertainty,
-        distance: 0,
-    });
+    let own = told.filter(|told| !told.is_few && !is_window(told));
+    let own = own.map(|told| Statement::by("the stamps of its blocks", told.rate_hz, told.uncertainty));
     let taken = claims.weigh(own.as_ref())?;
     let mut issues = taken.issues;
     // Between many blocks a rate shows in every one, between few it looks like samples that are missing.
@@ -132,8 +129,7 @@ fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refu
     }
     let problem = format!(
         "{count} of {} messages carry the same stamp as the one before though their samples differ: the \
-         stamps are coarser than a block is \
-         long, and do not tell whether one is lost",
+         stamps are coarser than a block is long, and do not tell whether one is lost",
         blocks.len()
     );
     Err(Refusal::new(problem, "have the recorder stamp finer, or write longer blocks"))

@@ -1,15 +1,16 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
-use super::error::{TimeBaseError, check_rate};
+use super::error::{self, TimeBaseError, check_lengths, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
+use super::missing;
 use super::order::{is_same, no_mixture};
 use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
 use super::uniform::{Block, Uniform};
-use super::{fit, missing};
 use crate::data::{Finding, Samples, Span, TimesFinding};
-use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
-use crate::numerics::{as_f64, robust};
+use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::refusal::Refusal;
+use crate::numerics::{as_count, as_f64, robust};
 
 /// What sorting and doubles came to.
 #[derive(Default)]
@@ -35,9 +36,7 @@ impl Doubles {
 /// [`TimeBaseError`] where stamps or rate make no record.
 pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, TimeBaseError> {
     let count: usize = blocks.iter().map(|block| block.count).sum();
-    if count != samples.len() {
-        return Err(TimeBaseError::Lengths { times: count, samples: samples.len() });
-    }
+    check_lengths(count, samples.len())?;
     let laid = lay(blocks, rate_hz, &BlockContent { samples: &samples, digests: None })?;
     Ok(filled(laid, samples))
 }
@@ -63,7 +62,7 @@ pub(in crate::ingest) struct Laid {
 pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Result<Laid, TimeBaseError> {
     check_rate(rate_hz)?;
     if let Some(index) = blocks.iter().position(|block| !block.start_s.is_finite()) {
-        return Err(TimeBaseError::NotFinite { number: index + 1, time_s: blocks[index].start_s });
+        return Err(error::not_finite(index + 1, blocks[index].start_s));
     }
     let mut pieces = pieces(blocks);
     pieces.retain(|piece| !piece.samples.is_empty());
@@ -222,11 +221,10 @@ fn place(pieces: &mut [Piece], rate_hz: f64, tolerance: f64, present: usize) -> 
         let steps = (piece.start_s - before.start_s) * rate_hz;
         let miss = steps - as_f64(before.samples.len());
         if miss.abs() > tolerance && as_f64(before.end()) + miss > limit {
-            let (from_s, to_s) = (before.start_s, piece.start_s);
-            return Err(TimeBaseError::Jump { from_s, to_s, lost: miss, sample_rate_hz: rate_hz });
+            return Err(error::jump(before.start_s, piece.start_s, miss, rate_hz));
         }
         piece.place =
-            if miss.abs() <= tolerance { before.end() } else { before.place + fit::whole(steps.round()) };
+            if miss.abs() <= tolerance { before.end() } else { before.place + as_count(steps.round()) };
     }
     Ok(())
 }

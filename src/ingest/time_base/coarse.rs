@@ -10,7 +10,8 @@ use super::error::TimeBaseError;
 use super::missing;
 use super::uniform::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal, of_times};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::digits;
 use crate::numerics::{as_f64, robust};
 
@@ -63,10 +64,17 @@ pub(super) fn place(
     let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
     if steps.is_none() && claims.is_empty() {
-        return Err(match changes.len() {
-            0 => TimeBaseError::AllEqual { time_s: times_s[0] },
-            changes => TimeBaseError::TooCoarse { step_s, changes, count: times_s.len() },
-        });
+        let problem = match changes.len() {
+            0 => format!("all times are {} s: these are no times; give sample_rate_hz instead", times_s[0]),
+            changes => format!(
+                "the times are cut to {} s: {} samples share {} times that are too few or too uneven to tell \
+                 their rate; give sample_rate_hz for this channel",
+                digits(step_s, 3),
+                times_s.len(),
+                changes + 1
+            ),
+        };
+        return Err(TimeBaseError::Told(problem));
     }
     // Uneven changes tell no rate that could contradict a stated one.
     let even = steps.filter(|steps| steps.is_even || claims.is_empty());
@@ -110,8 +118,7 @@ fn no_rows_of_sensors(changes: &[usize], step_s: f64, count: usize, claims: &Cla
         ),
         format!(
             "where the rows are of several sensors name the one that is meant: where = {{ column = …, is = … \
-             }}; where they are samples \
-             one after another write sample_rate_hz = {}",
+             }}; where they are samples one after another write sample_rate_hz = {}",
             digits(rate_hz, 6)
         ),
     ))
@@ -242,6 +249,10 @@ mod tests {
     use crate::data::{IssueCode, Severity};
     use crate::ingest::time_base::{Uniform, from_times};
 
+    fn is_too_coarse(error: &TimeBaseError) -> bool {
+        error.to_string().contains("too few or too uneven to tell their rate")
+    }
+
     /// Times of `count` samples at a rate from `from_s` on, cut to steps.
     fn cut(rate_hz: f64, step_s: f64, from_s: f64, count: usize) -> Vec<f64> {
         (0..count).map(|i| ((from_s + as_f64(i) / rate_hz) / step_s + 1e-9).floor() * step_s).collect()
@@ -294,8 +305,7 @@ mod tests {
         assert_eq!(
             only(&uniform).1,
             "the times are cut to 0.1 s, about 2000 samples each; the samples were taken as evenly spaced at \
-             20000 Hz, \
-             a rate that is uncertain by 0.017 %, and the channel's start is known to 0.1 s only"
+             20000 Hz, a rate that is uncertain by 0.017 %, and the channel's start is known to 0.1 s only"
         );
     }
 
@@ -304,7 +314,7 @@ mod tests {
         // Whole seconds, two and a half of them.
         let times_s = cut(2000.0, 1.0, 0.3, 5000);
         let error = placed(&times_s, None).unwrap_err();
-        assert_eq!(error, TimeBaseError::TooCoarse { step_s: 1.0, changes: 2, count: 5000 });
+        assert!(error.to_string().contains("cut to 1 s: 5000 samples share 3 times"), "{error}");
         assert!(error.to_string().contains("give sample_rate_hz"), "{error}");
         let uniform = placed(&times_s, Some(2000.0)).unwrap();
         assert_eq!((uniform.sample_rate_hz, uniform.samples.len()), (2000.0, 5000));
@@ -312,7 +322,7 @@ mod tests {
         assert!((uniform.start_s - 0.3).abs() < 1e-3, "{}", uniform.start_s);
         // Within one second.
         let equal = vec![5.0; 3000];
-        assert_eq!(placed(&equal, None).unwrap_err(), TimeBaseError::AllEqual { time_s: 5.0 });
+        assert!(placed(&equal, None).unwrap_err().to_string().contains("all times are 5 s"));
         let uniform = placed(&equal, Some(2000.0)).unwrap();
         assert_eq!((uniform.start_s, uniform.sample_rate_hz), (5.0, 2000.0));
         assert!(only(&uniform).1.contains("all times are equal"), "{}", only(&uniform).1);
@@ -341,7 +351,7 @@ mod tests {
         assert!(only(&uniform).1.contains("samples may be missing"), "{}", only(&uniform).1);
         // More than a step of them.
         lost.drain(6000..6200);
-        assert!(matches!(placed(&lost, None), Err(TimeBaseError::TooCoarse { .. })));
+        assert!(is_too_coarse(&placed(&lost, None).unwrap_err()));
         let stated = placed(&lost, Some(20_000.0)).unwrap();
         assert_eq!(only(&stated).0, Severity::Warning, "{}", only(&stated).1);
         // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain
@@ -357,7 +367,7 @@ mod tests {
             (0..20_000).map(|i| as_f64(i / 1000) * 0.05 + 0.003 * (as_f64(i / 1000) * 2.3).sin()).collect();
         match placed(&blocks, None) {
             Ok(uniform) => assert_eq!(only(&uniform).0, Severity::Warning, "{}", only(&uniform).1),
-            Err(error) => assert!(matches!(error, TimeBaseError::TooCoarse { .. }), "{error}"),
+            Err(error) => assert!(is_too_coarse(&error), "{error}"),
         }
     }
 
@@ -367,7 +377,7 @@ mod tests {
         let uniform = placed(&cut(1000.0, 0.1, 0.05, 500), None).unwrap();
         assert_eq!(only(&uniform).0, Severity::Warning);
         assert!(only(&uniform).1.contains("give sample_rate_hz"), "{}", only(&uniform).1);
-        assert!(matches!(placed(&cut(1000.0, 0.01, 0.0, 60), None), Err(TimeBaseError::TooCoarse { .. })));
+        assert!(is_too_coarse(&placed(&cut(1000.0, 0.01, 0.0, 60), None).unwrap_err()));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
 
-use super::error::TimeBaseError;
+use super::error::{self, TimeBaseError};
 use crate::ingest::clock::RATE_TOLERANCE;
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -146,16 +146,10 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
         }
         if lost_total > limit {
             let (steps, at) = widest;
-            let (from_s, to_s) = (times_s[at], times_s[at + 1]);
-            return Err(TimeBaseError::Jump {
-                from_s,
-                to_s,
-                lost: steps - 1.0,
-                sample_rate_hz: 1.0 / period_s,
-            });
+            return Err(error::jump(times_s[at], times_s[at + 1], steps - 1.0, 1.0 / period_s));
         }
         let last = runs[runs.len() - 1];
-        runs.push(Run { first: i + 1, place: last.place + (i - last.first) + whole(steps) });
+        runs.push(Run { first: i + 1, place: last.place + (i - last.first) + as_count(steps) });
     }
     Ok(runs)
 }
@@ -268,13 +262,4 @@ fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
         }
     }
     held_s
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "bounded by the fill limit, not negative"
-)]
-pub(super) fn whole(steps: f64) -> usize {
-    steps as usize
 }

@@ -1,8 +1,9 @@
 //! Times as recorded to times that rise: sorted, without doubles.
 
-use super::error::TimeBaseError;
+use super::error::{self, TimeBaseError};
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Refusal, usual_step};
+use crate::ingest::clock::usual_step;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::short;
 use crate::numerics::as_f64;
 use std::borrow::Cow;
@@ -50,7 +51,7 @@ pub(super) fn ordered<'a>(
         return Ok(taken);
     }
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
-        return Err(TimeBaseError::NotFinite { number: index + 1, time_s: times_s[index] });
+        return Err(error::not_finite(index + 1, times_s[index]));
     }
     if let Some(refusal) = wrapped(times_s) {
         return Err(refusal.into());
@@ -124,8 +125,7 @@ pub(super) fn no_mixture(
         return Err(Refusal::new(
             format!(
                 "its times begin anew {count} time(s), first {place}: {} recordings follow one another, or \
-                 the clock was set back, and \
-                 samples of all would lie on the same times",
+                 the clock was set back, and samples of all would lie on the same times",
                 count + 1
             ),
             "cut it there in a copy, and name the file that holds the recording of the drop",

@@ -1,8 +1,8 @@
 //! Samples at jittering times to samples at uniform times, by local cubic interpolation.
 
-use super::fit::{BaseFit, whole};
+use super::fit::BaseFit;
 use crate::data::Samples;
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce};
 
 /// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest
 /// sample.
@@ -19,7 +19,7 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
     let last = times_s.len() - 1;
     let place = |t: f64| (t - fit.start_s) / fit.period_s;
     let first_place = place(times_s[0]).round();
-    let count = whole(place(times_s[last]).round() - first_place).saturating_add(1);
+    let count = as_count(place(times_s[last]).round() - first_place).saturating_add(1);
     let start_s = fit.start_s + first_place * fit.period_s;
     let mut next_run = 1;
     let (mut at, mut sum, mut max) = (0, 0.0, 0.0_f64);

@@ -10,6 +10,10 @@ fn codes(uniform: &Uniform) -> Vec<IssueCode> {
     uniform.issues.iter().map(|issue| issue.code).collect()
 }
 
+fn told(said: Result<Uniform, TimeBaseError>) -> String {
+    said.unwrap_err().to_string()
+}
+
 fn f64s(values: &[f64]) -> Samples {
     Samples::F64(values.to_vec())
 }
@@ -180,8 +184,8 @@ fn what_is_no_time_base_says_why() {
         let error = from_times(times, f64s(&vec![0.0; times.len()]), None).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
-    assert!(matches!(from_times(&[0.0, 1.0], f64s(&[1.0]), None), Err(TimeBaseError::Lengths { .. })));
-    assert!(matches!(from_rate(0.0, 0.0, f64s(&[1.0, 2.0])), Err(TimeBaseError::Rate { .. })));
+    assert!(told(from_times(&[0.0, 1.0], f64s(&[1.0]), None)).contains("2 times but 1 samples"));
+    assert!(told(from_rate(0.0, 0.0, f64s(&[1.0, 2.0]))).contains("the sample rate is 0 Hz"));
 }
 
 /// A block and its samples.

@@ -3,7 +3,7 @@
 
 use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{CampaignRow, Scored, Stated};
-use crate::numerics::{as_f64, whole};
+use crate::numerics::{as_count, as_f64};
 use std::collections::BTreeMap;
 
 /// An error above this many half-widths on a result that passed is a miss: the interval ends half its width,
@@ -104,7 +104,7 @@ impl Magnitudes {
     pub(super) fn quantile(&self, share: f64) -> f64 {
         let Some(last) = self.count.checked_sub(1) else { return f64::NAN };
         let place = share * as_f64(last);
-        let below = whole(place).min(last);
+        let below = as_count(place).min(last);
         let (low, high) = (self.at(below), self.at((below + 1).min(last)));
         // Equal neighbours may be infinite.
         let beyond = place - as_f64(below);

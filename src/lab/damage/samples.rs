@@ -3,7 +3,7 @@
 use super::super::data::{SyntheticChannel, SyntheticRecording};
 use super::super::drawn::{DrawnDrop, unit_m_s2};
 use crate::data::{STANDARD_GRAVITY_M_S2, Unit};
-use crate::numerics::{single, whole};
+use crate::numerics::{as_count, single};
 use std::f64::consts::TAU;
 
 /// Damages the recording by `kind`; one that is done to something else does nothing to it.
@@ -31,7 +31,7 @@ fn one<'a>(case: &mut DrawnDrop, recording: &'a mut SyntheticRecording) -> &'a m
 /// Index of the sample at `since_s` after first contact.
 fn index(case: &DrawnDrop, channel: &SyntheticChannel, since_s: f64) -> usize {
     let number = (case.scene.before_s + since_s) * channel.sample_rate_hz;
-    whole(number.round()).min(channel.samples.len())
+    as_count(number.round()).min(channel.samples.len())
 }
 
 /// Time of sample `index` after first contact, s.
@@ -96,7 +96,7 @@ fn spikes(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let way_s = case.way_s();
     let channel = one(case, recording);
     let peak = peak(channel);
-    for _ in 0..whole(size) {
+    for _ in 0..as_count(size) {
         let since_s = case.chance.even(-20e-3, way_s);
         let at = index(case, channel, since_s);
         let off = case.chance.sign() * case.chance.even(0.5, 2.0) * peak;

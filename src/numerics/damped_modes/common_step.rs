@@ -32,7 +32,6 @@ fn sums_behind(columns: DMatrix<f64>) -> DMatrix<f64> {
 
 impl<'a> CommonStep<'a> {
     /// `None` where the series have too few points for one step more.
-    #[must_use]
     pub fn new(series: &'a [Series], modes: &[Oscillation], form: Form) -> Option<Self> {
         let bases = SharedByTimes::new(series, |s| basis(s, modes, form))?;
         let left = |(s, basis): (&Series, &DMatrix<f64>)| {
@@ -47,7 +46,6 @@ impl<'a> CommonStep<'a> {
 
     /// The step of each series after a time, and by how much it lowers the sum of squares; `None` where the
     /// modes are all there is.
-    #[must_use]
     pub fn at(&self, after_s: f64) -> Option<Vec<(f64, f64)>> {
         let each = self.series.iter().zip(self.behind.each()).zip(&self.left_behind);
         let step_and_weight = |((series, behind), left): ((&Series, &DMatrix<f64>), &DVector<f64>)| {
@@ -59,7 +57,6 @@ impl<'a> CommonStep<'a> {
     }
 
     /// The Bayesian information criterion with such a step   (21)
-    #[must_use]
     pub fn bic(&self, after_s: f64, correlation: f64) -> Option<f64> {
         let mut fit = self.without.clone();
         for ((own, series), (_, explained)) in fit.series.iter_mut().zip(self.series).zip(self.at(after_s)?) {

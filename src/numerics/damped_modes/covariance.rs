@@ -3,12 +3,12 @@
 use super::drive::Form;
 use super::projection::{Projected, Projection, SharedByTimes, columns, rms};
 use super::series::{Fit, Oscillation, Series, SeriesFit};
+use crate::numerics::as_f64;
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points
 /// over.
-#[must_use]
 pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let mut fit = coefficients(series, modes, form)?;
     uncertainties(series, &mut fit, form)?;
@@ -36,8 +36,7 @@ fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Optio
             jumps: solution.as_slice()[fixed..fixed + jumps].to_vec(),
         });
     }
-    #[allow(clippy::cast_precision_loss, reason = "a handful of series")]
-    let lag = (lag_sum / series.len() as f64).clamp(0.0, 0.95);
+    let lag = (lag_sum / as_f64(series.len())).clamp(0.0, 0.95);
     Some(Fit {
         modes,
         drift,

@@ -18,7 +18,6 @@ pub struct Drive {
 impl Drive {
     /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z
     /// e^((−ζ + i) ω t))   (36)
-    #[must_use]
     pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
         let [turn, half_turn, aged] = self.turns(mode);
         let z =
@@ -69,13 +68,11 @@ pub struct Form<'a> {
 
 impl Form<'_> {
     /// Free phases.
-    #[must_use]
     pub const fn free(drift: bool) -> Form<'static> {
         Form { drift, drive: None }
     }
 
     /// Unknowns that a mode adds to a series.
-    #[must_use]
     pub fn width(&self) -> usize {
         if self.drive.is_some() { 1 } else { 2 }
     }

@@ -26,7 +26,6 @@ const MOST_DAMPING: f64 = 0.15;
 /// none.
 ///
 /// `None` where a series has fewer points than unknowns or the fit is singular.
-#[must_use]
 pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form: Form) -> Option<Fit> {
     let mut modes = start.to_vec();
     if let Some(seeds) = seeds {

@@ -4,8 +4,9 @@
 use super::drive::Form;
 use super::ringing::Ringing;
 use super::series::{Oscillation, Series};
+use crate::numerics::as_f64;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn, Owned};
+use nalgebra::{Cholesky, Complex, DMatrix, DMatrixViewMut, DVector, Dyn, Owned};
 use std::cell::OnceCell;
 
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
@@ -26,16 +27,20 @@ pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMa
         }
     }
     for (i, mode) in modes.iter().enumerate() {
-        matrix.columns_mut(fixed + width * i, width).copy_from(&mode_columns(series, *mode, form));
+        let phase = form.drive.map(|drive| drive.phase(*mode));
+        let own = matrix.columns_mut(fixed + width * i, width);
+        mode_columns(own, Ringing::new(*mode, &series.time_s), phase);
     }
     matrix
 }
 
-/// Cosine and sine of one mode, or the one sum of both that its drive gives it.
-pub(super) fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DMatrix<f64> {
-    let mut columns = DMatrix::zeros(series.time_s.len(), form.width());
-    let phase = form.drive.map(|drive| drive.phase(mode));
-    for (row, value) in Ringing::new(mode, &series.time_s).enumerate() {
+/// Cosine and sine of one mode, or the one sum of both that its drive gives it, by the mode's `ringing`.
+pub(super) fn mode_columns(
+    mut columns: DMatrixViewMut<f64>,
+    ringing: impl Iterator<Item = Complex<f64>>,
+    phase: Option<Complex<f64>>,
+) {
+    for (row, value) in ringing.enumerate() {
         if let Some(phase) = phase {
             columns[(row, 0)] = (phase * value).re;
         } else {
@@ -43,7 +48,6 @@ pub(super) fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DM
             columns[(row, 1)] = value.im;
         }
     }
-    columns
 }
 
 fn fixed_columns(series: &Series, drift: bool) -> usize {
@@ -154,9 +158,8 @@ impl Projected {
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
 pub(super) fn rms(residual: &DVector<f64>) -> f64 {
-    (residual.norm_squared() / residual.len() as f64).sqrt()
+    (residual.norm_squared() / as_f64(residual.len())).sqrt()
 }
 
 /// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own

@@ -1,6 +1,7 @@
 //! A damped mode and times to e^((−ζ + i) ω t), most of them by turning the last value on.
 
 use super::series::Oscillation;
+use crate::numerics::as_f64;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -20,8 +21,7 @@ pub fn uniform_ringing(mode: Oscillation, start_s: f64, step_s: f64) -> impl Ite
     let turn = (rate * step_s).exp();
     let mut value = Complex::new(1.0, 0.0);
     (0_usize..).map(move |i| {
-        #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-        let time_s = start_s + i as f64 * step_s;
+        let time_s = start_s + as_f64(i) * step_s;
         value = if i.is_multiple_of(LONGEST_RUN) { (rate * time_s).exp() } else { value * turn };
         value
     })

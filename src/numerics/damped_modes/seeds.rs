@@ -2,7 +2,7 @@
 
 use super::drive::{Drive, Form};
 use super::projection::{SharedByTimes, columns, mode_columns};
-use super::ringing::even_ringing;
+use super::ringing::{Ringing, even_ringing};
 use super::series::{Oscillation, Series};
 use crate::numerics::{as_f64, reduce};
 use nalgebra::{DMatrix, DVector, Dyn, MatrixView, U1};
@@ -36,7 +36,6 @@ struct Tried {
 
 impl Seeds {
     /// The seeds of a band, Hz, for `series` and what drives them.
-    #[must_use]
     pub fn new(series: &[Series], band_hz: (f64, f64), drive: Option<&Drive>) -> Self {
         let form = Form { drift: false, drive };
         let mut modes = Vec::new();
@@ -61,18 +60,10 @@ impl Tried {
         let width = form.width();
         let mut columns = DMatrix::zeros(series.time_s.len(), width * modes.len());
         for (i, mode) in modes.iter().enumerate() {
-            let mut own = columns.columns_mut(width * i, width);
-            let Some(ringing) = even_ringing(*mode, &series.time_s) else {
-                own.copy_from(&mode_columns(series, *mode, form));
-                continue;
-            };
             let phase = form.drive.map(|drive| drive.phase(*mode));
-            for (row, value) in ringing.into_iter().enumerate() {
-                own[(row, 0)] = phase.map_or(value.re, |phase| (phase * value).re);
-                if phase.is_none() {
-                    own[(row, 1)] = value.im;
-                }
-            }
+            let ringing = even_ringing(*mode, &series.time_s)
+                .unwrap_or_else(|| Ringing::new(*mode, &series.time_s).collect());
+            mode_columns(columns.columns_mut(width * i, width), ringing.into_iter(), phase);
         }
         let products = |i: usize| {
             let (first, last) = (columns.column(width * i), columns.column(width * (i + 1) - 1));

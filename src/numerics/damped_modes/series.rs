@@ -1,5 +1,7 @@
 //! Noisy series, the modes that ring on them, and what a fit says of both.
 
+use crate::numerics::as_f64;
+
 /// One series y(t) to be explained.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -61,16 +63,14 @@ pub struct Fit {
 impl Fit {
     /// BIC = Σ_j (n_j/κ) ln(RMS_j² + floor_j²) + parameters · ln(Σ n_j/κ)   (21), κ the correlation of the
     /// richest candidate.
-    #[must_use]
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
     pub fn bic(&self, series: &[Series], correlation: f64) -> f64 {
         let mut points = 0.0;
         let mut score = 0.0;
         for (s, f) in series.iter().zip(&self.series) {
-            let n = s.value.len() as f64 / correlation;
+            let n = as_f64(s.value.len()) / correlation;
             points += n;
             score += n * (f.residual.powi(2) + s.floor.powi(2)).ln();
         }
-        score + self.parameters as f64 * points.max(2.0).ln()
+        score + as_f64(self.parameters) * points.max(2.0).ln()
     }
 }

@@ -5,7 +5,7 @@ use super::peak::{Sample, bands};
 use super::uncertain::{Draw, draw};
 use super::{Fall, richest};
 use crate::data::{CaskFile, Criterion, MonteCarlo, QuantileCurves, StudyRequest};
-use crate::numerics::robust::quantile;
+use crate::numerics::{as_f64, robust::quantile};
 use rayon::prelude::*;
 
 /// Probabilities of the quantiles.
@@ -135,8 +135,7 @@ fn quantiles(draws: &[Traced], criterion: usize, angles_deg: &[f64], band_percen
 /// The share of the draws for which each of `count` angles `holds`.
 fn share_of(count: usize, draws: &[Traced], holds: impl Fn(&Traced, usize) -> bool + Sync) -> Vec<f64> {
     let among = |j: usize| draws.iter().filter(|traced| holds(traced, j)).count();
-    #[allow(clippy::cast_precision_loss, reason = "counts of draws, below 2^32")]
-    let share = |j: usize| among(j) as f64 / draws.len() as f64;
+    let share = |j: usize| as_f64(among(j)) / as_f64(draws.len());
     (0..count).into_par_iter().map(share).collect()
 }
 

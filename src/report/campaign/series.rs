@@ -4,7 +4,7 @@
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
-use crate::numerics::{as_f64, whole};
+use crate::numerics::{as_count, as_f64};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -198,7 +198,7 @@ fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
     // One recording is one drop, however often it is listed.
     for row in rows.iter().filter(|row| row.same_recording_as.is_none()) {
         if let Some(angle_deg) = row.at.angle_deg {
-            by_angle.entry(whole((angle_deg * 1e6).round())).or_default().push(row);
+            by_angle.entry(as_count((angle_deg * 1e6).round())).or_default().push(row);
         }
     }
     let of_angle = by_angle.values().flat_map(|rows| {

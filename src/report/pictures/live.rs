@@ -3,7 +3,7 @@
 use super::super::text::printable;
 use super::decimate::runs;
 use super::panel::{Curve, Panel};
-use crate::numerics::{as_f64, single, whole};
+use crate::numerics::{as_count, as_f64, single};
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use serde_json::{Value, json};
 
@@ -50,7 +50,7 @@ fn of_line(line: &Curve, each: usize) -> Value {
     };
     let places = line.points.iter().enumerate().map(|(i, p)| (as_f64(i) / as_f64(each), p.1));
     for (i, run) in runs(places).into_iter().enumerate() {
-        let place = |x: f64| whole((x * as_f64(each)).round());
+        let place = |x: f64| as_count((x * as_f64(each)).round());
         if let Some((begins, _)) = run.first().filter(|_| i > 0) {
             put(place(*begins) - 1, f64::NAN);
         }

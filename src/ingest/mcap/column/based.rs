@@ -2,17 +2,17 @@
 
 use super::{Column, StatedRate, seconds_from};
 use crate::data::ListedChannel;
-use crate::ingest::clock::{Claims, Refusal};
+use crate::ingest::clock::Claims;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
 use crate::numerics::as_f64;
 
 impl Column {
     /// The rate at which its samples came by the times of its messages, Hz.
-    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
     fn told_hz(&self) -> f64 {
-        let before_last = self.counts.iter().rev().skip(1).sum::<usize>();
-        self.span_ns().map_or(f64::NAN, |(from_ns, to_ns)| before_last as f64 / seconds_from(to_ns, from_ns))
+        let before_last = as_f64(self.counts.iter().rev().skip(1).sum());
+        self.span_ns().map_or(f64::NAN, |(from_ns, to_ns)| before_last / seconds_from(to_ns, from_ns))
     }
 
     /// What is said of its rate but by its stamps.

@@ -1,11 +1,13 @@
 //! Numbers that messages carry as their times to ns, and log times to how their pace differs from that of the
 //! stamps.
 
-use super::{Column, SentTimes, StampCounts, seconds_from};
+use super::{Column, SentTimes, seconds_from};
 use crate::data::{Finding, McapFinding};
-use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
+use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base;
 use crate::ingest::times::{self, Carrier, SentTicks};
+use crate::numerics::as_f64;
 
 impl Column {
     /// Takes the numbers that messages carry for their times, in ns, where they rise as times do; `source`
@@ -22,16 +24,12 @@ impl Column {
         let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.times_ns.len()) else { return Ok(()) };
         each.resize(count, f64::NAN);
         if !times::rise(&each) {
-            self.stamps.bad = count as u64;
+            self.bad_stamps = count as u64;
             return Ok(());
         }
-        let samples = self.extent.as_ref().map_or(self.samples.len() as u64, |extent| extent.samples);
-        #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
-        let ticks = SentTicks {
-            each: &each,
-            samples_each: samples as f64 / count as f64,
-            logged_s: seconds_from(to_ns, from_ns),
-        };
+        let samples = self.extent.as_ref().map_or(self.samples.len(), |extent| extent.samples);
+        let samples_each = as_f64(samples) / as_f64(count);
+        let ticks = SentTicks { each: &each, samples_each, logged_s: seconds_from(to_ns, from_ns) };
         let stated = || Some(self.rates.first()?.statement(f64::NAN)?.rate_hz);
         let stated_hz = cask_hz.or_else(stated);
         let place = format!("the field {field} beside {source}");
@@ -43,7 +41,7 @@ impl Column {
             (tick as i64).saturating_mul(unit_ns as i64).saturating_add(rest)
         };
         self.times_ns.iter_mut().zip(&each).for_each(|(time_ns, tick)| *time_ns = ns(*tick));
-        self.stamps = StampCounts { good: count as u64, bad: 0 };
+        (self.good_stamps, self.bad_stamps) = (count as u64, 0);
         Ok(())
     }
 
@@ -53,7 +51,7 @@ impl Column {
         /// Fewer messages tell no pace.
         const FEWEST: usize = 16;
         let &(_, log_from_ns) =
-            self.logged.first().filter(|_| self.stamps.good == self.times_ns.len() as u64)?;
+            self.logged.first().filter(|_| self.good_stamps == self.times_ns.len() as u64)?;
         let from_ns = self.times_ns[self.logged[0].0];
         let late = |&(place, log_ns): &(usize, i64)| {
             let stamp_s = seconds_from(self.times_ns[place], from_ns);

@@ -3,7 +3,7 @@
 
 use super::place::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
-use crate::numerics::{as_f64, nanoseconds, whole};
+use crate::numerics::{as_count, as_f64, nanoseconds};
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
@@ -90,7 +90,7 @@ impl BlockStamp {
 
 /// The channel in blocks; none reaches over a loss.
 fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
-    let longest = whole(BLOCK_S * channel.sample_rate_hz).max(2);
+    let longest = as_count(BLOCK_S * channel.sample_rate_hz).max(2);
     let block = |(from, samples)| SyntheticBlock {
         timestamp: BlockStamp::of(START_NS + nanoseconds(channel.time_s(from))),
         sample_rate_hz: channel.sample_rate_hz,

@@ -1,17 +1,17 @@
 //! A signal to what the converter and the store make of it: clipped, in steps, held, lost.
 
 use crate::lab::data::Chain;
-use crate::numerics::whole;
+use crate::numerics::as_count;
 
 /// A count from a product of time and rate; at least 1.
 pub(super) fn count(number: f64) -> usize {
-    whole(number.round()).max(1)
+    as_count(number.round()).max(1)
 }
 
 /// The first index that is not before `number`.
 pub(super) fn ceiling(number: f64) -> usize {
     // A time that was meant to fall on a sample does so in spite of rounding.
-    whole((number - 1e-6).ceil())
+    as_count((number - 1e-6).ceil())
 }
 
 /// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step
