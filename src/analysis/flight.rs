@@ -9,7 +9,7 @@ use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
     Events, Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
 };
-use crate::motion::{self, Integrated, Ringing};
+use crate::motion::{self, CornerRinging, Integrated};
 use crate::{events, fit, judge};
 
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only
@@ -175,7 +175,7 @@ fn moved(
 }
 
 /// The speed of R's corner where ringing adds to that of the rigid body   (44)
-fn of_corner(motion: &Motion, rigid: Estimate, ringing: Ringing) -> Option<Estimate> {
+fn of_corner(motion: &Motion, rigid: Estimate, ringing: CornerRinging) -> Option<Estimate> {
     let ((x_m_s, z_m_s), at) = motion.second_end_m_s.zip(motion.slap_down)?;
     let (sin, cos) = at.angle_rad.sin_cos();
     let local_m_s = (x_m_s - ringing.velocity_m_s * sin).hypot(z_m_s + ringing.velocity_m_s * cos);

@@ -10,8 +10,8 @@ use serde::Serialize;
 /// to strike.
 pub const GRAZE_SHARE: f64 = 0.01;
 
-/// No cask of a few metres bends more slowly, Hz: what does is the cask as a whole, which swings on its contents or
-/// is pressed on the target.
+/// No cask of a few metres bends more slowly, Hz: what does is the cask as a whole, which swings on its
+/// contents or is pressed on the target.
 pub const SLOWEST_BENDING_HZ: f64 = 25.0;
 
 /// More channels than any drop test has, and `init` gives each a table of twenty lines.

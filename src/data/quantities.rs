@@ -135,7 +135,10 @@ macro_rules! quantities {
             { $($(#[$second_field])* $second: $second_words => |all| all.$second;)* });
     };
     (part $(#[$about:meta])* $name:ident
-        { $(#[$time_about:meta])* time: $time_words:expr $(, $(#[$beside_about:meta])* $beside:ident: $beside_words:expr)* }
+        {
+            $(#[$time_about:meta])* time: $time_words:expr
+            $(, $(#[$beside_about:meta])* $beside:ident: $beside_words:expr)*
+        }
         { $($(#[$field_about:meta])* $field:ident: $words:expr => $of:expr;)* }) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -184,7 +187,8 @@ quantities! {
     SlapDown {
         /// First contact of R, s from the recording's first sample.
         time,
-        /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s   (44)
+        /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s
+        /// (44)
         local_speed: ("speed of its corner", "with ringing and swinging"),
         /// Magnitude of R's velocity just before it strikes, m/s   (24)
         speed: "m/s", ("speed", "just before the second end strikes") =>

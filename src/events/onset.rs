@@ -31,8 +31,9 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     }
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing rings.
-/// A layer that yields far below the peak and lets go again has struck before the rise that leads to it.
+/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing
+/// rings. A layer that yields far below the peak and lets go again has struck before the rise that leads to
+/// it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
     let sign = step_m_s.signum();
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
@@ -140,8 +141,8 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or
     // far before it.
-    // Where the first stage yields, a line through all of the rise meets zero far too soon: a straight rise takes
-    // as long to the foot as from there to twice the foot.
+    // Where the first stage yields, a line through all of the rise meets zero far too soon: a straight rise
+    // takes as long to the foot as from there to twice the foot.
     let doubled = (low..=high).find(|&i| sign * force[i] >= 2.0 * foot).map_or(crossing, as_f64);
     let reach = 2.0 * (doubled - crossing).max(1.0);
     let position = extrapolated.clamp((crossing - reach).max(0.0), crossing);
@@ -233,7 +234,8 @@ mod tests {
 
     #[test]
     fn a_pulse_that_yields_in_its_first_stage_begins_where_that_does() {
-        // 300 m/s² within 2 ms, from there to 1500 within 25: a line through all of it meets zero 4 ms too soon.
+        // 300 m/s² within 2 ms, from there to 1500 within 25: a line through all of it meets zero 4 ms too
+        // soon.
         let plain = signal(End::First, 5e3, 0.037, 1.0);
         let force = |i: usize| match plain.time_s(i) - 0.03 {
             t if (0.0..0.002).contains(&t) => 1.5e5 * t,

@@ -18,8 +18,8 @@ const SMALL_BEND_M_S: f64 = 0.5;
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
-/// A contact that lasts through what was taken for a flight looks like less than so many periods of a mode that
-/// is slower than a cask bends. Of 16 simulated drops with such contacts 10 do.
+/// A contact that lasts through what was taken for a flight looks like less than so many periods of a mode
+/// that is slower than a cask bends. Of 16 simulated drops with such contacts 10 do.
 const PRESSED_PERIODS: f64 = 1.3;
 /// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
 /// to which corner and target are even.
@@ -73,8 +73,8 @@ pub fn judge_motion(
     findings
 }
 
-/// A first end that is still pressed on the target as the second one strikes: what was taken for a flight bends
-/// more slowly than a cask, and what it says of the motion is contradicted.
+/// A first end that is still pressed on the target as the second one strikes: what was taken for a flight
+/// bends more slowly than a cask, and what it says of the motion is contradicted.
 #[must_use]
 pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Finding> {
     let periods = flight.periods();
@@ -89,8 +89,8 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
 /// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the
 /// prediction with the measured k.
 ///
-/// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly before
-/// R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
+/// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
+/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
 #[must_use]
 pub fn judge_touch(
     motion: &Motion,
@@ -112,8 +112,8 @@ pub fn judge_touch(
     }
 }
 
-/// What L changes of the vertical velocity of R's corner where it lands as R strikes, m/s: nothing where it goes
-/// up   (2), (5)
+/// What L changes of the vertical velocity of R's corner where it lands as R strikes, m/s: nothing where it
+/// goes up   (2), (5)
 fn landing_effect_m_s(motion: &Motion, k: f64, cask: &Cask) -> f64 {
     let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
     let angle = motion.slap_down.map_or(0.0, |at| at.angle_rad).sin_cos();

@@ -6,13 +6,13 @@ use crate::data::{At, Axis, FlightFit, SLOWEST_BENDING_HZ, Setup, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::free_beam;
 
-/// The shape of a mode is known to this share of what it changes between sensor and corner: the first shape of a
-/// uniform beam against a straight line, a quarter of their difference.
+/// The shape of a mode is known to this share of what it changes between sensor and corner: the first shape
+/// of a uniform beam against a straight line, a quarter of their difference.
 const SHAPE_SHARE: f64 = 0.25;
 
 /// A velocity across the axis with its standard uncertainty, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ringing {
+pub struct CornerRinging {
     /// Positive away from the target.
     pub velocity_m_s: f64,
     /// Its standard uncertainty.
@@ -21,8 +21,8 @@ pub struct Ringing {
 
 /// What ringing and swinging add to the velocity of R's corner as it strikes   (44)
 ///
-/// It is what the channel nearest to the corner then has beyond its plateau, each mode carried to the corner by
-/// its shape. `None` without a transverse channel on the second end.
+/// It is what the channel nearest to the corner then has beyond its plateau, each mode carried to the corner
+/// by its shape. `None` without a transverse channel on the second end.
 #[must_use]
 pub fn ringing_of_second_end(
     integrated: &Integrated,
@@ -30,7 +30,7 @@ pub fn ringing_of_second_end(
     window: &Window,
     slap_down: At,
     setup: &Setup,
-) -> Option<Ringing> {
+) -> Option<CornerRinging> {
     let across = |s: &&Signal| s.axis == Axis::Transverse;
     let by_place = |a: &&Signal, b: &&Signal| a.position_m.total_cmp(&b.position_m);
     let signals = || integrated.signals.iter().filter(across);
@@ -69,7 +69,7 @@ pub fn ringing_of_second_end(
         rate_m_s2 += (omega * (size.1 * z.re - size.0 * z.im)).hypot(bent_m_s2);
     }
     let u_m_s = plateau.u_m_s.hypot(plateau.residual_m_s).hypot(u_shape_m_s);
-    Some(Ringing {
+    Some(CornerRinging {
         velocity_m_s: own_m_s + carried_m_s,
         u_m_s: u_m_s.hypot(rate_m_s2 * slap_down.u_s).hypot(last.u_offset_m_s2 * since_s),
     })
@@ -88,9 +88,9 @@ mod tests {
     use super::*;
     use crate::data::{AxialClosure, CONTACT_STEPS, End, Mode, Plateau, example};
 
-    /// 2 m/s at the corner of a 5 m cask, 0.05 of the length beyond the sensor, as R strikes at 0.1 s; the other
-    /// end goes along by `opposite`.
-    fn ringing(frequency_hz: f64, corner_m_s: f64, sensor_m_s: f64, opposite: f64) -> Ringing {
+    /// 2 m/s at the corner of a 5 m cask, 0.05 of the length beyond the sensor, as R strikes at 0.1 s; the
+    /// other end goes along by `opposite`.
+    fn ringing(frequency_hz: f64, corner_m_s: f64, sensor_m_s: f64, opposite: f64) -> CornerRinging {
         let omega = std::f64::consts::TAU * frequency_hz;
         let force = |i: u32| -sensor_m_s * omega * (omega * (f64::from(i) / 1e5 - 0.1)).sin();
         let signal = |name: &str, end, position_m| Signal {

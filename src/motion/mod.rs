@@ -18,7 +18,7 @@ pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
 pub use late_blow::strike;
-pub use local::{Ringing, ringing_of_second_end};
+pub use local::{CornerRinging, ringing_of_second_end};
 pub use reconstruct::{outcome, reconstruct, with_states};
 pub use refit::{mean_of_flight, with_modes};
 pub use ringing::{RingingRemoved, mirrored, rotation_rad_s, turned_rad_s};

@@ -7,8 +7,8 @@ pub const MOST_MODES: usize = 3;
 const WAVE_NUMBERS: [f64; MOST_MODES] =
     [4.730_040_744_862_704, 7.853_204_624_095_838, 10.995_607_838_001_671];
 
-/// Deflection of the mode of this order, from 1 on, at `share` of the length; ±2 at the ends, mean square 1, so
-/// that its modal mass is the body's.
+/// Deflection of the mode of this order, from 1 on, at `share` of the length; ±2 at the ends, mean square 1,
+/// so that its modal mass is the body's.
 ///
 /// An order beyond the shapes there are takes the last one.
 #[must_use]

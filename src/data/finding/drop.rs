@@ -84,9 +84,9 @@ pub enum DropFinding {
              and the flight leaves it out", 1e3 * .depth_m)]
     Settles { depth_m: f64, effect_m_s: f64 },
     /// L may land as R strikes.
-    #[error("the first end comes down again as the second end strikes: by the motion it is then {:.0} ± {:.0} mm \
-             above where it left, and a landing before that changes the slap-down speed by up to \
-             {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
+    #[error("the first end comes down again as the second end strikes: by the motion it is then \
+             {:.0} ± {:.0} mm above where it left, and a landing before that changes the slap-down speed by up \
+             to {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
     MayLand { above_m: f64, u_m: f64, effect_m_s: f64 },
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
@@ -95,9 +95,9 @@ pub enum DropFinding {
     Blow { step_m_s: f64, after_s: f64 },
     /// A mode slower than a cask bends.
     #[error(
-        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, more slowly than it bends: contents \
-             or mounts move in it; the slap-down speed and k are those of all that moves, `local_speed` is that of the \
-             corner that strikes"
+        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, more slowly than it bends: \
+         contents or mounts move in it; the slap-down speed and k are those of all that moves, `local_speed` \
+         is that of the corner that strikes"
     )]
     Swings { frequency_hz: f64, size_m_s: f64 },
     /// L is still pressed as R strikes.
