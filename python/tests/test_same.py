@@ -112,3 +112,8 @@ def test_the_import_is_light() -> None:
     code = "import sys, dropcheck; print(*[m for m in ('numpy', 'pandas', 'xarray', 'inspect') if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True).stdout
     assert loaded.strip() == ""
+
+
+def test_the_module_shows_its_own_names_alone() -> None:
+    assert dir(dropcheck) == sorted(dropcheck.__all__) and not {"os", "sys", "Iterable", "_dropcheck"} & set(dir(dropcheck))
+    assert all(hasattr(dropcheck, name) for name in dropcheck.__all__)

@@ -179,6 +179,10 @@ def main(argv: list[str] | None = None) -> int:
     return _dropcheck.main(sys.argv[1:] if argv is None else argv)
 
 
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 def read_hdf5_with(python: Path) -> None:
     """Names the Python interpreter that takes HDF5 files apart, before the first is read: where `sys.executable` is none."""
     words = ["-S", "-c", _TAKE_APART.format(os.path.dirname(os.path.abspath(__file__)))]
