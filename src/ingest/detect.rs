@@ -173,6 +173,7 @@ fn unknown(path: &Path, found: &str, mend: &str) -> IngestError {
         path: path.display().to_string(),
         found: found.to_owned(),
         mend: mend.to_owned(),
+        library: strangers::library(mend),
     }
 }
 

@@ -38,6 +38,8 @@ pub enum IngestError {
         found: String,
         /// What to do.
         mend: String,
+        /// The word for its format where a library of its field reads it.
+        library: Option<&'static str>,
     },
     /// A channel's source is not in the recording.
     #[error("{path}: channel {channel:?}: {problem}")]
@@ -83,6 +85,22 @@ pub enum IngestError {
         /// What to do.
         mend: String,
     },
+}
+
+impl IngestError {
+    /// The same of a file for which another one stood.
+    pub(super) fn in_file(mut self, name: &Path) -> Self {
+        match &mut self {
+            Self::CaskFile(_) => {}
+            Self::Io { path, .. }
+            | Self::Directory { path }
+            | Self::UnknownFormat { path, .. }
+            | Self::Source { path, .. }
+            | Self::TooLarge { path, .. }
+            | Self::Content { path, .. } => *path = name.display().to_string(),
+        }
+        self
+    }
 }
 
 /// The operating system's refusal, with the file's name.

@@ -11,6 +11,15 @@ const IDE: &str = include_str!("convert/ide.txt");
 const ARROW: &str = include_str!("convert/arrow.txt");
 const NETCDF: &str = include_str!("convert/netcdf.txt");
 
+/// The words for formats that a library of their field reads, by how to convert them.
+const LIBRARIES: [(&str, &str); 5] =
+    [(TDMS, "tdms"), (MDF, "mdf"), (UFF, "uff"), (MATLAB, "mat"), (IDE, "ide")];
+
+/// The word for the format whose remedy this is, where a library of its field reads it.
+pub(super) fn library(mend: &str) -> Option<&'static str> {
+    LIBRARIES.iter().find(|(remedy, _)| *remedy == mend).map(|(_, word)| *word)
+}
+
 const UNPACK: &str = "unpack it first, and name the file that was in it";
 
 /// Where a mark stands, its bytes, what the file is, and what to do with it.
