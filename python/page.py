@@ -14,9 +14,9 @@ WIDTH = 110
 HEAD = """# dropcheck for Python
 
 One wheel installs the module `dropcheck` and the command of the same name. The module needs numpy; pandas and xarray
-are needed only for the tables named after them. A wheel is a file of a release (`pip install dropcheck-*.whl`)
-or comes from the sources: `pip install ./python` in the repository, with a Rust toolchain. Linux with glibc 2.28 or
-newer.
+are needed only for the tables named after them, other libraries only for [`from_file`](#from_file). A wheel is a file
+of a release (`pip install dropcheck-*.whl`) or comes from the sources: `pip install ./python` in the repository, with
+a Rust toolchain. Linux with glibc 2.28 or newer.
 
 *This page is written by `python/page.py` from the docstrings; an executed example is
 [examples/campaign.ipynb](../examples/campaign.ipynb).*
@@ -68,7 +68,7 @@ def entry(name: str, of: object) -> list[str]:
 
 def page() -> str:
     parts = [HEAD.strip(), words(dropcheck), "## Functions"]
-    for name in ["analyze", "predict", "inspect", "synth", "main", "read_hdf5_with"]:
+    for name in ["analyze", "from_file", "predict", "inspect", "synth", "main", "read_hdf5_with"]:
         parts += entry(name, getattr(dropcheck, name))
     parts.append("## Classes")
     for name in ["Samples", "Result", "Answer", "Record", "Quantity", "FirstImpact", "SlapDown", "Finding", "Comparison", "Error"]:

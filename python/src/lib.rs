@@ -10,7 +10,7 @@ use rayon::ThreadPool;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -181,6 +181,44 @@ fn take_hdf5_apart(py: Python, path: PathBuf) {
     process::exit(i32::from(!could));
 }
 
+/// Has the package convert a file of another format by the library of its field.
+fn converted(path: &Path, format: &str, into: &Path) -> Result<String, [String; 3]> {
+    let said: PyResult<Vec<String>> = Python::attach(|py| {
+        let package = py.import("dropcheck._foreign")?;
+        package.call_method1("into_hdf5", (path.to_str(), format, into.to_str()))?.extract()
+    });
+    match said.map(|mut said| said.pop().map(|last| (last, said))) {
+        Ok(Some((reader, before))) if before.is_empty() => Ok(reader),
+        Ok(Some((mend, before))) => {
+            Err([before[0].clone(), before.last().cloned().unwrap_or_default(), mend])
+        }
+        Ok(None) => Err(Default::default()),
+        Err(fault) => Err(["the module".to_owned(), fault.to_string(), "please report it".to_owned()]),
+    }
+}
+
+/// The word for the format of a file that a library of its field reads; what else it is, is an error.
+#[pyfunction]
+fn foreign_format(path: PathBuf) -> PyResult<&'static str> {
+    ingest::foreign_format(&path).ok_or_else(|| {
+        let own = ingest::format(&path).map(|_| "dropcheck reads it itself: hand its name to `analyze`");
+        let said = own.map(|own| miette::miette!("{}: {own}", path.display())).unwrap_or_else(Into::into);
+        Error::new_err(command::message(&said))
+    })
+}
+
+/// SHA-256 of a file, as results have it.
+#[pyfunction]
+fn sha256(py: Python, path: PathBuf) -> PyResult<String> {
+    apart(py, || Ok(ingest::sha256(&path)?))
+}
+
+/// Whether an attribute of this name says how counts become a physical quantity.
+#[pyfunction]
+fn is_conversion(name: &str) -> bool {
+    ingest::is_conversion(name)
+}
+
 /// The extension behind the package `dropcheck`.
 #[pymodule]
 fn _dropcheck(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -192,6 +230,10 @@ fn _dropcheck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(inspect, module)?)?;
     module.add_function(wrap_pyfunction!(synth, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(foreign_format, module)?)?;
+    module.add_function(wrap_pyfunction!(sha256, module)?)?;
+    module.add_function(wrap_pyfunction!(is_conversion, module)?)?;
+    ingest::read_foreign_by(converted);
     module.add_function(wrap_pyfunction!(read_hdf5_by, module)?)?;
     module.add_function(wrap_pyfunction!(take_hdf5_apart, module)?)
 }

@@ -26,6 +26,7 @@ CALLS: list[Callable[[], object]] = [
     *[lambda bad=bad: dropcheck.analyze(bad, CASK) for bad in NO_PATHS],
     *[lambda bad=bad: dropcheck.analyze(RECORDING, bad) for bad in NO_PATHS],
     *[lambda bad=bad: dropcheck.inspect(bad) for bad in NO_PATHS],
+    *[lambda bad=bad: dropcheck.from_file(bad) for bad in NO_PATHS],
     *[lambda bad=bad: dropcheck.predict(bad) for bad in NO_PATHS],
     *[lambda bad=bad: dropcheck.synth(bad) for bad in NO_PATHS],
     *[lambda bad=bad: dropcheck.analyze(bad, CASK) for bad in NO_MAPPINGS],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import pickle
 import subprocess
@@ -112,3 +113,22 @@ def test_the_import_is_light() -> None:
     code = "import sys, dropcheck; print(*[m for m in ('numpy', 'pandas', 'xarray', 'inspect') if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True).stdout
     assert loaded.strip() == ""
+
+
+def test_the_module_shows_its_own_names_alone() -> None:
+    assert dir(dropcheck) == sorted(dropcheck.__all__) and not {"os", "sys", "Iterable", "_dropcheck"} & set(dir(dropcheck))
+    assert all(hasattr(dropcheck, name) for name in dropcheck.__all__)
+
+
+def test_a_library_that_is_not_there_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> str:
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(importlib.metadata, "version", missing)
+    recording = tmp_path / "drop.tdms"
+    recording.write_bytes(b"TDSm")
+    said = f"{recording}: the whole file: npTDMS, which reads it, is not installed\n  help: pip install 'dropcheck[tdms]'"
+    for read in (dropcheck.from_file, dropcheck.inspect, lambda path: dropcheck.analyze(path, EXAMPLES / "anf10-plain.toml")):
+        with pytest.raises(dropcheck.Error) as raised:
+            read(recording)
+        assert str(raised.value) == said

@@ -124,6 +124,7 @@ fn result(
             recording: recording.path.display().to_string(),
             recording_sha256: recording.sha256.clone(),
             format: recording.format,
+            reader: recording.reader.clone(),
             cask: file.path.display().to_string(),
             cask_sha256: file.sha256.clone(),
         },

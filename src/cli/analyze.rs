@@ -157,12 +157,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let limits = arguments.bounds.limits();
     let recording = with_progress("reading", |progress| {
         let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
-        match ingest::format(&arguments.recording)? {
-            // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep
-            // all threads at work.
-            RecordingFormat::Mcap => keep_threads_awake(read),
-            RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
-        }
+        // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all
+        // threads at work.
+        let is_mcap = matches!(ingest::format(&arguments.recording), Ok(RecordingFormat::Mcap));
+        if is_mcap { keep_threads_awake(read) } else { read() }
     })?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
         folder.spares_others(&recording.sha256)?;

@@ -12,7 +12,9 @@ const LONGEST_LINE: usize = 400;
 
 /// Prints `report`; nothing in it can steer the terminal, and no line of a file fills it.
 pub fn complain(report: &Report) {
-    let drawn = std::io::stderr().is_terminal().then(|| drawn(report));
+    // Lines for a shell are not wrapped.
+    let has_lines = report.help().is_some_and(|help| help.to_string().contains('\n'));
+    let drawn = (std::io::stderr().is_terminal() && !has_lines).then(|| drawn(report));
     let fits = |text: &String| text.lines().all(|line| line.len() <= 4 * LONGEST_LINE);
     let text = drawn.filter(fits).unwrap_or_else(|| told(report));
     // There is no one left to tell where standard error is closed.

@@ -37,6 +37,9 @@ pub struct Input {
     pub recording_sha256: String,
     /// Its format.
     pub format: RecordingFormat,
+    /// What read it and handed it on in that format, with its version; `None` where dropcheck itself did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reader: Option<String>,
     /// The cask file, as given.
     pub cask: String,
     /// Its SHA-256.

@@ -31,6 +31,8 @@ pub struct Recording {
     pub sha256: String,
     /// Its format.
     pub format: RecordingFormat,
+    /// What read it and handed it on in that format, with its version; `None` where dropcheck itself did.
+    pub reader: Option<String>,
     /// The channels, in the order of the cask file.
     pub channels: Vec<Channel>,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.

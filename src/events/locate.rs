@@ -208,6 +208,7 @@ mod tests {
         Recording {
             path: "a".into(),
             format: RecordingFormat::Hdf5,
+            reader: None,
             sha256: String::new(),
             channels,
             start_unix_ns: None,

@@ -63,7 +63,8 @@ fn no_rate(held: &HeldSamples) -> Refusal {
 /// The samples of each channel: all by their `source`, else all by their `name`, for a mixture could take one
 /// sensor for another.
 fn chosen<'a>(held: &'a [HeldSamples], cask_file: &CaskFile) -> Result<Vec<&'a HeldSamples>, IngestError> {
-    let by = |key: &str| held.iter().find(|held| held.name == key);
+    let bare = |name: &str| name.trim_start_matches('/').to_owned();
+    let by = |key: &str| held.iter().find(|held| bare(&held.name) == bare(key));
     let channels = &cask_file.channels;
     let by_source: Option<Vec<_>> = channels.iter().map(|spec| by(&spec.source.to_string())).collect();
     let by_name = || channels.iter().map(|spec| by(&spec.name)).collect();

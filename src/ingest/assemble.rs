@@ -36,6 +36,7 @@ pub(crate) fn recording(
         path: path.to_owned(),
         sha256,
         format,
+        reader: None,
         channels,
         start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
         issues,

@@ -24,6 +24,17 @@ pub enum IngestError {
     },
 }
 
+impl IngestError {
+    /// The same of a file for which another one stood.
+    pub(super) fn in_file(mut self, name: &Path) -> Self {
+        match &mut self {
+            Self::CaskFile(_) => {}
+            Self::Refused { path, .. } => *path = name.display().to_string(),
+        }
+        self
+    }
+}
+
 /// The operating system's refusal, with the file's name.
 pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
     of_file(path, Refusal::new(bare(refusal), "check the name, and that you may read it"))

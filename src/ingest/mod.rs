@@ -8,6 +8,7 @@ pub(crate) mod clock;
 mod csv;
 mod detect;
 pub(crate) mod error;
+pub(crate) mod foreign;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
 mod hdf5;
@@ -26,6 +27,7 @@ mod vocabulary;
 pub use arrays::read_arrays;
 pub use detect::format;
 pub use error::IngestError;
+pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
 pub use hdf5::{Hdf5Program, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use opened::{bytes_of, opened};
@@ -104,17 +106,31 @@ pub fn read_within(
     progress: Progress,
 ) -> Result<Recording, IngestError> {
     cask_file::require_channels(cask_file, path)?;
-    let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
-    let request = ReadRequest { path, limits, progress };
-    let (raw, sha256) = unchanged::hashed(path, || match format {
-        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(request, cask_file)),
-        // No file is told as `Samples`.
-        RecordingFormat::Csv | RecordingFormat::Samples => rayon::scope(|_| csv::read(request, cask_file)),
-        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(request, cask_file)),
+    let (((raw, format), reader), sha256) = unchanged::hashed(path, || {
+        let converted = foreign::converted(path)?;
+        let file = converted.as_ref().map_or(path, |converted| &converted.file);
+        let format = detect::format(file)?;
+        let request = ReadRequest { path: file, limits, progress };
+        let raw = rayon::scope(|_| match format {
+            RecordingFormat::Mcap => mcap::read(request, cask_file),
+            // No file is told as `Samples`.
+            RecordingFormat::Csv | RecordingFormat::Samples => csv::read(request, cask_file),
+            RecordingFormat::Hdf5 => hdf5::read(request, cask_file),
+        });
+        let raw = raw.map_err(|fault| fault.in_file(path))?;
+        Ok(((raw, format), converted.map(|converted| converted.reader)))
     })?;
-    assemble::recording(path, format, sha256, raw, cask_file)
+    let recording = assemble::recording(path, format, sha256, raw, cask_file)?;
+    Ok(Recording { reader, ..recording })
+}
+
+/// Whether an attribute of this name on samples says how they become a physical quantity.
+#[must_use]
+pub fn is_conversion(name: &str) -> bool {
+    use hdf5::names::AttributeRole::{Conversion, Offset, Scale};
+    matches!(hdf5::names::role(name, 0), Some(Scale | Offset | Conversion))
 }
 
 /// The SHA-256 of a file, as results have it.
@@ -138,12 +154,21 @@ pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
 /// # Errors
 /// As [`list`]; also where the file would pass a limit.
 pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
-    let request = ReadRequest { path, limits, progress };
-    match detect::format(path)? {
+    let converted = foreign::converted(path)?;
+    let file = converted.as_ref().map_or(path, |converted| &converted.file);
+    let request = ReadRequest { path: file, limits, progress };
+    let listing = match detect::format(file)? {
         RecordingFormat::Mcap => mcap::list(request),
         RecordingFormat::Hdf5 => hdf5::list(request),
         RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
+    };
+    let mut listing = listing.map_err(|fault| fault.in_file(path))?;
+    if let Some(converted) = converted {
+        listing.recording = path.display().to_string();
+        listing.bytes = std::fs::metadata(path).map_err(|refusal| error::io(path, &refusal))?.len();
+        listing.facts.insert("converted_by".into(), converted.reader);
     }
+    Ok(listing)
 }
 
 /// To be called first in `main` of a program that reads HDF5 by this library: where the program was started

@@ -1,6 +1,25 @@
 //! First bytes of files that are no recording read here to their name, and to how to make one of them.
 
 const EXPORT: &str = "export the channels from the program that wrote it as CSV, HDF5 or MCAP";
+
+// Lines for a shell. What a library warns of ends them; a number that no file states is to be filled in.
+const TDMS: &str = include_str!("convert/tdms.txt");
+const MDF: &str = include_str!("convert/mdf.txt");
+const UFF: &str = include_str!("convert/uff.txt");
+const MATLAB: &str = include_str!("convert/matlab.txt");
+const IDE: &str = include_str!("convert/ide.txt");
+const ARROW: &str = include_str!("convert/arrow.txt");
+const NETCDF: &str = include_str!("convert/netcdf.txt");
+
+/// The words for formats that a library of their field reads, by how to convert them.
+const LIBRARIES: [(&str, &str); 5] =
+    [(TDMS, "tdms"), (MDF, "mdf"), (UFF, "uff"), (MATLAB, "mat"), (IDE, "ide")];
+
+/// The word for the format whose remedy this is, where a library of its field reads it.
+pub(super) fn library(mend: &str) -> Option<&'static str> {
+    LIBRARIES.iter().find(|(remedy, _)| *remedy == mend).map(|(_, word)| *word)
+}
+
 const UNPACK: &str = "unpack it first, and name the file that was in it";
 
 /// Where a mark stands, its bytes, what the file is, and what to do with it.
@@ -9,13 +28,12 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
     (0, b"SQLite format 3", "a SQLite file, perhaps a ROS 2 bag",
      "convert it to MCAP: `ros2 bag convert` or `mcap convert`"),
-    (0, b"TDSm", "a TDMS file", EXPORT),
+    (0, b"TDSm", "a TDMS file", TDMS),
     (0, b"TDSh", "the index of a TDMS file",
      "name the file beside it that holds the samples, exported as CSV or HDF5"),
-    (0, b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
-    (0, b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
-    (0, b"MATLAB 5.0", "a MATLAB file before version 7.3",
-     "save it with -v7.3, which is HDF5, or export CSV"),
+    (0, b"MDF ", "an ASAM MDF file", MDF),
+    (0, b"UnFinMF", "an unfinalised ASAM MDF file", MDF),
+    (0, b"MATLAB 5.0", "a MATLAB file before version 7.3", MATLAB),
     (0, b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
     (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
     (0, b"%PDF", "a PDF document", EXPORT),
@@ -25,17 +43,14 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"\x28\xB5\x2F\xFD", "a Zstandard archive", UNPACK),
     (0, b"\x04\x22\x4D\x18", "an LZ4 archive", UNPACK),
     (0, b"7z\xBC\xAF\x27\x1C", "a 7-Zip archive", UNPACK),
-    (0, b"PAR1\x15", "a Parquet file", EXPORT),
-    (0, b"ARROW1\0", "an Arrow file", EXPORT),
-    (0, b"FEA1\0", "a Feather file", EXPORT),
-    (0, b"\x93NUMPY", "a NumPy array", "save the channels as HDF5 or CSV"),
-    (0, b"CDF\x01", "a netCDF file before version 4",
-     "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`"),
-    (0, b"CDF\x02", "a netCDF file before version 4",
-     "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`"),
-    (8, b"WAVE", "a WAV sound file",
-     "export the channels as CSV or HDF5, with their unit: a WAV file states none"),
-    (0, b"\x1A\x45\xDF\xA3", "an EBML file, such as .ide of an enDAQ or Slam Stick recorder", EXPORT),
+    (0, b"PAR1\x15", "a Parquet file", include_str!("convert/parquet.txt")),
+    (0, b"ARROW1\0", "an Arrow file", ARROW),
+    (0, b"FEA1\0", "a Feather file", ARROW),
+    (0, b"\x93NUMPY", "a NumPy array", include_str!("convert/numpy.txt")),
+    (0, b"CDF\x01", "a netCDF file before version 4", NETCDF),
+    (0, b"CDF\x02", "a netCDF file before version 4", NETCDF),
+    (8, b"WAVE", "a WAV sound file, which states no unit", include_str!("convert/wav.txt")),
+    (0, b"\x1A\x45\xDF\xA3", "an EBML file, such as .ide of an enDAQ or Slam Stick recorder", IDE),
     (0, b"|CF,", "an imc FAMOS file", EXPORT),
     (0, b"|CB,", "an imc FAMOS file", EXPORT),
     (0, b"DIAEXTENDED HEADER", "the header of a DIAdem file", EXPORT),
@@ -54,10 +69,7 @@ pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
     };
     let found = MARKS.iter().find(has_mark).map(|(_, _, what, mend)| (*what, *mend));
     found
-        .or_else(|| {
-            is_matlab_4(head)
-                .then_some(("a MATLAB file of version 4", "save it with -v7.3, which is HDF5, or export CSV"))
-        })
+        .or_else(|| is_matlab_4(head).then_some(("a MATLAB file of version 4", MATLAB)))
         .or_else(|| sheet(head))
 }
 
@@ -90,7 +102,7 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     // binary.
     let number = second.split_whitespace().next().unwrap_or_default().trim_end_matches('b');
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
-        return Some(("a universal file (UFF)", EXPORT));
+        return Some(("a universal file (UFF)", UFF));
     }
     if first.starts_with("Test object number") || text.contains("\nName of the channel") {
         return Some((

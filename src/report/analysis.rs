@@ -329,6 +329,7 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         Fact::words("Program", program(result)),
         Fact::words("Schema of result.json", result.schema),
     ];
+    facts.extend(input.reader.as_ref().map(|reader| Fact::words("Recording converted by", &reader[..])));
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
     facts.splice(5..5, own.map(|sha256| Fact::code("SHA-256 of the program", sha256)));
     let stated = settings::of_cask_file(file, &result.settings);

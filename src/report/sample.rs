@@ -82,6 +82,7 @@ fn result() -> DropResult {
             recording: "drop-2024-06-11/anf18-test-3.mcap".into(),
             recording_sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
             format: RecordingFormat::Mcap,
+            reader: None,
             cask: "anf18.toml".into(),
             cask_sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
         },

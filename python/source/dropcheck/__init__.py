@@ -49,6 +49,7 @@ __all__ = [
     "SlapDown",
     "__version__",
     "analyze",
+    "from_file",
     "inspect",
     "main",
     "predict",
@@ -140,6 +141,23 @@ def predict(
     return Answer(_dropcheck.predict(words))
 
 
+def from_file(recording: Path) -> dict[str, Samples]:
+    """Reads a recording in TDMS, MDF 3 or 4, UFF 58 or 58b, MATLAB before 7.3 or IDE to samples by name.
+
+    The library of the format does it: `pip install 'dropcheck[tdms]'` installs that of TDMS; likewise `[mdf]`, `[uff]`,
+    `[mat]`, `[ide]`. What it warns of is an error. Rate and unit are those that the file states, else the cask file states
+    them; MATLAB files state neither, and hold single values such as `Fs` beside the channels. The names are sources as
+    `inspect` lists them, without the first slash.
+
+    `analyze` and `inspect` also take the file itself, and so do the commands `analyze`, `inspect`, `init` and `batch`;
+    `reader` under `input` of the result names the library. `dropcheck convert RECORDING --to FILE.h5` writes it as HDF5,
+    for machines without Python. The library reads in this process, without the isolation that HDF5 has.
+    """
+    from . import _foreign
+
+    return _foreign.samples(os.fsdecode(recording))
+
+
 def inspect(recording: Path) -> Answer:
     """Lists what a recording holds: `.channels` with source, rate, unit and gaps, and the `.issues` of the file."""
     _name_interpreter()
@@ -169,6 +187,11 @@ def main(argv: list[str] | None = None) -> int:
     import threading
 
     _name_interpreter()
+    words = sys.argv[1:] if argv is None else argv
+    if words[:1] == ["convert"]:
+        from . import _foreign
+
+        return _foreign.convert(words[1:])
     if argv is None:
         # The process is the command's: Ctrl-C ends it at once, and the HDF5 library loads no code that variables name.
         if threading.current_thread() is threading.main_thread():
@@ -176,7 +199,11 @@ def main(argv: list[str] | None = None) -> int:
         for name in [name for name in os.environ if name.startswith("HDF5_")]:
             del os.environ[name]
         os.environ["HDF5_PLUGIN_PRELOAD"] = "::"
-    return _dropcheck.main(sys.argv[1:] if argv is None else argv)
+    return _dropcheck.main(words)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
 
 
 def read_hdf5_with(python: Path) -> None:

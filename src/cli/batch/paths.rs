@@ -1,7 +1,7 @@
 //! Paths, folders and patterns to the recordings that they stand for.
 
-use crate::report;
 use crate::report::Batch;
+use crate::{ingest, report};
 use miette::miette;
 use std::collections::HashSet;
 use std::io::{Read, Write};
@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
 const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+/// The same where a reader of other formats is there.
+const FOREIGN_ENDINGS: [&str; 8] = ["tdms", "mf4", "mdf", "uff", "unv", "uf", "mat", "ide"];
 
 /// The recordings, folders replaced by the files in them, by name, and patterns by what they match.
 pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
@@ -64,7 +66,9 @@ pub fn stem(path: &Path) -> String {
 
 fn has_ending(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    ending.is_some_and(|ending| RECORDING_ENDINGS.contains(&ending.as_str()))
+    let foreign = FOREIGN_ENDINGS.iter().filter(|_| ingest::foreign::has_reader());
+    let mut known = RECORDING_ENDINGS.iter().chain(foreign);
+    ending.is_some_and(|ending| known.any(|known| *known == ending))
 }
 
 /// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files
