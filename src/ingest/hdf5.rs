@@ -42,6 +42,13 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::rc::Rc;
 
+/// Whether an attribute of this name on samples says how they become a physical quantity.
+#[must_use]
+pub fn is_conversion(name: &str) -> bool {
+    use names::AttributeRole::{Conversion, Offset, Scale};
+    matches!(names::role(name, 0), Some(Scale | Offset | Conversion))
+}
+
 /// Where this process was started to take an HDF5 file apart: does so until nobody asks any more. Else
 /// `program` is noted as the one to be started for it.
 pub(super) fn serve(program: &Path) -> Option<ExitCode> {

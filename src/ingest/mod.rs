@@ -28,7 +28,7 @@ pub use arrays::read_arrays;
 pub use detect::format;
 pub use error::IngestError;
 pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
-pub use hdf5::{Hdf5Program, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
+pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;
@@ -124,13 +124,6 @@ pub fn read_within(
     })?;
     let recording = assemble::recording(path, format, sha256, raw, cask_file)?;
     Ok(Recording { reader, ..recording })
-}
-
-/// Whether an attribute of this name on samples says how they become a physical quantity.
-#[must_use]
-pub fn is_conversion(name: &str) -> bool {
-    use hdf5::names::AttributeRole::{Conversion, Offset, Scale};
-    matches!(hdf5::names::role(name, 0), Some(Scale | Offset | Conversion))
 }
 
 /// The SHA-256 of a file, as results have it.

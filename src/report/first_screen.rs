@@ -137,7 +137,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let limits = result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state)));
     let rows = [
         ("Slap-down speed", Some(determined(interval(speed)) + holds), 1),
-        ("Of its corner", of_corner(result), 1),
+        ("Speed of corner", of_corner(result), 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
         ("Predicted speed", compared(result), 1),
         ("Interval", Some(interval_by).filter(|_| is_number), 2),

@@ -85,8 +85,8 @@ pub enum DropFinding {
     Settles { depth_m: f64, effect_m_s: f64 },
     /// L may land as R strikes.
     #[error("the first end comes down again as the second end strikes: by the motion it is then \
-             {:.0} ± {:.0} mm above where it left, and a landing before that changes the slap-down speed by up \
-             to {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
+             {:.0} ± {:.0} mm above where it left, and a landing before that changes the slap-down speed by \
+             up to {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
     MayLand { above_m: f64, u_m: f64, effect_m_s: f64 },
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
