@@ -230,6 +230,7 @@ mod tests {
             format: RecordingFormat::Hdf5,
             sha256: String::new(),
             channels,
+            others: std::sync::Arc::default(),
             start_unix_ns: None,
             issues: vec![],
         }

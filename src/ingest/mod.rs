@@ -40,7 +40,7 @@ pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 /// and clock.
 #[derive(Debug)]
 pub(crate) struct RawChannel {
-    /// Index into `CaskFile::channels`.
+    /// Index into the channels of [`CaskFile::to_be_read`].
     pub(crate) spec: usize,
     /// The samples; its times and those of its issues count from [`RawRecording::zero_unix_ns`].
     pub(crate) uniform: time_base::Uniform,
@@ -94,6 +94,7 @@ pub fn read_within(
     progress: Progress,
 ) -> Result<Recording, IngestError> {
     cask_file::require_channels(cask_file, path)?;
+    let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
@@ -105,7 +106,7 @@ pub fn read_within(
         }
         RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
     })?;
-    assemble::recording(path, format, sha256, raw, cask_file)
+    assemble::recording(path, format, sha256, raw, stated)
 }
 
 /// The SHA-256 of a file, as results have it.

@@ -7,6 +7,7 @@ mod decimate;
 mod flight;
 mod histories;
 mod late_blow;
+mod others;
 mod reconstruct;
 mod refit;
 mod ringing;
@@ -17,6 +18,7 @@ pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
 pub use late_blow::strike;
+pub use others::{other_curve, strongest_line};
 pub use reconstruct::{outcome, reconstruct, with_states};
 pub use refit::{mean_of_flight, with_modes};
 pub use ringing::{RingingRemoved, mirrored, rotation_rad_s, turned_rad_s};

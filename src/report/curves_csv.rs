@@ -70,7 +70,12 @@ fn groups(curves: &Curves) -> Vec<CurveGroup<'_>> {
         let series = motion_series(motion).into();
         Some(CurveGroup { of: String::new(), grid: Grid::new(&motion.time_s)?, series })
     });
-    channels.chain(motion).flatten().collect()
+    let others = curves.others.iter().map(|curve| {
+        let series = vec![CurveSeries { name: "", values: &curve.values, factor: 1.0 }];
+        let of = format!("{}_raw_{}", curve.channel, curve.unit);
+        Some(CurveGroup { of, grid: Grid::new(&curve.time_s)?, series })
+    });
+    channels.chain(motion).chain(others).flatten().collect()
 }
 
 /// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
