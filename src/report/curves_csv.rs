@@ -72,8 +72,8 @@ fn groups(curves: &Curves) -> Vec<CurveGroup<'_>> {
     });
     let others = curves.others.iter().map(|curve| {
         let series = vec![CurveSeries { name: "", values: &curve.values, factor: 1.0 }];
-        let of = format!("{}_raw_{}", curve.channel, curve.unit);
-        Some(CurveGroup { of, grid: Grid::new(&curve.time_s)?, series })
+        let (grid, name) = (Grid::new(&curve.time_s)?, format!("{}_raw_{}", curve.channel, curve.unit));
+        Some(CurveGroup { of: name, grid, series })
     });
     channels.chain(motion).chain(others).flatten().collect()
 }

@@ -175,12 +175,12 @@ mod tests {
 
     #[test]
     fn a_fast_channel_outside_the_motion_makes_the_grid_finer_and_no_longer() {
-        let of = curve(-1.0, 0.001, 3001);
+        let dense = curve(-1.0, 0.001, 3001);
         let fast = OtherCurve {
             channel: "S1".into(),
             unit: "V".into(),
-            time_s: of.time_s,
-            values: of.raw_m_s2,
+            time_s: dense.time_s,
+            values: dense.raw_m_s2,
             frequency_hz: vec![],
             magnitude: vec![],
         };
