@@ -6,6 +6,7 @@ pub mod flight_search;
 mod impact;
 mod impacts;
 pub mod missing_end;
+mod others;
 mod progress;
 mod result;
 mod second_impact;
@@ -39,7 +40,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
+    rayon::scope(|_| others::add(recording, cask_file, &mut found));
+    let result = &mut found.result;
     result.verdict = judge::verdict(&mut result.quality);
+    judge::behind_the_motion(&mut result.quality, &result.other_channels);
     found
 }
 

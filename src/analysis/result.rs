@@ -12,6 +12,7 @@ use crate::data::{
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
+use std::sync::Arc;
 
 /// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to
 /// 0.25 of the rate, 2.0 for one of eighth order at 0.4 (Butterworth, at low frequency).
@@ -88,7 +89,7 @@ pub(super) fn of(
     signals.truncate(recorded);
     let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
-    analysis(recording, file, result, move || Curves { channels: channels(), motion })
+    analysis(recording, file, result, move || Curves { channels: channels(), motion, others: vec![] })
 }
 
 fn analysis(
@@ -97,7 +98,10 @@ fn analysis(
     result: DropResult,
     curves: impl FnOnce() -> Curves + Send + 'static,
 ) -> Analysis {
-    let curves = LazyCurves::new(Box::new(curves));
+    let (others, events) = (Arc::clone(&recording.others), result.events);
+    let curve = move |other: &Channel| motion::other_curve(other, &events);
+    let of_others = move || others.channels.iter().filter_map(curve).collect();
+    let curves = LazyCurves::new(Box::new(move || Curves { others: of_others(), ..curves() }));
     Analysis { result, cask_file: file.clone(), curves, start_unix_ns: recording.start_unix_ns }
 }
 
@@ -144,6 +148,7 @@ fn result(
         verdict,
         events,
         channels,
+        other_channels: Vec::new(),
         flight: None,
         budget: Vec::new(),
         untested: Vec::new(),

@@ -26,13 +26,19 @@ const NOISE_LEFT: f64 = 0.6;
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
 /// extreme, as indices.
 ///
-/// The first `quiet` samples lie before the impact.
-pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: usize) -> Vec<Span> {
+/// The first `quiet` samples lie before the impact. What was taken off is `rest`.
+pub(super) fn clipped(
+    channel: &Channel,
+    force: &[f64],
+    rest: f64,
+    noise_m_s2: f64,
+    quiet: usize,
+) -> Vec<Span> {
     let roughness = roughness(force.get(..quiet).unwrap_or_default());
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
-        spans.extend(runs(force, |f| f.abs() >= 0.999 * limit_m_s2));
+        spans.extend(runs(force, |f| (f + rest).abs() >= 0.999 * limit_m_s2));
     }
     let (low, high) = reduce::extremes(force, 0.0);
     let peak = high.max(-low);
@@ -163,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0);
+        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, 0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -173,9 +179,9 @@ mod tests {
         // 28 of 4000 is a step of a 10-bit converter over 3.6 times the peak.
         for step in [10.0, 28.0] {
             let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / step).round() * step).collect();
-            assert!(clipped(&channel(None), &coarse, 0.0, 0).is_empty(), "{step}");
+            assert!(clipped(&channel(None), &coarse, 0.0, 0.0, 0).is_empty(), "{step}");
         }
-        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0).is_empty());
+        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
     /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a
@@ -200,7 +206,7 @@ mod tests {
             for length in [20, 47, 110, 260, 900, 3000] {
                 let found = |range: f64| {
                     let force = converted(bits, range, length, seed);
-                    clipped(&channel(None), &force, robust::spread(&force[..200]), 200)
+                    clipped(&channel(None), &force, 0.0, robust::spread(&force[..200]), 200)
                 };
                 for range in [3.0, 4.1, 5.9, 8.3, 11.7, 16.9, 23.0, 30.0] {
                     assert!(found(range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
@@ -222,7 +228,7 @@ mod tests {
         for noise_m_s2 in [0.05, 0.5, 1.1, 2.0, 5.0] {
             for power in [2, 4] {
                 assert!(
-                    clipped(&channel(None), &top(power), noise_m_s2, 0).is_empty(),
+                    clipped(&channel(None), &top(power), 0.0, noise_m_s2, 0).is_empty(),
                     "{noise_m_s2} {power}"
                 );
             }
@@ -245,7 +251,7 @@ mod tests {
         };
         for length in [110, 900] {
             let clipped_within =
-                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 200);
+                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 0.0, 200);
             assert!(clipped_within(10.0).is_empty() && clipped_within(25.0).is_empty(), "{length}");
             assert!(!clipped_within(0.5).is_empty() && !clipped_within(0.8).is_empty(), "{length}");
         }
@@ -258,15 +264,15 @@ mod tests {
             pulse(limit).iter().enumerate().map(|(i, f)| f + 3.4 * hash(i)).collect()
         };
         // Uniform noise of ±1.7 has a standard deviation of 1.
-        assert_eq!(clipped(&channel(None), &noisy(3800.0), 1.0, 0).len(), 1);
-        assert!(clipped(&channel(None), &noisy(1e9), 1.0, 0).is_empty());
+        assert_eq!(clipped(&channel(None), &noisy(3800.0), 0.0, 1.0, 0).len(), 1);
+        assert!(clipped(&channel(None), &noisy(1e9), 0.0, 1.0, 0).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0).is_empty());
+        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0.0, 0).len(), 1);
+        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
     /// 100 samples of free fall and a pulse cut at 3000 m/s², with noise before the limit and after it.
@@ -281,10 +287,10 @@ mod tests {
     fn a_force_that_stays_level_keeps_its_noise_and_a_limit_does_not() {
         let crushing: Vec<f64> =
             limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
-        assert!(clipped(&channel(None), &crushing, 5.0, 100).is_empty());
-        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 5.0, 100).len(), 1);
-        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 5.2, 100).len(), 1);
+        assert!(clipped(&channel(None), &crushing, 0.0, 5.0, 100).is_empty());
+        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 0.0, 5.0, 100).len(), 1);
+        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, 100).len(), 1);
         // The stated limit of 300 g is 2942 m/s²: then noise does not matter.
-        assert!(!clipped(&channel(Some(300.0)), &crushing, 5.0, 100).is_empty());
+        assert!(!clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, 100).is_empty());
     }
 }

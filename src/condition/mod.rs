@@ -4,6 +4,9 @@ mod clipping;
 mod disturbed;
 mod hum;
 mod offset;
+mod other;
+
+pub use other::read_other;
 
 use crate::data::{
     Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,
@@ -96,7 +99,7 @@ fn signal(
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let clipped = clipping::clipped(channel, &force, noise_m_s2, before);
+    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, before);
     let gaps = clipping::runs(&force, |f| !f.is_finite());
     for f in &mut force {
         if !f.is_finite() {

@@ -9,6 +9,7 @@ use super::finding::Finding;
 use super::flight::FlightFit;
 use super::impacts::ImpactTable;
 use super::ladder::Rung;
+use super::other::OtherSummary;
 use super::prediction::{BodyModel, Prediction};
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
@@ -271,6 +272,9 @@ pub struct DropResult {
     pub events: Events,
     /// What each channel is worth.
     pub channels: Vec<ChannelSummary>,
+    /// What the channels read that take no part in the motion; left out where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_channels: Vec<OtherSummary>,
     /// The fit of the free-flight window.
     pub flight: Option<FlightFit>,
     /// What each input contributes to the uncertainty, largest first.

@@ -1,8 +1,10 @@
 //! A cask file, checked.
 
 use super::cask::{Cask, ChannelSpec, Contact, Drop, FilterChoice};
+use super::other::OtherSpec;
 use super::test_record::{Letterhead, Limit, Observed, TestRecord};
 use super::tolerances::{Corrections, Tolerances};
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// A cask file, checked.
@@ -28,8 +30,10 @@ pub struct CaskFile {
     pub corrections: Corrections,
     /// `[recording] time`.
     pub time: Option<String>,
-    /// `[[channel]]`, in the file's order.
+    /// `[[channel]]` of the accelerometers, in the file's order.
     pub channels: Vec<ChannelSpec>,
+    /// `[[channel]]` with `end = "none"`, in the file's order.
+    pub others: Vec<OtherSpec>,
     /// `[test]`.
     pub test: TestRecord,
     /// `[observed]`.
@@ -49,6 +53,17 @@ impl CaskFile {
         spec.time.as_deref().or(self.time.as_deref())
     }
 
+    /// The file as readers of recordings take it: the other channels behind those of the motion.
+    #[must_use]
+    pub fn to_be_read(&self) -> Cow<'_, Self> {
+        if self.others.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut all = self.clone();
+        all.channels.extend(self.others.iter().map(|other| other.read.clone()));
+        Cow::Owned(all)
+    }
+
     /// A file that states cask, drop and contact alone, with the usual tolerances.
     #[must_use]
     pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
@@ -64,6 +79,7 @@ impl CaskFile {
             corrections: Corrections::default(),
             time: None,
             channels: Vec::new(),
+            others: Vec::new(),
             test: TestRecord::default(),
             observed: Vec::new(),
             limits: Vec::new(),

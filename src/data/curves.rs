@@ -1,5 +1,6 @@
 //! Curves a person looks at: accelerations, velocities, the motion of the cask.
 
+use super::other::OtherCurve;
 use std::sync::LazyLock;
 
 /// Curves that are made where somebody asks for them: a campaign of thousands of drops does not.
@@ -49,4 +50,6 @@ pub struct Curves {
     pub channels: Vec<ChannelCurve>,
     /// The rigid-body motion from just before first contact to the slap-down, where it could be had.
     pub motion: Option<MotionCurve>,
+    /// One for each channel that takes no part in the motion, where the first contact is known.
+    pub others: Vec<OtherCurve>,
 }

@@ -49,6 +49,11 @@ pub(crate) fn channel(samples: Vec<f64>) -> Channel {
     }
 }
 
+/// A channel in µm/m from 0 s on at 10 kHz that takes no part in the motion.
+pub(crate) fn other(samples: Vec<f64>) -> Channel {
+    Channel { name: "S1".into(), unit: "µm/m".into(), ..channel(samples) }
+}
+
 /// A channel's step in the flight, known exactly.
 pub(crate) fn plateau(channel: &str, velocity_step_m_s: f64) -> Plateau {
     Plateau {

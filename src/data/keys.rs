@@ -188,7 +188,8 @@ pub const RECORDING: [Key; 1] = [text("time", "found").shown(
 /// Keys of `[[channel]]`.
 pub const CHANNEL: [Key; 21] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
-    text("end", REQUIRED).asked(r#""first""#, r#""first" (low, touches first) or "second""#),
+    text("end", REQUIRED)
+        .asked(r#""first""#, r#""first" (low, touches first), "second", or "none": no part in the motion"#),
     text("axis", REQUIRED)
         .asked(r#""transverse""#, r#""transverse" (across the cask, in the plane of the drop) or "axial""#),
     Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),

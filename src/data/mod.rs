@@ -19,6 +19,7 @@ mod ladder;
 mod listing;
 mod motion;
 mod onset;
+mod other;
 pub(crate) mod planar;
 mod prediction;
 mod quantities;
@@ -59,6 +60,7 @@ pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
+pub use other::{Extreme, OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{

@@ -2,8 +2,10 @@
 
 use super::channel::Channel;
 use super::finding::Finding;
+use super::other::OtherChannels;
 use serde::Serialize;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A container format, told by content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -35,6 +37,8 @@ pub struct Recording {
     pub reader: Option<String>,
     /// The channels, in the order of the cask file.
     pub channels: Vec<Channel>,
+    /// The channels that take no part in the motion: no number of it rests on them.
+    pub others: Arc<OtherChannels>,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
     /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.

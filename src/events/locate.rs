@@ -211,6 +211,7 @@ mod tests {
             reader: None,
             sha256: String::new(),
             channels,
+            others: std::sync::Arc::default(),
             start_unix_ns: None,
             issues: vec![],
         }

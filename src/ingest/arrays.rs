@@ -22,6 +22,7 @@ const NAME: &str = "samples in memory";
 pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recording, IngestError> {
     let path = Path::new(NAME);
     cask_file::require_channels(cask_file, path)?;
+    let (stated_file, cask_file) = (cask_file, &*cask_file.to_be_read());
     let mut channels = Vec::with_capacity(cask_file.channels.len());
     for (spec, held) in chosen(held, cask_file)?.into_iter().enumerate() {
         let stated = &cask_file.channels[spec];
@@ -50,7 +51,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
         channels.push(RawChannel { spec, uniform, unit: held.unit.clone() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
-    assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, cask_file)
+    assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, stated_file)
 }
 
 fn no_rate(held: &HeldSamples) -> Refusal {

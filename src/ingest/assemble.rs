@@ -5,8 +5,8 @@ use super::refusal::Refusal;
 use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
-    CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, Recording, RecordingFormat, SAMPLE_RATES_HZ,
-    STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2,
+    CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, OtherChannels, OtherSpec, Recording,
+    RecordingFormat, SAMPLE_RATES_HZ, STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2,
 };
 use crate::numerics::as_f64;
 use std::path::Path;
@@ -22,32 +22,49 @@ pub(crate) fn recording(
     raw: RawRecording,
     cask_file: &CaskFile,
 ) -> Result<Recording, IngestError> {
-    let first_s = raw.channels.iter().map(|channel| channel.uniform.start_s).fold(f64::INFINITY, f64::min);
+    // Times of the motion do not hang on when another channel begins.
+    let of_motion = raw.channels.iter().filter(|channel| channel.spec < cask_file.channels.len());
+    let first_s = of_motion.map(|channel| channel.uniform.start_s).fold(f64::INFINITY, f64::min);
     let first_s = if first_s.is_finite() { first_s } else { 0.0 };
     let mut issues: Vec<Finding> = raw.issues.into_iter().map(|issue| shifted(issue, first_s)).collect();
     let mut channels = Vec::with_capacity(raw.channels.len());
+    let mut others = OtherChannels::default();
     for raw_channel in raw.channels {
-        let Some(spec) = cask_file.channels.get(raw_channel.spec) else { continue };
-        let channel = channel(spec, raw_channel, first_s, &mut issues);
-        channels.push(channel.map_err(|refusal| error::of_channel(path, &spec.name, refusal))?);
+        let unit = raw_channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
+        let said = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
+        if let Some(spec) = cask_file.channels.get(raw_channel.spec) {
+            let scale = has_numbers(spec, &raw_channel).and_then(|()| scale(spec, unit));
+            let read = scale.and_then(|scale| channel(spec, raw_channel, scale, first_s, &mut issues));
+            channels.push(read.map_err(|refusal| said(spec, refusal))?);
+        } else {
+            let other = &cask_file.others[raw_channel.spec - cask_file.channels.len()];
+            let scale = own_unit(other, unit);
+            let read =
+                scale.and_then(|scale| channel(&other.read, raw_channel, scale, first_s, &mut others.issues));
+            others.channels.push(read.map_err(|refusal| said(&other.read, refusal))?);
+        }
     }
-    overlap(path, &channels)?;
+    overlap(path, channels.iter().chain(&others.channels))?;
+    let is_other = |found: &Finding| others.channels.iter().any(|o| found.channel.as_ref() == Some(&o.name));
+    others.issues.extend(issues.extract_if(.., |found| is_other(found)));
     Ok(Recording {
         path: path.to_owned(),
         sha256,
         format,
         reader: None,
         channels,
+        others: others.into(),
         start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
         issues,
     })
 }
 
 /// Refuses channels of which two share no time at all: their clocks are apart, and nothing tells by how much.
-fn overlap(path: &Path, channels: &[Channel]) -> Result<(), IngestError> {
+fn overlap<'a>(path: &Path, channels: impl Iterator<Item = &'a Channel> + Clone) -> Result<(), IngestError> {
     let end_s = |channel: &Channel| channel.start_s + as_f64(channel.samples.len()) / channel.sample_rate_hz;
-    let Some(first) = channels.iter().min_by(|a, b| end_s(a).total_cmp(&end_s(b))) else { return Ok(()) };
-    let Some(late) = channels.iter().find(|channel| channel.start_s > end_s(first)) else { return Ok(()) };
+    let mut all = channels.clone();
+    let Some(first) = channels.min_by(|a, b| end_s(a).total_cmp(&end_s(b))) else { return Ok(()) };
+    let Some(late) = all.find(|channel| channel.start_s > end_s(first)) else { return Ok(()) };
     let s = |time_s: f64| shown::digits(time_s, 6);
     let refusal = Refusal::new(
         format!(
@@ -64,19 +81,25 @@ fn overlap(path: &Path, channels: &[Channel]) -> Result<(), IngestError> {
     Err(error::of_channel(path, &late.name, refusal))
 }
 
+/// Refuses an accelerometer without a single number.
+fn has_numbers(spec: &ChannelSpec, raw: &RawChannel) -> Result<(), Refusal> {
+    let samples = &raw.uniform.samples;
+    if (0..samples.len()).any(|i| samples.get(i).is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::new(
+        format!("{} holds no number: all its samples are NaN, infinite or empty", spec.source),
+        "name the source that holds this sensor's samples, or take this [[channel]] out of the cask file",
+    ))
+}
+
 fn channel(
     spec: &ChannelSpec,
     raw: RawChannel,
+    scale: UnitScale,
     first_s: f64,
     issues: &mut Vec<Finding>,
 ) -> Result<Channel, Refusal> {
-    let samples = &raw.uniform.samples;
-    if (0..samples.len()).all(|i| !samples.get(i).is_finite()) {
-        return Err(Refusal::new(
-            format!("{} holds no number: all its samples are NaN, infinite or empty", spec.source),
-            "name the source that holds this sensor's samples, or take this [[channel]] out of the cask file",
-        ));
-    }
     let rate_hz = raw.uniform.sample_rate_hz;
     if !SAMPLE_RATES_HZ.contains(&rate_hz) {
         return Err(Refusal::new(
@@ -91,7 +114,6 @@ fn channel(
              `sample_rate_hz` in this channel of the cask file",
         ));
     }
-    let scale = scale(spec, raw.unit.as_deref())?;
     issues.extend(scale.contradiction.clone().map(|found| found.on(&spec.name)));
     issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
     Ok(Channel {
@@ -141,12 +163,11 @@ struct UnitScale {
 }
 
 fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
-    let recorded = recorded.map(str::trim).filter(|text| !text.is_empty());
     if let Some(unit) = spec.unit {
         let (m_s2, name) = declared(unit);
         let contradiction = recorded
             .filter(|text| !same_unit(text, name, m_s2))
-            .map(|text| ChannelFinding::OtherUnit { stated: name, recorded: text.to_owned() });
+            .map(|text| ChannelFinding::OtherUnit { stated: name.to_owned(), recorded: text.to_owned() });
         return Ok(UnitScale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
     }
     let Some(text) = recorded else {
@@ -174,6 +195,21 @@ fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusa
              of the cask file",
         )),
     }
+}
+
+/// The unit of a channel that takes no part in the motion, any text; its samples stay as they are.
+fn own_unit(spec: &OtherSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
+    let stated = spec.unit.as_deref().map(|unit| (unit.trim(), "cask file"));
+    let Some((unit, origin)) = stated.or(recorded.map(|unit| (unit, "recording"))) else {
+        return Err(Refusal::new(
+            format!("neither the recording nor the cask file says the unit of {}", spec.read.source),
+            "write it in this channel of the cask file, such as `unit = \"µm/m\"` or \"°C\"; any text will \
+             do, and \"1\" stands for none",
+        ));
+    };
+    let other = recorded.filter(|recorded| *recorded != unit).map(str::to_owned);
+    let contradiction = other.map(|recorded| ChannelFinding::OtherUnit { stated: unit.to_owned(), recorded });
+    Ok(UnitScale { m_s2: 1.0, unit: unit.to_owned(), origin, contradiction })
 }
 
 /// m/s² per unit, and the unit's name, as a cask file declares it: one volt is 1000 mV / (mV per g) · g.
@@ -249,7 +285,8 @@ mod tests {
                 issues: Vec::new(),
             };
             let raw = RawChannel { spec: 0, uniform, unit: Some("g".into()) };
-            channel(&spec(None), raw, 0.0, &mut Vec::new())
+            let scale = of(None, Some("g"))?;
+            channel(&spec(None), raw, scale, 0.0, &mut Vec::new())
         };
         for rate_hz in [1e-3, 50.0, 1e8] {
             assert!(at(rate_hz).is_ok(), "{rate_hz}");
@@ -282,11 +319,29 @@ mod tests {
 
     #[test]
     fn no_unit_anywhere_says_what_to_write() {
-        let error = of(None, Some(" ")).unwrap_err();
+        let error = of(None, None).unwrap_err();
         let help = error.remedy;
         assert!(help.contains("unit = \"g\""), "{help}");
         let error = of(None, Some("mV")).unwrap_err();
         assert!(error.remedy.contains("sensitivity"));
+    }
+
+    #[test]
+    fn any_text_is_the_unit_of_a_channel_outside_the_motion() {
+        let own = |unit: Option<&str>, recorded| {
+            let spec = OtherSpec { read: spec(None), unit: unit.map(str::to_owned) };
+            own_unit(&spec, recorded)
+        };
+        let recorded = own(None, Some("µm/m")).unwrap();
+        assert_eq!(
+            (&recorded.unit[..], recorded.origin, recorded.contradiction),
+            ("µm/m", "recording", None)
+        );
+        let stated = own(Some("mV/V"), Some("V")).unwrap();
+        assert_eq!((&stated.unit[..], stated.origin), ("mV/V", "cask file"));
+        assert!(stated.contradiction.is_some() && own(Some("V"), Some("V")).unwrap().contradiction.is_none());
+        let help = own(None, None).unwrap_err().remedy;
+        assert!(help.contains("any text"), "{help}");
     }
 
     #[test]
@@ -300,7 +355,7 @@ mod tests {
             issues: Vec::new(),
         };
         let raw = RawChannel { spec: 0, uniform, unit: None };
-        let error = channel(&spec(Some(Unit::G)), raw, 0.0, &mut Vec::new()).unwrap_err();
+        let error = has_numbers(&spec(Some(Unit::G)), &raw).unwrap_err();
         assert!(error.to_string().contains("/daq/a1 holds no number"), "{error}");
     }
 

@@ -76,7 +76,11 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
     if !cask_file.channels.is_empty() {
         return Ok(());
     }
-    let problem = "the cask file has no [[channel]], so that no sensor can be found in the recording";
+    let problem = if cask_file.others.is_empty() {
+        "the cask file has no [[channel]], so that no sensor can be found in the recording"
+    } else {
+        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\""
+    };
     let mend = format!(
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \
          the accelerometers",
@@ -153,7 +157,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let time = root.table("recording")?.text("time")?.map(|time| time.value);
-    let channels = channel::channels(&root, &cask)?;
+    let (channels, others) = channel::channels(&root, &cask)?;
     let test = record::test(&root.table("test")?, photos)?;
     let observed = record::observed(&root.table("observed")?)?;
     let limits = record::limits(&root.table("limits")?)?;
@@ -168,6 +172,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         corrections,
         time,
         channels,
+        others,
         test,
         observed,
         limits,

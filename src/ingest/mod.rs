@@ -60,7 +60,7 @@ impl<'a> ReadRequest<'a> {
 /// and clock.
 #[derive(Debug)]
 pub(crate) struct RawChannel {
-    /// Index into `CaskFile::channels`.
+    /// Index into the channels of [`CaskFile::to_be_read`].
     pub(crate) spec: usize,
     /// The samples; its times and those of its issues count from [`RawRecording::zero_unix_ns`].
     pub(crate) uniform: time_base::Uniform,
@@ -106,6 +106,7 @@ pub fn read_within(
     progress: Progress,
 ) -> Result<Recording, IngestError> {
     cask_file::require_channels(cask_file, path)?;
+    let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
     // The hash takes as long as the reading: it runs beside it.
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
     let (((raw, format), reader), sha256) = unchanged::hashed(path, || {
@@ -122,7 +123,7 @@ pub fn read_within(
         let raw = raw.map_err(|fault| fault.in_file(path))?;
         Ok(((raw, format), converted.map(|converted| converted.reader)))
     })?;
-    let recording = assemble::recording(path, format, sha256, raw, cask_file)?;
+    let recording = assemble::recording(path, format, sha256, raw, stated)?;
     Ok(Recording { reader, ..recording })
 }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise
 /// stay within 5.5, a sine within 1.4.
-const SILENT: f64 = 8.0;
+pub(super) const SILENT: f64 = 8.0;
 /// Another channel that leaves its spread by this shows that there was something to say.
 const LOUD: f64 = 50.0;
 /// A channel this far below the loudest says nothing either: even at the centre of percussion more arrives.

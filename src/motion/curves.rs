@@ -61,7 +61,7 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
 /// The signals over what is shown, and as far around it as a low-pass with this −3 dB cut-off, Hz, reaches.
 #[must_use]
 pub fn around(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
-    signals.iter().map(|signal| cut_wide(signal, shown_s(signal, events), cutoff_hz)).collect()
+    signals.iter().map(|signal| cut_wide(signal, shown_s(signal.start_s, events), cutoff_hz)).collect()
 }
 
 /// A signal between two times, s, and as far around them as a low-pass with this −3 dB cut-off, Hz, reaches.
@@ -138,14 +138,14 @@ pub fn channel_curves(
 /// The samples that are shown.
 #[must_use]
 pub fn shown(signal: &Signal, events: &Events) -> Range<usize> {
-    let (first_s, last_s) = shown_s(signal, events);
+    let (first_s, last_s) = shown_s(signal.start_s, events);
     let from = signal.index_from(first_s);
     from..signal.index_from(last_s).max(from)
 }
 
-/// Time range that is shown, s.
-fn shown_s(signal: &Signal, events: &Events) -> (f64, f64) {
-    let first_s = events.first_contact_s().unwrap_or(signal.start_s);
+/// Time range that is shown of a channel that begins at `start_s`, s.
+pub(super) fn shown_s(start_s: f64, events: &Events) -> (f64, f64) {
+    let first_s = events.first_contact_s().unwrap_or(start_s);
     let last_s = events.slap_down_s().or(events.separation_s().map(|t| t + 0.05)).unwrap_or(first_s + 0.1);
     (first_s - BEFORE_S, last_s + AFTER_S)
 }

@@ -5,9 +5,11 @@ use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s
 /// Units of a sensor's output that the cask file knows.
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
 
-/// Words in a source that make it no acceleration.
-const OTHER_WORDS: &str = "time stamp sec nsec nanosec seq covariance orientation angular gyro temp \
-                           sample_rate frame_id index";
+/// Words in a source that make it no measured quantity.
+const NO_QUANTITY: &str = "time stamp sec nsec nanosec seq covariance sample_rate frame_id index";
+
+/// Words in a source that make it another quantity than an acceleration.
+const OTHER_QUANTITIES: &str = "orientation angular gyro temp";
 
 /// A recording of which no form could ever be filled in.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -98,7 +100,13 @@ fn candidates(listing: &Listing) -> impl Iterator<Item = &ListedChannel> {
         .channels
         .iter()
         .filter(|c| c.samples != Some(0) && !c.unit.as_deref().is_some_and(is_rate_of_turn))
-        .filter(|c| !OTHER_WORDS.split(' ').any(|word| has_word(&c.source, word)) && !is_time(&c.source))
+        .filter(|c| is_quantity(&c.source))
+        .filter(|c| !OTHER_QUANTITIES.split(' ').any(|word| has_word(&c.source, word)))
+}
+
+/// Whether a source is not called as times, counts or names are.
+pub(super) fn is_quantity(source: &str) -> bool {
+    !NO_QUANTITY.split(' ').any(|word| has_word(source, word)) && !is_time(source)
 }
 
 /// Whether unit or name say that it is an acceleration.

@@ -1,12 +1,12 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
-use super::FILE_NAMES;
 use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
     TableShape, Tone, Words,
 };
 use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
+use super::others::others;
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, TOLD, tested};
@@ -66,7 +66,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
                      Behaviour of Packagings for the Transport of Radioactive Material under Slap Down \
                      Conditions (BAM, PATRAM). SSG-26: IAEA Specific Safety Guide No. SSG-26.",
             letterhead: file.letterhead.clone(),
-            files: &FILE_NAMES[1..],
+            files: &super::file_names(analysis)[1..],
             ..Frame::default()
         },
         chapters: vec![
@@ -89,6 +89,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             budget(result, file),
             predictions(result),
             channels(result).with_all(pictures(&["spectra"])),
+            others(result),
             quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
             record::photographs(&result.test),

@@ -96,7 +96,7 @@ fn it_stands_alone() {
 
 #[test]
 fn its_links_lead_to_its_chapters_and_to_the_files_beside_it() {
-    let page = made(&sample::analysis());
+    let page = made(&sample::with_other());
     let links: Vec<&str> = page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     let (chapters, files): (Vec<_>, Vec<_>) = links.into_iter().partition(|link| link.starts_with('#'));
     assert_eq!(files, super::FILE_NAMES[1..]);

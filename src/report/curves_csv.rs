@@ -71,7 +71,12 @@ fn groups(curves: &Curves) -> Vec<CurveGroup<'_>> {
         let series = motion_series(motion).into();
         Some(CurveGroup { of: String::new(), grid: Grid::new(&motion.time_s)?, series })
     });
-    channels.chain(motion).flatten().collect()
+    let others = curves.others.iter().map(|curve| {
+        let series = vec![CurveSeries { name: "", values: &curve.values, factor: 1.0 }];
+        let (grid, name) = (Grid::new(&curve.time_s)?, format!("{}_raw_{}", curve.channel, curve.unit));
+        Some(CurveGroup { of: name, grid, series })
+    });
+    channels.chain(motion).chain(others).flatten().collect()
 }
 
 /// A time to the nanosecond, by whole numbers: of ten cells of a row it is the one that would take longest.

@@ -1,7 +1,7 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
 use super::grid::{CurveSeries, motion_series, named_events, step_s};
-use super::{ReportError, scratch, spectrum};
+use super::{ReportError, scratch};
 use crate::data::Analysis;
 use crate::numerics::single;
 use hdf5_metno::types::VarLenUnicode;
@@ -51,11 +51,17 @@ fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
         dataset(&group, "raw", &curve.raw_m_s2, "m/s^2", &curve.time_s)?;
         dataset(&group, "filtered", &curve.filtered_m_s2, "m/s^2", &curve.time_s)?;
         dataset(&group, "velocity", &curve.velocity_m_s, "m/s", &curve.time_s)?;
-        let (frequency_hz, magnitude_m_s) = spectrum(curve);
-        let frequency = filled(&group, "spectrum_frequency", &singles(&frequency_hz))?;
-        text(&frequency, "unit", "Hz")?;
-        let magnitude = filled(&group, "spectrum_magnitude", &singles(&magnitude_m_s))?;
-        text(&magnitude, "unit", "m/s")?;
+        let (frequency_hz, magnitude_m_s) = super::spectrum(curve);
+        spectrum(&group, &frequency_hz, &magnitude_m_s, "m/s")?;
+    }
+    if !analysis.curves.others.is_empty() {
+        let others = file.create_group("other_channels")?;
+        for (i, curve) in analysis.curves.others.iter().enumerate() {
+            let group = others.create_group(&link_name(&others, &curve.channel, i))?;
+            text(&group, "name", &curve.channel)?;
+            dataset(&group, "raw", &curve.values, &curve.unit, &curve.time_s)?;
+            spectrum(&group, &curve.frequency_hz, &curve.magnitude, &format!("{} s", curve.unit))?;
+        }
     }
     if let Some(motion) = &analysis.curves.motion {
         let group = file.create_group("motion")?;
@@ -92,6 +98,13 @@ fn dataset(group: &Group, name: &str, values: &[f64], unit: &str, time_s: &[f64]
         dataset.new_attr::<f64>().create("start_time_s")?.write_scalar(start_s)?;
     }
     Ok(())
+}
+
+fn spectrum(group: &Group, frequency_hz: &[f64], magnitude: &[f64], unit: &str) -> Result<(), ReportError> {
+    let frequency = filled(group, "spectrum_frequency", &singles(frequency_hz))?;
+    text(&frequency, "unit", "Hz")?;
+    let magnitude = filled(group, "spectrum_magnitude", &singles(magnitude))?;
+    text(&magnitude, "unit", unit)
 }
 
 fn singles(values: &[f64]) -> Vec<f32> {

@@ -33,11 +33,17 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let mut topics = Vec::new();
     for curve in &analysis.curves.channels {
         let topic = topic(&curve.channel, &topics);
-        file.curve("dropcheck.ChannelCurve", &topic, &curve.time_s, &channel_series(curve))?;
+        file.curve("dropcheck.ChannelCurve", &topic, &curve.time_s, &channel_series(curve), "")?;
+        topics.push(topic);
+    }
+    for curve in &analysis.curves.others {
+        let topic = topic(&curve.channel, &topics);
+        let series = [CurveSeries { name: "value", values: &curve.values, factor: 1.0 }];
+        file.curve("dropcheck.OtherChannel", &topic, &curve.time_s, &series, &curve.unit)?;
         topics.push(topic);
     }
     if let Some(motion) = &analysis.curves.motion {
-        file.curve("dropcheck.Motion", "/dropcheck/motion", &motion.time_s, &motion_series(motion))?;
+        file.curve("dropcheck.Motion", "/dropcheck/motion", &motion.time_s, &motion_series(motion), "")?;
     }
     file.events(analysis)?;
     file.writer.finish()?;
@@ -66,8 +72,8 @@ struct CurvesFile {
 
 impl CurvesFile {
     /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves
-    /// again.
-    fn channel(&mut self, name: &str, topic: &str, fields: &[&str]) -> Result<u16, ReportError> {
+    /// again. A unit that their names do not tell stands in the channel's metadata.
+    fn channel(&mut self, name: &str, topic: &str, fields: &[&str], unit: &str) -> Result<u16, ReportError> {
         let mut properties = serde_json::Map::new();
         properties.insert(
             "timestamp".into(),
@@ -82,11 +88,12 @@ impl CurvesFile {
         }
         let schema = serde_json::json!({"title": name, "type": "object", "properties": properties});
         let schema = self.writer.add_schema(name, "jsonschema", &serde_json::to_vec(&schema)?)?;
-        Ok(self.writer.add_channel(schema, topic, "json", &BTreeMap::new())?)
+        let unit = (!unit.is_empty()).then(|| ("unit".to_owned(), unit.to_owned()));
+        Ok(self.writer.add_channel(schema, topic, "json", &unit.into_iter().collect::<BTreeMap<_, _>>())?)
     }
 
     fn events(&mut self, analysis: &Analysis) -> Result<(), ReportError> {
-        let id = self.channel("dropcheck.Event", "/dropcheck/events", &["name", "time_s"])?;
+        let id = self.channel("dropcheck.Event", "/dropcheck/events", &["name", "time_s"], "")?;
         for (name, time_s) in named_events(&analysis.result.events) {
             if let Some(time_s) = time_s.filter(|t| t.is_finite()) {
                 self.begin(time_s);
@@ -104,9 +111,10 @@ impl CurvesFile {
         topic: &str,
         time_s: &[f64],
         series: &[CurveSeries],
+        unit: &str,
     ) -> Result<(), ReportError> {
         let fields: Vec<&str> = series.iter().map(|one| one.name).collect();
-        let id = self.channel(schema, topic, &fields)?;
+        let id = self.channel(schema, topic, &fields, unit)?;
         let mut digits = zmij::Buffer::new();
         for (i, &time_s) in time_s.iter().enumerate() {
             self.begin(time_s);

@@ -51,7 +51,7 @@ pub(super) fn step_s(time_s: &[f64]) -> Option<f64> {
     (step.is_finite() && step > 0.0).then_some(step)
 }
 
-/// The times of the finest channel, carried on over the span of every curve.
+/// The times of the finest channel, carried on over the span of every curve of the motion and its channels.
 pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let times = || {
         curves
@@ -60,8 +60,10 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
             .map(|c| c.time_s.as_slice())
             .chain(curves.motion.iter().map(|m| m.time_s.as_slice()))
     };
+    let of_others = || curves.others.iter().map(|other| other.time_s.as_slice());
+    let all = || times().chain(of_others());
     let Some((finest, step)) =
-        times().filter_map(|t| step_s(t).map(|step| (t, step))).min_by(|a, b| a.1.total_cmp(&b.1))
+        all().filter_map(|t| step_s(t).map(|step| (t, step))).min_by(|a, b| a.1.total_cmp(&b.1))
     else {
         return Vec::new();
     };
@@ -69,7 +71,7 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let to = times().filter_map(|t| t.last().copied()).fold(f64::NEG_INFINITY, f64::max);
     let before = ((finest[0] - from) / step).round();
     let rows = before + 1.0 + ((to - finest[0]) / step).round();
-    let held: usize = times().map(<[f64]>::len).sum();
+    let held: usize = all().map(<[f64]>::len).sum();
     // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times
     // serve.
     if !(rows.is_finite() && rows <= 4.0 * as_f64(held) + 4.0) {
@@ -135,6 +137,7 @@ impl GridPlace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::OtherCurve;
 
     fn curve(start_s: f64, step_s: f64, n: i32) -> ChannelCurve {
         let time_s: Vec<f64> = (0..n).map(|i| start_s + f64::from(i) * step_s).collect();
@@ -152,6 +155,23 @@ mod tests {
     fn the_finest_grid_covers_every_curve() {
         let curves =
             Curves { channels: vec![curve(0.0, 0.01, 11), curve(0.05, 0.001, 31)], ..Curves::default() };
+        let time_s = common_time_s(&curves);
+        assert_eq!(time_s.len(), 101);
+        assert!(time_s[0].abs() < 1e-12 && (time_s[100] - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_fast_channel_outside_the_motion_makes_the_grid_finer_and_no_longer() {
+        let dense = curve(-1.0, 0.001, 3001);
+        let fast = OtherCurve {
+            channel: "S1".into(),
+            unit: "V".into(),
+            time_s: dense.time_s,
+            values: dense.raw_m_s2,
+            frequency_hz: vec![],
+            magnitude: vec![],
+        };
+        let curves = Curves { channels: vec![curve(0.0, 0.01, 11)], others: vec![fast], ..Curves::default() };
         let time_s = common_time_s(&curves);
         assert_eq!(time_s.len(), 101);
         assert!(time_s[0].abs() < 1e-12 && (time_s[100] - 0.1).abs() < 1e-12);

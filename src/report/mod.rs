@@ -20,6 +20,7 @@ pub(crate) mod json;
 mod latex;
 mod listing;
 pub(crate) mod medium;
+mod others;
 pub(crate) mod pictures;
 mod prediction;
 mod reconstruction;
@@ -97,8 +98,9 @@ pub fn table(analysis: &Analysis, width: usize) -> String {
     as_text::text(&analysis::document(analysis), width)
 }
 
-/// The names of the files of a report, in the order of [`files`].
-pub const FILE_NAMES: [&str; 15] = [
+/// The names of the files of a report, in the order of [`files`]; the last one is there where a channel takes
+/// no part in the motion.
+pub const FILE_NAMES: [&str; 16] = [
     "report.html",
     "result.json",
     "results.tex",
@@ -114,7 +116,14 @@ pub const FILE_NAMES: [&str; 15] = [
     "motion.svg",
     "spectra.svg",
     "comparison.svg",
+    "other_channels.svg",
 ];
+
+/// The names of the files of this report.
+fn file_names(analysis: &Analysis) -> &'static [&'static str] {
+    let is_last = usize::from(analysis.result.other_channels.is_empty());
+    &FILE_NAMES[..FILE_NAMES.len() - is_last]
+}
 
 /// Every file of a report by name, in the order in which a reader meets them.
 ///
@@ -130,7 +139,7 @@ pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError>
     let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));
     let bytes = [page, result, table, curves_csv?, curves_h5?, curves_mcap?];
     let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
-    Ok(FILE_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
+    Ok(file_names(analysis).iter().map(|name| (*name).to_owned()).zip(bytes).collect())
 }
 
 #[cfg(test)]
@@ -139,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_report_holds_every_file_of_the_contract() {
-        let files = files(&sample::analysis()).unwrap();
+        let files = files(&sample::with_other()).unwrap();
         assert!(files.iter().map(|(name, _)| name.as_str()).eq(FILE_NAMES));
         assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
     }
@@ -147,7 +156,7 @@ mod tests {
     #[test]
     fn an_analysis_without_a_single_curve_still_makes_a_report() {
         let files = files(&sample::without_anything()).unwrap();
-        assert_eq!(files.len(), FILE_NAMES.len());
+        assert_eq!(files.len(), FILE_NAMES.len() - 1);
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
-    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, Finding,
-    FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, LazyCurves, Mode,
-    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting,
-    SlapDown, Unit, Verdict,
+    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, Extreme,
+    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, IssueCode,
+    LazyCurves, Mode, ModelCandidate, ModelChoice, MotionCurve, OtherCurve, OtherSummary, Plateau,
+    Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, SpectralLine, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -24,6 +24,36 @@ pub(super) fn analysis() -> Analysis {
         curves: LazyCurves::new(Box::new(curves)),
         start_unix_ns: Some(1_700_000_000_000_000_000),
     }
+}
+
+/// The same with a strain gauge that takes no part in the motion.
+pub(super) fn with_other() -> Analysis {
+    let mut analysis = analysis();
+    let extreme = |value, time_s| Some(Extreme { value, time_s });
+    analysis.result.other_channels = vec![OtherSummary {
+        name: "S1".into(),
+        unit: "µm/m".into(),
+        source: "/daq/s1".into(),
+        samples: 30_000,
+        sample_rate_hz: RATE_HZ,
+        rest: Some(-12.5),
+        noise: Some(1.5),
+        smallest: extreme(-310.0, 0.2204),
+        largest: extreme(902.0, 0.1541),
+        strongest_line: Some(SpectralLine { frequency_hz: 95.0, magnitude: 3.1 }),
+        findings: vec![IssueCode::Clipped],
+        ..OtherSummary::default()
+    }];
+    let time_s: Vec<f64> = (0..2000).map(|i| 0.14 + f64::from(i) / RATE_HZ).collect();
+    analysis.curves.others = vec![OtherCurve {
+        channel: "S1".into(),
+        unit: "µm/m".into(),
+        values: time_s.iter().map(|t| 900.0 * (600.0 * t).sin()).collect(),
+        time_s,
+        frequency_hz: vec![0.0, 95.0, 190.0],
+        magnitude: vec![0.0, 3.1, 0.2],
+    }];
+    analysis
 }
 
 /// An analysis that found nothing: no quantity, no curve, one error.
@@ -128,6 +158,7 @@ fn result() -> DropResult {
             summary("A1", End::First, "/daq/a1.samples"),
             summary("A2", End::Second, "/daq/a2.samples"),
         ],
+        other_channels: Vec::new(),
         flight: Some(flight()),
         budget: sample_reconstruction::budget(),
         untested: vec![sample_reconstruction::untested()],
@@ -330,6 +361,7 @@ fn curves() -> Curves {
     Curves {
         channels: vec![channel("A1", &time_s, &first), channel("A2", &time_s, &second)],
         motion: Some(motion()),
+        others: Vec::new(),
     }
 }
 

@@ -39,11 +39,43 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
         }
     };
     also("cannot be read", unreadable.into_iter().map(acceleration_sources::reason).collect());
-    also(
-        "does not move or does not look like an acceleration in the plane of the drop",
-        other.into_iter().map(|listed| listed.source.clone()).collect(),
-    );
+    let (shown, clocks): (Vec<_>, Vec<_>) = other.into_iter().partition(|c| is_shown(c));
+    let sources = clocks.into_iter().map(|listed| listed.source.clone()).collect();
+    also("tells times, counts or names", sources);
+    if !shown.is_empty() {
+        out.extend([String::new(), OTHERS.to_owned()]);
+        out.extend(shown.into_iter().flat_map(other_channel));
+    }
     Ok(lines(out))
+}
+
+/// What stands above the channels that are no accelerations.
+const OTHERS: &str = "# Also in the recording, but it does not move or does not look like an acceleration in \
+                      the plane of\n# the drop. Without the marks it is shown and judged beside the motion.";
+
+/// Whether a source that is no acceleration may be a channel.
+fn is_shown(listed: &ListedChannel) -> bool {
+    let has_samples = listed.samples.is_none_or(|samples| samples > 1);
+    listed.kind != "topic" && has_samples && acceleration_sources::is_quantity(&listed.source)
+}
+
+/// The lines of a channel that takes no part in the motion, behind marks.
+fn other_channel(listed: &ListedChannel) -> Vec<String> {
+    let source = &listed.source[..];
+    let name = listed.rows.as_ref().map_or_else(|| source.to_owned(), |rows| format!("{source} {}", rows.is));
+    let mut out = vec![
+        "# [[channel]]".to_owned(),
+        format!("# name = {}", quoted(&name)),
+        entry("# end = \"none\"", &facts(listed)),
+        format!("# source = {}", source_value(source)),
+    ];
+    if listed.unit.is_none() {
+        out.push(entry(&format!("# unit = \"{FILL_IN}\""), "the recording does not say"));
+    }
+    if let Some(rows) = &listed.rows {
+        out.push(format!("# where = {{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is)));
+    }
+    out
 }
 
 fn head(listing: &Listing) -> Vec<String> {
@@ -269,7 +301,15 @@ mod tests {
             sources.iter().map(|(source, unit)| listed(source, "column", Some(unit))).collect();
         let text = cask_file(&listing(channels.clone())).unwrap();
         assert_eq!(parsed(&text)["channel"].as_array().unwrap().len(), 1);
-        assert!(text.contains("#   Chan 7:6DX0855-AC1"), "{text}");
+        let (_, others) = text.split_once("beside the motion.\n").expect("the other channels");
+        let others = parsed(
+            &others.lines().map(|line| format!("{}\n", line.trim_start_matches("# "))).collect::<String>(),
+        )["channel"]
+            .as_array()
+            .unwrap()
+            .clone();
+        assert_eq!(others.len(), 3);
+        assert_eq!((&others[1]["name"], &others[1]["end"]), (&"w".into(), &"none".into()));
         assert!(cask_file(&listing(channels[1..].to_vec())).is_err());
     }
 

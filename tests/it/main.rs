@@ -19,6 +19,7 @@ mod impacts;
 mod layouts;
 mod moved;
 mod odd;
+mod other_channels;
 mod predict_command;
 mod properties;
 mod record;

@@ -2,6 +2,7 @@
 
 use super::drop::numbers;
 use super::{IssueCode as Code, Severity};
+use crate::data::shown::digits;
 use crate::data::{End, Estimate, STANDARD_GRAVITY_M_S2 as G};
 
 /// What is left to know a velocity step by that a channel lost.
@@ -209,9 +210,22 @@ pub enum ChannelFinding {
     #[error("answers the first impact {} after the first end is struck: a bending wave may take as long, or \
              the channels' clocks are apart; check that one trigger starts both", size_ms(*.delay_s, *.u_s))]
     AnswersAsAWave { delay_s: f64, u_s: f64 },
+    /// A channel that takes no part in the motion stands at a limit.
+    #[error("stands at its limit of {} {unit} for {samples} samples: its true extreme lies beyond; use a \
+             range with more head-room", digits(*.limit, 4))]
+    OtherClipped { limit: f64, samples: usize, unit: String },
+    /// A channel that takes no part in the motion shows nothing but noise.
+    #[error("{} through the impacts: a slow quantity, or a sensor that is unplugged or broken, or the wrong \
+             `source`", other_still(*.farthest, .unit))]
+    OtherStill { farthest: Option<f64>, unit: String },
+    /// The noise of a channel that takes no part in the motion beside its largest deviation from rest.
+    #[error("has noise of {} {unit} RMS, {:.0} % of its largest deviation from rest, and its extremes are \
+             uncertain by about twice as much: use a more sensitive range, or look for a loose \
+             cable", digits(*.noise, 3), 100.0 * .noise / .farthest)]
+    OtherNoise { noise: f64, farthest: f64, unit: String },
     /// The recording states another unit than the cask file.
     #[error("the cask file gives the unit {stated:?}, the recording {recorded:?}; the cask file is followed")]
-    OtherUnit { stated: &'static str, recorded: String },
+    OtherUnit { stated: String, recorded: String },
 }
 
 impl ChannelFinding {
@@ -232,6 +246,9 @@ impl ChannelFinding {
             Self::LowRate { .. } => (Code::LowRate, Warning),
             Self::Aliasing { .. } => (Code::Aliasing, Warning),
             Self::Dead { .. } => (Code::DeadChannel, Error),
+            Self::OtherClipped { .. } => (Code::Clipped, Warning),
+            Self::OtherStill { .. } => (Code::DeadChannel, Note),
+            Self::OtherNoise { .. } => (Code::Noise, Note),
             Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),
             Self::Copied { .. } => (Code::CopiedChannel, Warning),
             Self::Hum { severity, .. } => (Code::Hum, severity),
@@ -284,6 +301,16 @@ fn how_still(farthest_m_s2: f64) -> String {
         return format!("stays within {:.2} g of its mean, all of it noise or hum,", farthest_m_s2 / G);
     }
     "holds one value".into()
+}
+
+fn other_still(farthest: Option<f64>, unit: &str) -> String {
+    match farthest {
+        None => "holds no number".into(),
+        Some(0.0) => "holds one value".into(),
+        Some(farthest) => {
+            format!("stays within {} {unit} of its rest, all of it noise,", digits(farthest, 3))
+        }
+    }
 }
 
 fn with_harmonics(harmonics: usize) -> String {

@@ -3,7 +3,7 @@
 use super::CaskFileError;
 use super::section::Section;
 use crate::data::{
-    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, RowsOf, SensorRecord, Source, Unit,
+    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RowsOf, SensorRecord, Source, Unit,
 };
 use std::ops::Range;
 use toml::de::DeValue;
@@ -11,9 +11,27 @@ use toml::de::DeValue;
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: \
                      what the recording says";
 
-/// All channels, in the file's order, with names of their own.
-pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, CaskFileError> {
+/// Keys that say something of the motion.
+const OF_MOTION: [&str; 10] = [
+    "axis",
+    "position_m",
+    "offset_m",
+    "polarity",
+    "sensitivity",
+    "coupling",
+    "time_constant_s",
+    "calibration_percent",
+    "reference",
+    "lateral_m",
+];
+
+/// The channels of the motion and the others, each in the file's order, with names of their own.
+pub(super) fn channels(
+    root: &Section,
+    cask: &Cask,
+) -> Result<(Vec<ChannelSpec>, Vec<OtherSpec>), CaskFileError> {
     let mut channels: Vec<ChannelSpec> = Vec::new();
+    let mut others: Vec<OtherSpec> = Vec::new();
     let mut lines: Vec<usize> = Vec::new();
     let tables = root.tables("channel")?;
     if let Some(beyond) = tables.get(MOST_CHANNELS) {
@@ -47,14 +65,19 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
             ));
         }
         lines.push(table.line(name_span.start));
+        if end_or_none(&table)?.is_none() {
+            let unit = table.text("unit")?.map(|unit| unit.value);
+            others.push(OtherSpec { read: channel.clone(), unit });
+        }
         channels.push(channel);
     }
-    Ok(channels)
+    channels.retain(|channel| others.iter().all(|other| other.read.name != channel.name));
+    Ok((channels, others))
 }
 
 fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
     let name = table.required_text("name")?;
-    let end = end(table, END)?;
+    let Some(end) = end_or_none(table)? else { return Ok((other(table, &name.value)?, name.span)) };
     let axis = axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?;
     let source = source(table)?;
     let unit = unit(table)?;
@@ -76,13 +99,47 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         calibration: table.number("calibration_percent")?.map(|percent| percent.value / 100.0),
         reference: table.text("reference")?.map(|reference| reference.value),
         lateral_m: table.number("lateral_m")?.map_or(0.0, |lateral| lateral.value),
-        sensor: SensorRecord {
-            serial: table.text("serial")?.map(|serial| serial.value),
-            certificate: table.text("certificate")?.map(|certificate| certificate.value),
-            calibrated: table.date("calibrated")?,
-        },
+        sensor: sensor(table)?,
     };
     Ok((spec, name.span))
+}
+
+/// A channel of this name that takes no part in the motion.
+fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
+    if let Some(key) = OF_MOTION.into_iter().find(|key| table.value(key).is_some()) {
+        return Err(table.wrong(
+            table.place(key),
+            format!("{key} has no meaning beside end = \"none\""),
+            "only with \"first\" or \"second\"".into(),
+            &format!(
+                "delete {key}: a channel with end = \"none\" takes no part in the motion and is shown as \
+                 recorded; an accelerometer on the cask has end = \"first\" or \"second\""
+            ),
+        ));
+    }
+    Ok(ChannelSpec {
+        source: source(table)?,
+        full_scale: table.number("full_scale")?.map(|limit| limit.value),
+        sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
+        rows: rows(table)?,
+        time: table.text("time")?.map(|time| time.value),
+        sensor: sensor(table)?,
+        ..ChannelSpec::plain(name, End::First, "", 0.0)
+    })
+}
+
+fn sensor(table: &Section) -> Result<SensorRecord, CaskFileError> {
+    Ok(SensorRecord {
+        serial: table.text("serial")?.map(|serial| serial.value),
+        certificate: table.text("certificate")?.map(|certificate| certificate.value),
+        calibrated: table.date("calibrated")?,
+    })
+}
+
+/// The end of the cask; `None` of a channel that takes no part in the motion.
+fn end_or_none(table: &Section) -> Result<Option<End>, CaskFileError> {
+    let words = [("first", Some(End::First)), ("second", Some(End::Second)), ("none", None)];
+    table.word("end", &words, END)?.ok_or_else(|| table.missing("end", END))
 }
 
 pub(crate) fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
@@ -90,8 +147,8 @@ pub(crate) fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
     end.ok_or_else(|| table.missing("end", mend))
 }
 
-const END: &str =
-    "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
+const END: &str = "end = \"first\" (low, touches first) or \"second\" (slaps down); \"none\" for a channel \
+                   that takes no part in the motion, such as strain or temperature";
 const AXIS: &str =
     "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
 

@@ -31,15 +31,19 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
     let channels = channels.iter().filter_map(toml::Value::as_table);
     let channel = |table: &toml::Table| {
         let name = table.get("name").and_then(toml::Value::as_str);
-        let read = recording.channels.iter().find(|c| Some(c.name.as_str()) == name);
+        let mut all = recording.channels.iter().chain(&recording.others.channels);
+        let read = all.find(|c| Some(c.name.as_str()) == name);
+        let is_other = recording.others.channels.iter().any(|c| Some(c.name.as_str()) == name);
         let default = |key: &Key| match key.name {
             "unit" => (json!(read.map(|c| &c.unit)), "recording"),
             "sample_rate_hz" => (json!(read.map(|c| c.sample_rate_hz)), "recording"),
+            "time" => (json!(file.time), "default"),
+            // No key of the motion has a value.
+            _ if is_other => (Value::Null, "default"),
             "offset_m" | "lateral_m" => (json!(0.0), "default"),
             "polarity" => (json!(1), "default"),
             "coupling" => (json!("dc"), "default"),
             "calibration_percent" => (default(file, "tolerance", key.name), "default"),
-            "time" => (json!(file.time), "default"),
             _ => (Value::Null, "default"),
         };
         entries(Some(table), &keys::CHANNEL, &default)

@@ -50,7 +50,7 @@ impl<'a> CampaignFiles<'a> {
         let untested = line["untested"].as_array().into_iter().flatten();
         let untested: Vec<&str> = untested.filter_map(|input| input["key"].as_str()).collect();
         let own = json!({
-            "untested": untested.join(" "), "exit": row.exit,
+            "untested": untested.join(" "), "other_channels": extremes(line), "exit": row.exit,
             "verdict": row.verdict.map_or_else(|| "error".into(), json_word),
             "report": row.report, "findings": row.findings, "codes": row.codes.join(" "),
             "note_codes": row.note_codes.join(" "), "same_recording_as": row.same_recording_as,
@@ -109,6 +109,16 @@ impl<'a> CampaignFiles<'a> {
             pictures.into_iter().map(|picture| (format!("{}.svg", picture.name), picture.svg.into_bytes()));
         std::iter::once(("campaign.html".to_owned(), page.into_bytes())).chain(drawn).collect()
     }
+}
+
+/// The smallest and the largest value of each channel that takes no part in the motion, as JSON in a cell;
+/// null where there are none.
+fn extremes(line: &Value) -> Option<String> {
+    let told = |other: &Value| {
+        let [smallest, largest] = ["smallest", "largest"].map(|key| &other[key]["value"]);
+        json!({"name": other["name"], "unit": other["unit"], "smallest": smallest, "largest": largest})
+    };
+    Some(Value::from_iter(line["other_channels"].as_array()?.iter().map(told)).to_string())
 }
 
 impl Batch {

@@ -12,6 +12,7 @@ mod legend;
 mod live;
 mod look;
 mod monte_carlo;
+mod others;
 pub(crate) mod panel;
 mod positions;
 mod setup;
@@ -39,7 +40,8 @@ pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
         curves::spectra,
         comparison::picture,
     ];
-    all.par_iter().map(|picture| picture(analysis)).collect()
+    let others = (!analysis.result.other_channels.is_empty()).then_some(others::picture as fn(&_) -> _);
+    all.par_iter().chain(&others).map(|picture| picture(analysis)).collect()
 }
 
 #[cfg(test)]
