@@ -17,6 +17,7 @@ mod key;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
+mod look;
 mod motion;
 mod onset;
 pub(crate) mod planar;
@@ -57,6 +58,7 @@ pub use impacts::{ChannelPeak, ForceOverCrush, ImpactNumbers, ImpactTable, Rigid
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
+pub use look::{ChannelLook, Extreme};
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};

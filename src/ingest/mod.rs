@@ -12,6 +12,7 @@ pub(crate) mod error;
 pub mod fuzz;
 mod hdf5;
 mod limits;
+mod listed;
 mod mcap;
 mod number;
 mod opened;
@@ -26,6 +27,7 @@ pub use arrays::read_arrays;
 pub use error::IngestError;
 pub use hdf5::Hdf5Program;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
+pub use listed::read_listed;
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;
 
@@ -96,16 +98,26 @@ pub fn read_within(
     cask_file::require_channels(cask_file, path)?;
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
-    // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
-    let (raw, sha256) = unchanged::hashed(path, || match format {
-        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
-        // No file is told as `Samples`.
-        RecordingFormat::Csv | RecordingFormat::Samples => {
-            rayon::scope(|_| csv::read(path, cask_file, limits, progress))
-        }
-        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
-    })?;
+    let read = || read_raw(path, format, cask_file, limits, progress);
+    let (raw, sha256) = unchanged::hashed(path, read)?;
     assemble::recording(path, format, sha256, raw, cask_file)
+}
+
+/// What the reader of the format makes of the channels that `cask_file` names: on a thread of the pool, which
+/// need not be put to sleep for each piece that two threads share.
+fn read_raw(
+    path: &Path,
+    format: RecordingFormat,
+    cask_file: &CaskFile,
+    limits: Limits,
+    progress: Progress,
+) -> Result<RawRecording, IngestError> {
+    rayon::scope(|_| match format {
+        RecordingFormat::Mcap => mcap::read(path, cask_file, limits, progress),
+        RecordingFormat::Hdf5 => hdf5::read(path, cask_file, limits, progress),
+        // No file is told as `Samples`.
+        RecordingFormat::Csv | RecordingFormat::Samples => csv::read(path, cask_file, limits, progress),
+    })
 }
 
 /// The SHA-256 of a file, as results have it.
