@@ -49,7 +49,7 @@ impl Middle {
         let recording = read(&folder);
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
-        let event = stages::Changes::of(&recording)
+        let event = stages::Changes::of(&recording.channels)
             .locate(cask_file.drop.transverse_velocity_m_s())
             .expect("an impact");
         let (signals, _) = stages::condition(
@@ -91,9 +91,9 @@ fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
 #[divan::bench(args = SIZES)]
 fn locate(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher
-        .counter(items(samples))
-        .bench(|| stages::Changes::of(&m.recording).locate(m.cask_file.drop.transverse_velocity_m_s()));
+    bencher.counter(items(samples)).bench(|| {
+        stages::Changes::of(&m.recording.channels).locate(m.cask_file.drop.transverse_velocity_m_s())
+    });
 }
 
 #[divan::bench(args = SIZES)]

@@ -45,8 +45,10 @@ impl Impact {
         findings: &mut Vec<Finding>,
     ) -> Option<Self> {
         let drop = &file.drop;
-        let (silent, changes) =
-            rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
+        let (silent, changes) = rayon::join(
+            || judge::judge_silent(&recording.channels),
+            || events::Changes::of(&recording.channels),
+        );
         findings.extend(silent);
         let copied = judge::judge_copies(&recording.channels);
         let event = changes

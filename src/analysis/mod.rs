@@ -1,6 +1,7 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
 
 mod comparison;
+mod first_look;
 mod flight;
 pub mod flight_search;
 mod impact;
@@ -14,6 +15,7 @@ mod second_look;
 mod setup;
 mod slips;
 
+pub use first_look::first_look;
 pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, Recording};

@@ -1,10 +1,11 @@
-//! `inspect`: what a recording holds, as a table or JSON.
+//! `inspect`: what a recording holds, as a table or JSON, and a page with every source as a curve.
 
 use super::Ending;
 use super::limits::Bounds;
-use super::output::{JsonTarget, columns, print};
+use super::output::{Folder, JsonTarget, columns, print};
 use super::progress::with_progress;
-use crate::{ingest, report};
+use crate::data::Listing;
+use crate::{analysis, ingest, report};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -12,6 +13,12 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
+    /// Folder for recording.html, every source as a curve with its spectrum, and recording.json, the listing
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace what --out holds of another recording
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Write the listing as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -20,14 +27,44 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    let json = JsonTarget::checked(arguments.json.as_deref(), &[&arguments.recording])?;
+    let inputs = [arguments.recording.as_path()];
+    let names = &report::FIRST_LOOK_NAMES;
+    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, names, &inputs)).transpose()?;
+    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
+    if let Some(folder) = &folder {
+        look(arguments, &listing, folder)?;
+    }
     json.write(|| report::pretty_json(&listing))?;
     if !json.is_standard_output() {
         print(&report::listing_table(&listing, columns()))?;
+        if let Some(folder) = &folder {
+            print(&format!("\nPage: {}\n", report::printable(&folder.file(names[0]))))?;
+        }
     }
     let sound = listing.issues.iter().all(|issue| issue.severity == crate::data::Severity::Note);
     Ok(if sound { Ending::Clear } else { Ending::NeedsALook })
+}
+
+/// Writes the page into the folder, one source after the other.
+fn look(arguments: &Arguments, listing: &Listing, folder: &Folder) -> miette::Result<()> {
+    let Arguments { recording, force, bounds, .. } = arguments;
+    let sha256 = ingest::sha256(recording)?;
+    if !force {
+        folder.spares_others(&sha256)?;
+    }
+    let drawn = report::drawn(listing);
+    let mut page = report::FirstLook::of(listing, &drawn);
+    with_progress("drawing", |progress| {
+        ingest::read_listed(recording, &drawn, bounds.limits(), progress, |number, read| {
+            let looked = read.map(|mut channel| {
+                let look = analysis::first_look(&mut channel);
+                (channel, look)
+            });
+            page.add(number, looked.map_err(|refused| refused.to_string()));
+        });
+    });
+    Ok(folder.write(&page.files(&sha256)?)?)
 }

@@ -112,15 +112,19 @@ impl Folder {
         }
     }
 
-    /// Refuses to replace the report of another recording than that of this SHA-256.
+    /// Refuses to replace the report or the first look of another recording than that of this SHA-256.
     pub fn spares_others(&self, sha256: &str) -> Result<(), CannotWrite> {
-        let there = bytes_of(&self.path.join("result.json"), 16).unwrap_or_default();
-        let there: serde_json::Value = serde_json::from_slice(&there).unwrap_or_default();
-        let [other, recording] = ["recording_sha256", "recording"].map(|key| &there["input"][key]);
-        if other.is_null() || other == sha256 {
-            return Ok(());
+        for (name, input) in [("result.json", "/input"), ("recording.json", "")] {
+            let there = bytes_of(&self.path.join(name), 16).unwrap_or_default();
+            let there: serde_json::Value = serde_json::from_slice(&there).unwrap_or_default();
+            let input = there.pointer(input).unwrap_or(&serde_json::Value::Null);
+            let [other, recording] = ["recording_sha256", "recording"].map(|key| &input[key]);
+            if !other.is_null() && other != sha256 {
+                let (folder, recording) = (shown(&self.path), recording.to_string());
+                return Err(CannotWrite::OtherReport { folder, recording });
+            }
         }
-        Err(CannotWrite::OtherReport { folder: shown(&self.path), recording: recording.to_string() })
+        Ok(())
     }
 
     /// Makes the folder, and those it lies in.

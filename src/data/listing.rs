@@ -1,6 +1,6 @@
 //! What a recording holds, before any cask file is known: the answer of `inspect`.
 
-use super::cask::RowsOf;
+use super::cask::{RowsOf, Source};
 use super::finding::Finding;
 use super::recording::RecordingFormat;
 use serde::Serialize;
@@ -42,6 +42,18 @@ impl ListedChannel {
     /// A source of which only its name and kind are known.
     pub(crate) fn named(source: &str, kind: &str) -> Self {
         Self { source: source.to_owned(), kind: kind.to_owned(), ..Self::default() }
+    }
+
+    /// Where its samples are, for a reader: a listing may tell it as the table of topic and field.
+    pub(crate) fn origin(&self) -> Source {
+        let table = format!("source = {}", self.source).parse::<toml::Table>().ok().and_then(|t| {
+            let table = t.get("source")?.as_table().filter(|table| t.len() == 1 && table.len() <= 3)?;
+            let text = |key: &str| Some(table.get(key)?.as_str()?.to_owned());
+            let channel = table.get("channel").and_then(toml::Value::as_integer);
+            let channel = channel.and_then(|channel| u16::try_from(channel).ok());
+            Some(Source::TopicField { topic: text("topic")?, field: text("field")?, channel })
+        });
+        table.unwrap_or_else(|| Source::Path(self.source.clone()))
     }
 }
 

@@ -17,6 +17,7 @@ mod key;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
+mod look;
 mod motion;
 mod onset;
 mod other;
@@ -58,6 +59,7 @@ pub use impacts::{ChannelPeak, ForceOverCrush, ImpactNumbers, ImpactTable, Rigid
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
+pub use look::ChannelLook;
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
 pub use other::{Extreme, OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};

@@ -29,7 +29,7 @@ pub struct OtherChannels {
 pub struct Extreme {
     /// In the channel's unit.
     pub value: f64,
-    /// s from the first sample of the accelerometers.
+    /// When, s: beside a motion from the first sample of the accelerometers.
     pub time_s: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Whole channels to the stretch in which the first impact lies, in one pass.
 
 use super::block_means_m_s2;
-use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
+use crate::data::{Axis, Channel, CoarseEvent, End};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
@@ -55,8 +55,8 @@ struct Changing<'a> {
 
 impl<'a> Changes<'a> {
     /// Looks at every sample of the transverse channels once.
-    pub fn of(recording: &'a Recording) -> Self {
-        let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
+    pub fn of(channels: &'a [Channel]) -> Self {
+        let transverse = channels.par_iter().filter(|c| c.axis == Axis::Transverse);
         Self(transverse.filter_map(Changing::of).collect())
     }
 
@@ -163,7 +163,7 @@ fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{RecordingFormat, Samples, example};
+    use crate::data::{Samples, example};
 
     /// A channel of 6 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its
     /// velocity by so much, m/s.
@@ -191,8 +191,8 @@ mod tests {
     #[test]
     fn the_width_of_a_slow_record_holds_no_fall() {
         let located = |rate_hz: f64, impact_m_s: f64| {
-            let recording = recording(vec![slow(rate_hz, impact_m_s)]);
-            Changes::of(&recording).locate(6.0)
+            let channels = [slow(rate_hz, impact_m_s)];
+            Changes::of(&channels).locate(6.0)
         };
         for rate_hz in [198.0, 400.0] {
             let found = located(rate_hz, 9.0).expect("an impact");
@@ -204,24 +204,11 @@ mod tests {
         assert_eq!(located(60.0, 9.0), None);
     }
 
-    fn recording(channels: Vec<Channel>) -> Recording {
-        Recording {
-            path: "a".into(),
-            format: RecordingFormat::Hdf5,
-            reader: None,
-            sha256: String::new(),
-            channels,
-            others: std::sync::Arc::default(),
-            start_unix_ns: None,
-            issues: vec![],
-        }
-    }
-
     #[test]
     fn another_drop_is_an_impact_alike_that_no_rebound_can_be() {
         let another = |struck: &[(f64, f64)]| {
-            let recording = recording(vec![channel(End::First, struck)]);
-            let changes = Changes::of(&recording);
+            let channels = [channel(End::First, struck)];
+            let changes = Changes::of(&channels);
             changes.another_drop(&changes.locate(13.29).expect("an impact"), 1.355)
         };
         let found = another(&[(0.5, 20.0), (0.9, -12.0), (5.0, 16.0)]).expect("another drop");
@@ -235,13 +222,12 @@ mod tests {
 
     #[test]
     fn a_slap_down_far_weaker_than_the_first_impact_is_not_left_behind() {
-        let (first, second) = (
+        let channels = [
             channel(End::First, &[(0.5, 20.0), (1.9, 20.0)]),
             channel(End::Second, &[(0.5, -10.0), (1.0, 1.1), (1.3, 0.4)]),
-        );
-        let recording = recording(vec![first, second]);
+        ];
         let v0_m_s = 13.29;
-        let changes = Changes::of(&recording);
+        let changes = Changes::of(&channels);
         let event = changes.locate(v0_m_s).expect("an impact");
         let last_s = changes.last_s(&event, (v0_m_s, 1.0)).expect("a change");
         // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies

@@ -13,6 +13,7 @@ pub(crate) mod foreign;
 pub mod fuzz;
 mod hdf5;
 mod limits;
+mod listed;
 mod mcap;
 mod number;
 mod opened;
@@ -30,6 +31,7 @@ pub use error::IngestError;
 pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
 pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
+pub use listed::read_listed;
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;
 
@@ -108,23 +110,31 @@ pub fn read_within(
     cask_file::require_channels(cask_file, path)?;
     let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
     // The hash takes as long as the reading: it runs beside it.
-    // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
     let (((raw, format), reader), sha256) = unchanged::hashed(path, || {
         let converted = foreign::converted(path)?;
         let file = converted.as_ref().map_or(path, |converted| &converted.file);
         let format = detect::format(file)?;
         let request = ReadRequest { path: file, limits, progress };
-        let raw = rayon::scope(|_| match format {
-            RecordingFormat::Mcap => mcap::read(request, cask_file),
-            // No file is told as `Samples`.
-            RecordingFormat::Csv | RecordingFormat::Samples => csv::read(request, cask_file),
-            RecordingFormat::Hdf5 => hdf5::read(request, cask_file),
-        });
-        let raw = raw.map_err(|fault| fault.in_file(path))?;
+        let raw = read_raw(request, format, cask_file).map_err(|fault| fault.in_file(path))?;
         Ok(((raw, format), converted.map(|converted| converted.reader)))
     })?;
     let recording = assemble::recording(path, format, sha256, raw, stated)?;
     Ok(Recording { reader, ..recording })
+}
+
+/// What the reader of the format makes of the channels that `cask_file` names: on a thread of the pool, which
+/// need not be put to sleep for each piece that two threads share.
+fn read_raw(
+    request: ReadRequest,
+    format: RecordingFormat,
+    cask_file: &CaskFile,
+) -> Result<RawRecording, IngestError> {
+    rayon::scope(|_| match format {
+        RecordingFormat::Mcap => mcap::read(request, cask_file),
+        RecordingFormat::Hdf5 => hdf5::read(request, cask_file),
+        // No file is told as `Samples`.
+        RecordingFormat::Csv | RecordingFormat::Samples => csv::read(request, cask_file),
+    })
 }
 
 /// The SHA-256 of a file, as results have it.

@@ -1,7 +1,7 @@
 //! What a recording holds to the document that `inspect` shows.
 
 use super::analysis::quality;
-use super::document::{Chapter, ChapterPart, Medium, ReportDocument, ReportTable, TableShape};
+use super::document::{Chapter, ChapterPart, Medium, ReportDocument, ReportTable, TableShape, Words};
 use super::rounding::{MISSING, plain};
 use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
@@ -11,9 +11,9 @@ pub fn table(listing: &Listing, width: usize) -> String {
     super::as_text::text(&document(listing), width)
 }
 
-fn document(listing: &Listing) -> ReportDocument {
-    let title =
-        format!("{} · {} · {}", tail(&listing.recording, 50), json_word(listing.format), size(listing.bytes));
+/// Chapters of what the container states, the sources, how they are stored, and what is wrong with the file,
+/// where anything is.
+pub(super) fn document(listing: &Listing) -> ReportDocument {
     let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
     let counts = (!counts.is_empty()).then(|| ChapterPart::line(counts.join(", ")));
     let facts = listing
@@ -24,8 +24,9 @@ fn document(listing: &Listing) -> ReportDocument {
         let reason = channel.unreadable.as_ref()?;
         Some(ChapterPart::text(format!("{} cannot be read: {reason}", channel.source)))
     });
+    let title = ChapterPart::title(about(listing)).only(Medium::Terminal);
     let mut chapters = vec![
-        Chapter::new("").with(ChapterPart::title(title)).with_all(counts).with_all(facts),
+        Chapter::new("").with(title).with_all(counts).with_all(facts),
         Chapter::new("Sources").with_all(sources(&listing.channels)).with_all(unreadable),
         Chapter::new("Stored as").with_all(encodings(&listing.channels).into_iter().map(ChapterPart::text)),
     ];
@@ -35,11 +36,22 @@ fn document(listing: &Listing) -> ReportDocument {
     ReportDocument { chapters, ..ReportDocument::default() }
 }
 
+/// The recording, its format and its size.
+pub(super) fn about(listing: &Listing) -> String {
+    format!("{} · {} · {}", tail(&listing.recording, 50), json_word(listing.format), size(listing.bytes))
+}
+
 /// "3 chunks", "1 chunk".
 fn counted(name: &str, count: u64) -> String {
     let name = name.replace('_', " ");
     let name = if count == 1 { name.strip_suffix('s').unwrap_or(&name) } else { &name };
     format!("{count} {name}")
+}
+
+/// A source with the rows of it that are meant.
+pub(super) fn named(listed: &ListedChannel) -> String {
+    let rows = listed.rows.as_ref().map_or_else(String::new, |rows| format!(" ({rows})"));
+    format!("{}{rows}", listed.source)
 }
 
 /// Columns that are said in one sentence where all sources share what they hold.
@@ -59,18 +71,24 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     let seconds = |t: Option<f64>| known(t.map(|t| format!("{} s", plain(t, 3))));
     let mut table: ReportTable = ReportTable::of(channels)
         .head("source", |c| {
-            let rows = c.rows.as_ref().map_or_else(String::new, |rows| format!(" ({rows})"));
-            if is_long { format!("  {}{rows}", split(&c.source).1) } else { c.source.clone() + &rows }
+            let named = named(c);
+            let short = if is_long { format!("  {}", split(&named).1) } else { named.clone() };
+            Words::or(named, short)
         })
         .number("samples", |c| known(c.samples.or(c.messages).map(|n| n.to_string())))
         .number("rate", |c| known(c.sample_rate_hz.map(rate)))
-        .text("unit", |c| known(c.unit.clone()))
+        .text("unit", |c| match &c.unit {
+            Some(unit) => Words::from(unit.clone()),
+            None => Words::or("not stated", MISSING),
+        })
         .number("start", |c| seconds(c.start_s))
         .number("length", |c| seconds(c.duration_s))
         .number("gaps", |c| known(c.gaps.map(|n| n.to_string())))
         .text("range", |c| {
             known(c.range.map(|(low, high)| format!("{} … {}", plain(low, 3), plain(high, 3))))
         })
+        .only(Medium::Terminal)
+        .most(usize::MAX, 300, "recording.json has all")
         .into();
     if is_long {
         table.shape = TableShape::Groups(channels.iter().map(|c| split(&c.source).0.to_owned()).collect());

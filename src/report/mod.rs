@@ -13,6 +13,7 @@ mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
 pub(crate) mod document;
+mod first_look;
 mod first_screen;
 mod grid;
 mod impacts;
@@ -46,6 +47,7 @@ pub use campaign::{
     folder_name, impossible,
 };
 pub use curves_csv::in_german;
+pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};
 pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;

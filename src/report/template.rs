@@ -3,7 +3,7 @@
 use super::acceleration_sources::{self, NoChannels, VOLTAGES, has_word, is_time};
 use super::text::{is_hidden, lines, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
-use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, Source, acceleration_unit_m_s2};
 use std::fmt::Write;
 
 /// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value,
@@ -67,7 +67,7 @@ fn other_channel(listed: &ListedChannel) -> Vec<String> {
         "# [[channel]]".to_owned(),
         format!("# name = {}", quoted(&name)),
         entry("# end = \"none\"", &facts(listed)),
-        format!("# source = {}", source_value(source)),
+        format!("# source = {}", source_value(&listed.origin())),
     ];
     if listed.unit.is_none() {
         out.push(entry(&format!("# unit = \"{FILL_IN}\""), "the recording does not say"));
@@ -144,7 +144,7 @@ fn channel(out: &mut Vec<String>, index: usize, listed: &ListedChannel) {
             "name" => format!("name = \"A{}\"", index + 1),
             "end" => word_line(key, source, ["first", "second"]),
             "axis" => word_line(key, source, ["transverse", "axial"]),
-            "source" => format!("source = {}", source_value(source)),
+            "source" => format!("source = {}", source_value(&listed.origin())),
             "unit" => {
                 out.extend(unit(listed.unit.as_deref(), key));
                 continue;
@@ -201,17 +201,15 @@ fn facts(listed: &ListedChannel) -> String {
     printable(&facts.join(", "))
 }
 
-/// A source as TOML: a listing may tell it as the table of topic and field, else it is a string.
-fn source_value(source: &str) -> String {
-    let table = format!("source = {source}").parse::<toml::Table>().ok().and_then(|t| {
-        let table = t.get("source")?.as_table()?;
-        let (topic, field) = (table.get("topic")?.as_str()?, table.get("field")?.as_str()?);
-        let channel = table.get("channel").and_then(toml::Value::as_integer);
-        let channel = channel.map_or_else(String::new, |channel| format!(", channel = {channel}"));
-        (t.len() == 1 && table.len() <= 3)
-            .then(|| format!("{{ topic = {}, field = {}{channel} }}", quoted(topic), quoted(field)))
-    });
-    table.unwrap_or_else(|| quoted(source))
+/// A source as TOML.
+fn source_value(source: &Source) -> String {
+    match source {
+        Source::Path(path) => quoted(path),
+        Source::TopicField { topic, field, channel } => {
+            let channel = channel.map_or_else(String::new, |channel| format!(", channel = {channel}"));
+            format!("{{ topic = {}, field = {}{channel} }}", quoted(topic), quoted(field))
+        }
+    }
 }
 
 /// A TOML basic string.

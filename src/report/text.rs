@@ -195,6 +195,11 @@ pub(super) fn span_text(issue: &Finding) -> Option<String> {
     }
 }
 
+/// A time in ms.
+pub(super) fn moment(time_s: f64) -> String {
+    format!("{} ms", plain(time_s * 1e3, 7))
+}
+
 /// `text` with a true minus sign before each number that has a hyphen for one.
 pub(super) fn true_minus(text: &str) -> String {
     let mut before = ' ';

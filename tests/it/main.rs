@@ -9,6 +9,7 @@ mod csv_times;
 mod damage;
 mod documents;
 mod filter;
+mod first_look;
 mod first_minutes;
 mod first_screen;
 mod fixtures;

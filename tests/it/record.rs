@@ -1,7 +1,7 @@
 //! From a result alone to the same result again, and to what differs.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{analyze, dropcheck, fixture, number, words};
+use crate::run::{analyze, dropcheck, fixture, in_a_browser, number, words};
 use std::fs;
 use std::path::Path;
 
@@ -301,30 +301,9 @@ fn a_shell_completes_and_man_has_pages() {
 
 #[test]
 fn the_page_works_in_a_browser() {
-    let has_tools = std::process::Command::new("python3")
-        .args([
-            "-c",
-            "import axe_core_python, selenium, shutil, sys\n\
-             sys.exit(not all(map(shutil.which, ('chromedriver', 'pdftotext'))))",
-        ])
-        .output();
-    if !has_tools.is_ok_and(|answer| answer.status.success()) {
-        println!(
-            "skipped: tests/browser/page.py needs chromedriver, pdftotext, selenium and axe-core-python"
-        );
-        return;
-    }
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("report");
     let cask = fixture("anf18-json.toml");
     dropcheck(words!["analyze", fixture("anf18-json.mcap"), "-c", cask, "-o", out]);
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/browser/page.py");
-    let checked = std::process::Command::new("python3").arg(script).arg(out.join("report.html")).output();
-    let checked = checked.expect("python");
-    assert!(
-        checked.status.success(),
-        "{}{}",
-        String::from_utf8_lossy(&checked.stdout),
-        String::from_utf8_lossy(&checked.stderr)
-    );
+    in_a_browser("page.py", &out.join("report.html"));
 }

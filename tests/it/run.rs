@@ -42,6 +42,30 @@ pub fn analyze(recording: &Path, cask: &Path) -> Answer {
     dropcheck(words!["analyze", recording, "--cask", cask, "--json", "-"])
 }
 
+/// Opens a page in a browser and holds it to what a script of `tests/browser` checks; passes with a word
+/// where the tools are missing.
+#[track_caller]
+pub fn in_a_browser(script: &str, page: &Path) {
+    let has_tools = Command::new("python3")
+        .args([
+            "-c",
+            "import axe_core_python, selenium, shutil, sys\n\
+             sys.exit(not all(map(shutil.which, ('chromedriver', 'pdftotext'))))",
+        ])
+        .output();
+    if !has_tools.is_ok_and(|answer| answer.status.success()) {
+        println!(
+            "skipped: tests/browser/{script} needs chromedriver, pdftotext, selenium and axe-core-python"
+        );
+        return;
+    }
+    let path = root().join("tests/browser").join(script);
+    let Output { status, stdout, stderr } =
+        Command::new("python3").arg(path).arg(page).output().expect("python");
+    let [stdout, stderr] = [stdout, stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(status.success(), "{stdout}{stderr}");
+}
+
 impl Answer {
     /// Standard output as one JSON value, nothing before or after it.
     #[track_caller]

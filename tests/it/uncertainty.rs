@@ -16,8 +16,9 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
-    let event =
-        stages::Changes::of(&recording).locate(file.drop.transverse_velocity_m_s()).expect("an impact");
+    let event = stages::Changes::of(&recording.channels)
+        .locate(file.drop.transverse_velocity_m_s())
+        .expect("an impact");
     let reach = stages::Reach::of(&file.cask, &file.drop);
     let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
     let setup = stages::sticking(&file);

@@ -52,7 +52,7 @@ impl DropClass {
 /// The conditioned channels of a recording about the first impact, and where that lies; none without an
 /// impact.
 pub(super) fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, CoarseEvent)> {
-    let coarse = events::Changes::of(recording).locate(file.drop.transverse_velocity_m_s())?;
+    let coarse = events::Changes::of(&recording.channels).locate(file.drop.transverse_velocity_m_s())?;
     let reach = condition::Reach::of(&file.cask, &file.drop);
     let (signals, _) = condition::condition(recording, &coarse, &reach, file.corrections);
     Some((signals, coarse))

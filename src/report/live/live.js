@@ -12,17 +12,16 @@ for (const figure of document.querySelectorAll("figure[id]")) {
   const answer = document.createElement("span");
   answer.setAttribute("role", "status");
   if (numbers) {
-    const { each, of, panels } = JSON.parse(numbers.textContent);
+    const { note, of, panels } = JSON.parse(numbers.textContent);
     drawn[figure.id] = of ? drawn[of] : panels.flatMap((panel) => panel.lines);
     const box = document.createElement("div");
     box.className = "live";
     figure.prepend(box);
     figure.classList.add("is-live");
     const charts = panels.map((panel) => chart(box, panel, of ? drawn[of] : panel.lines, figure.id));
-    const all = each > 1 ? `Drawn and copied: the lowest and the highest of each ${each} samples; curves.csv has all.` : "Drag to zoom: every sample is here.";
     button(tools, "Reset zoom", () => charts.forEach(whole));
     button(tools, "Copy as CSV", () => { answer.textContent = `Copied ${copy(table(charts))} rows`; });
-    answer.textContent = all;
+    answer.textContent = note;
     addEventListener("resize", () => charts.forEach((u) => u.setSize(u.fitted())));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach((u) => u.redraw()));
   }

@@ -9,7 +9,7 @@ use super::panel::{self, COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{Analysis, Axis, ChannelCurve, End, ImpactTable, Mode, STANDARD_GRAVITY_M_S2};
 use std::ops::Range;
 
-const TIME_LABEL: &str = "time from the recording's first sample, ms";
+pub(super) const TIME_LABEL: &str = "time from the recording's first sample, ms";
 
 /// The deceleration of both ends, unfiltered and filtered.
 pub(super) fn accelerations(analysis: &Analysis) -> Picture {

@@ -32,6 +32,8 @@ pub(crate) struct Plate {
     pub(crate) columns: usize,
     /// The picture whose lines a page takes to draw it again, to be zoomed; "" for its own, `None` for none.
     pub(crate) live_of: Option<&'static str>,
+    /// What a page says of samples that were left out before; `None`: none were.
+    pub(crate) thinned: Option<String>,
 }
 
 impl Plate {
@@ -46,6 +48,7 @@ impl Plate {
             nothing,
             columns: 1,
             live_of: None,
+            thinned: None,
         }
     }
 
@@ -76,7 +79,8 @@ impl Plate {
         let (svg, height) = drawing(&panels, self.columns);
         let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
         let shown = if rows.is_empty() { self.caption.clone() } else { rows.join("; ") };
-        let live = self.live_of.map_or_else(String::new, |of| live::numbers(&panels, of));
+        let live =
+            self.live_of.map_or_else(String::new, |of| live::numbers(&panels, of, self.thinned.as_deref()));
         let alt = format!("{}. {shown}", self.title);
         Picture { alt, live, ..self.drawn(svg, height, "") }
     }

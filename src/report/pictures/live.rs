@@ -1,7 +1,7 @@
 //! Panels to the numbers that a page's own script draws again, to be zoomed and copied.
 
 use super::super::text::printable;
-use super::decimate::runs;
+use super::decimate::thinned;
 use super::panel::{Curve, Panel};
 use crate::numerics::{as_count, as_f64, single};
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
@@ -12,18 +12,29 @@ use serde_json::{Value, json};
 pub(super) const MOST_VALUES: usize = 25_000;
 const THINNED_VALUES: usize = 12_000;
 
+/// What stands beside a picture of which nothing was left out.
+pub(super) const EVERY_SAMPLE: &str = "Drag to zoom: every sample is here.";
+
 /// The panels with lines on linear axes, as JSON, the lines being those of the picture `of` where it has a
-/// name; empty where there is none.
-pub(super) fn numbers(panels: &[&Panel], of: &str) -> String {
+/// name; empty where there is none. `thinned` says what was left out before, where anything was.
+pub(super) fn numbers(panels: &[&Panel], of: &str, thinned: Option<&str>) -> String {
     let drawn = || panels.iter().filter(|panel| !panel.lines.is_empty());
     let count: usize = drawn().flat_map(|panel| &panel.lines).map(|line| line.points.len()).sum();
     if count == 0 {
         return String::new();
     }
     // Of each so many samples the lowest and the highest are drawn; of one it is all.
-    let each = if count > MOST_VALUES { (2 * count).div_ceil(THINNED_VALUES) } else { 1 };
+    let is_whole = thinned.is_some() || count <= MOST_VALUES;
+    let each = if is_whole { 1 } else { (2 * count).div_ceil(THINNED_VALUES) };
+    let note = match thinned {
+        Some(left_out) => left_out.to_owned(),
+        None if is_whole => EVERY_SAMPLE.to_owned(),
+        None => format!(
+            "Drawn and copied: the lowest and the highest of each {each} samples; curves.csv has all."
+        ),
+    };
     let all: Vec<Value> = drawn().map(|panel| of_panel(panel, each, of)).collect();
-    json!({"each": each, "of": of, "panels": all}).to_string().replace('<', "\\u003c")
+    json!({"note": note, "of": of, "panels": all}).to_string().replace('<', "\\u003c")
 }
 
 fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
@@ -42,27 +53,19 @@ fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
 fn of_line(line: &Curve, each: usize) -> Value {
     let ends = line.points.first().zip(line.points.last());
     let (x0, last) = ends.map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
+    let dx = line.step.unwrap_or((last - x0) / as_f64(line.points.len().max(2) - 1));
+    let place = |i: usize, x: f64| line.step.map_or(i, |step| as_count(((x - x0) / step).round()));
+    let places = line.points.iter().enumerate().map(|(i, p)| (place(i, p.0), p.1));
     let (mut steps, mut bytes, mut at) = (Vec::new(), Vec::new(), 0);
-    let mut put = |place: usize, value: f64| {
+    for (place, value) in thinned(places, each) {
         steps.push(place - at);
         bytes.extend_from_slice(&single(value).to_le_bytes());
         at = place;
-    };
-    let places = line.points.iter().enumerate().map(|(i, p)| (as_f64(i) / as_f64(each), p.1));
-    for (i, run) in runs(places).into_iter().enumerate() {
-        let place = |x: f64| as_count((x * as_f64(each)).round());
-        if let Some((begins, _)) = run.first().filter(|_| i > 0) {
-            put(place(*begins) - 1, f64::NAN);
-        }
-        for (x, y) in run {
-            put(place(x), y);
-        }
     }
     let is_even = steps.iter().enumerate().all(|(i, step)| *step == usize::from(i > 0));
     json!({
         "label": line.label.as_deref().map(printable), "color": line.colour.to_string(),
         "opacity": line.opacity, "dash": line.dash.pieces(), "stroke": line.stroke,
-        "x0": x0, "dx": (last - x0) / as_f64(line.points.len().max(2) - 1),
-        "steps": (!is_even).then_some(steps), "y": STANDARD.encode(bytes)
+        "x0": x0, "dx": dx, "steps": (!is_even).then_some(steps), "y": STANDARD.encode(bytes)
     })
 }

@@ -15,11 +15,13 @@ mod monte_carlo;
 mod others;
 pub(crate) mod panel;
 mod positions;
+mod recorded;
 mod setup;
 mod study;
 mod svg;
 mod sweep;
 
+pub(super) use recorded::recorded;
 pub(super) use study::{draw_study, names as study_names};
 
 use crate::data::Analysis;

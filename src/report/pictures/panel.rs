@@ -76,12 +76,14 @@ pub(crate) struct Curve {
     pub(crate) stroke: u32,
     pub(crate) dash: Dash,
     pub(crate) points: Vec<(f64, f64)>,
+    /// How far samples lie apart along x, where points were left out; `None`: as far as the points.
+    pub(crate) step: Option<f64>,
 }
 
 impl Curve {
     /// A bold line that the legend does not name.
     pub(crate) fn new(colour: Colour, points: Vec<(f64, f64)>) -> Self {
-        Self { label: None, colour, opacity: 1.0, stroke: 4, dash: Dash::Solid, points }
+        Self { label: None, colour, opacity: 1.0, stroke: 4, dash: Dash::Solid, points, step: None }
     }
 
     /// With its name in the legend.
