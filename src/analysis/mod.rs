@@ -7,12 +7,14 @@ mod impact;
 mod impacts;
 pub mod missing_end;
 mod progress;
+mod rest;
 mod result;
 mod second_impact;
 mod second_look;
 mod setup;
 mod slips;
 
+pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, Recording};

@@ -28,6 +28,8 @@ pub struct CaskFile {
     pub corrections: Corrections,
     /// `[recording] time`.
     pub time: Option<String>,
+    /// `[recording] rest`, from where the program runs.
+    pub rest: Option<PathBuf>,
     /// `[[channel]]`, in the file's order.
     pub channels: Vec<ChannelSpec>,
     /// `[test]`.
@@ -63,6 +65,7 @@ impl CaskFile {
             tolerances: Tolerances::default(),
             corrections: Corrections::default(),
             time: None,
+            rest: None,
             channels: Vec::new(),
             test: TestRecord::default(),
             observed: Vec::new(),

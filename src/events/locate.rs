@@ -231,6 +231,8 @@ mod tests {
             sha256: String::new(),
             channels,
             start_unix_ns: None,
+            before_trigger_s: None,
+            rest: None,
             issues: vec![],
         }
     }

@@ -9,7 +9,7 @@ mod separation;
 pub use answer::answers;
 pub use locate::Changes;
 pub use onset::{first_contact, slap_down};
-pub use release::{FreeFall, free_fall};
+pub use release::{FreeFall, at_rest, feels_gravity, free_fall};
 pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
 
 use crate::data::{Axis, Channel, End, Samples, Signal};

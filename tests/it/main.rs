@@ -24,6 +24,7 @@ mod properties;
 mod record;
 mod reference;
 mod relations;
+mod rest;
 mod rigid;
 mod run;
 mod safety;
