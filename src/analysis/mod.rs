@@ -1,5 +1,6 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
 
+mod check;
 mod comparison;
 mod flight;
 pub mod flight_search;
@@ -14,6 +15,7 @@ mod second_look;
 mod setup;
 mod slips;
 
+pub use check::check;
 pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 

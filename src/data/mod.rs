@@ -50,8 +50,8 @@ pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
     AttributeFinding, CODES, ChannelFinding, ClockFinding, Cure, DropFinding, During, FileEnd, Finding,
-    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, Severity, Slip, TableFinding,
-    TimesApart, TimesFinding, shortened,
+    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, RestCause, RestFinding, Severity,
+    Slip, TableFinding, TimesApart, TimesFinding, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;

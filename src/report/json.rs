@@ -1,7 +1,7 @@
 //! Results and listings to JSON: pretty, keys in the contract's order, never a number that is not one.
 
 use super::ReportError;
-use crate::data::{DropResult, Listing};
+use crate::data::{Check, DropResult, Listing};
 use std::fmt::Write as _;
 
 /// `result.json`.
@@ -18,6 +18,14 @@ pub fn result(result: &DropResult) -> Result<Vec<u8>, ReportError> {
 /// [`ReportError::Json`] where the writer fails.
 pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
     pretty(listing)
+}
+
+/// The JSON of `check`.
+///
+/// # Errors
+/// [`ReportError::Json`] where the writer fails.
+pub fn check(check: &Check) -> Result<Vec<u8>, ReportError> {
+    pretty(check)
 }
 
 /// Two spaces of indentation and a line feed at the end.

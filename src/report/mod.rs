@@ -9,6 +9,7 @@ pub(crate) mod as_html;
 pub(crate) mod as_markdown;
 pub(crate) mod as_text;
 mod campaign;
+mod check;
 mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
@@ -45,9 +46,10 @@ pub use campaign::{
     Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
     folder_name, impossible,
 };
+pub use check::table as check_table;
 pub use curves_csv::in_german;
 pub use first_screen::{first_screen, not_strict};
-pub use json::{in_a_line, listing as listing_json, result as result_json};
+pub use json::{check as check_json, in_a_line, listing as listing_json, result as result_json};
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;

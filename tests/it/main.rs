@@ -4,6 +4,7 @@ mod arrays;
 mod batch;
 mod bounds;
 mod campaign;
+mod check;
 mod command_line;
 mod csv_times;
 mod damage;
