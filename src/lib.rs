@@ -46,8 +46,8 @@ pub mod predict;
 #[allow(clippy::must_use_candidate, clippy::return_self_not_must_use, reason = "for this program alone")]
 pub mod report;
 
-pub use analysis::analyze;
-pub use ingest::{IngestError, cask_file, read, read_hdf5_with, serve_hdf5};
+pub use analysis::{analyze, read};
+pub use ingest::{IngestError, cask_file, read_hdf5_with, serve_hdf5};
 pub use predict::{predict, study};
 pub use report::{ReportError, files};
 

@@ -2,7 +2,7 @@
 //! shows.
 
 use super::flight_search::{self, Patience};
-use super::missing_end;
+use super::{missing_end, rest};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
     Finding, FindingKind, Recording, RestLevel, Severity, Signal,
@@ -89,7 +89,10 @@ impl Impact {
         }
         let u_skew_s = align(file, &mut signals, contact.time_s, findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
-        let (rests, fall_s) = before(recording, drop, contact.time_s);
+        let (mut rests, fall_s) = before(recording, drop, contact.time_s);
+        if rests.is_empty() {
+            rests = rest::levels(recording, &signals, file);
+        }
         let impact = Self {
             signals,
             contact,

@@ -1,5 +1,6 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
 
+mod check;
 mod comparison;
 mod first_look;
 mod flight;
@@ -9,13 +10,16 @@ mod impacts;
 pub mod missing_end;
 mod others;
 mod progress;
+mod rest;
 mod result;
 mod second_impact;
 mod second_look;
 mod setup;
 mod slips;
 
+pub use check::check;
 pub use first_look::first_look;
+pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, Recording};

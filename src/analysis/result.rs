@@ -131,6 +131,8 @@ fn result(
             reader: recording.reader.clone(),
             cask: file.path.display().to_string(),
             cask_sha256: file.sha256.clone(),
+            rest: recording.rest.as_ref().map(|rest| rest.path.display().to_string()),
+            rest_sha256: recording.rest.as_ref().map(|rest| rest.sha256.clone()),
         },
         first_impact: FirstImpact::new(events.first_contact.map(time), quantities),
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),
@@ -152,7 +154,7 @@ fn result(
         flight: None,
         budget: Vec::new(),
         untested: Vec::new(),
-        settings: of_cask_file(file, &events),
+        settings: of_cask_file(file, &events).into_iter().chain(of_rest(recording, &events)).collect(),
         keys: serde_json::Value::Null,
         cask_text: file.text.clone(),
     }
@@ -267,6 +269,16 @@ fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
         )
     }));
     settings
+}
+
+/// Where the rest before the drop is from, where it is a file of its own.
+fn of_rest(recording: &Recording, events: &Events) -> Option<Setting> {
+    let file = recording.rest.as_ref()?.path.display();
+    let value = match events.release_s {
+        Some(_) => format!("that of the recording itself; {file} is not used"),
+        None => file.to_string(),
+    };
+    Some(setting("rest before the drop", value, "a file of its own"))
 }
 
 fn summary(channel: &Channel, file: &CaskFile) -> ChannelSummary {

@@ -7,6 +7,7 @@ use super::pdf;
 use super::progress::with_progress;
 use super::rerun::{self, EarlierResult};
 use super::tuning::{keep_freed_memory, keep_threads_awake};
+use crate::analysis::{read_within, take_rest};
 use crate::data::keys::CORRECTIONS;
 use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
 use crate::{ingest, report};
@@ -27,6 +28,10 @@ pub struct Arguments {
     /// Repeat the analysis recorded in this result.json, with the cask file in it, and say what differs
     #[arg(long, value_name = "RESULT", conflicts_with_all = ["cask", "without"])]
     from: Option<PathBuf>,
+    /// A recording of the rest before the drop, where the recording itself has none; goes before `[recording]
+    /// rest` of the cask file
+    #[arg(long, value_name = "REST")]
+    rest: Option<PathBuf>,
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -111,11 +116,13 @@ fn complain_softly(sentence: &str) {
 pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
     let mut cask_file = ingest::cask_file(arguments.cask.as_deref().unwrap_or(Path::new("")))?;
     arguments.switched_off.in_cask_file(&mut cask_file);
+    cask_file.rest = arguments.rest.clone().or(cask_file.rest);
     let limits = arguments.bounds.limits();
-    let recording = match held {
+    let mut recording = match held {
         Some(held) => ingest::read_arrays(held, &cask_file)?,
         None => ingest::read_within(&arguments.recording, &cask_file, limits, &|_| ())?,
     };
+    take_rest(&mut recording, &cask_file, limits)?;
     let mut analysis = crate::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
     Ok(analysis)
@@ -136,7 +143,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     // While the recording is read: the result names it.
     #[cfg(not(debug_assertions))]
     std::thread::spawn(rerun::program_sha256);
-    let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
+    let Arguments { recording, cask, from, rest, .. } = arguments;
+    let inputs = [Some(recording), cask.as_ref(), from.as_ref(), rest.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let names = [&report::FILE_NAMES[..], &[pdf::NAME]].concat();
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
@@ -155,8 +163,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
     switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
+    let repeated = earlier.as_ref().and_then(EarlierResult::rest);
+    cask_file.rest = arguments.rest.clone().or(repeated).or(cask_file.rest);
     let recording = with_progress("reading", |progress| {
-        let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
+        let read = || read_within(&arguments.recording, &cask_file, limits, progress);
         // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all
         // threads at work.
         let is_mcap = matches!(ingest::format(&arguments.recording), Ok(RecordingFormat::Mcap));

@@ -18,7 +18,8 @@ use super::lines::{self, LineOutput, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print};
 use super::rerun::stamp;
 use super::tuning::keep_freed_memory;
-use crate::data::Analysis;
+use crate::analysis::read_within;
+use crate::data::{Analysis, CaskFile};
 use crate::ingest::bytes_of;
 use crate::report::Batch;
 use crate::{ingest, report};
@@ -168,12 +169,16 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
             && said
                 .all(|(key, said)| ["campaign", "id", "curves"].contains(&&key[..]) || result[key] == *said)
     };
-    let cask_sha256 = || ingest::cask_file::with_columns(cask, &test.stated).ok().map(|file| file.sha256);
-    let recording_sha256 = || ingest::sha256(&test.recording).ok();
+    let cask_file = || ingest::cask_file::with_columns(cask, &test.stated).ok();
+    let sha256 = |path: &Path| ingest::sha256(path).ok();
+    let is_same_cask = |file: &CaskFile| {
+        let rest_sha256 = file.rest.as_ref().map(|rest| sha256(rest));
+        input["cask_sha256"] == file.sha256 && input["rest_sha256"] == json!(rest_sha256)
+    };
     line["verdict"].is_string()
         && is_there()
-        && cask_sha256().is_some_and(|own| input["cask_sha256"] == own)
-        && recording_sha256().is_some_and(|own| input["recording_sha256"] == own)
+        && cask_file().as_ref().is_some_and(is_same_cask)
+        && sha256(&test.recording).is_some_and(|own| input["recording_sha256"] == own)
 }
 
 /// The line of one test: its result, or why there is none.
@@ -232,7 +237,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
     arguments.switched_off.in_cask_file(&mut cask_file);
-    let recording = ingest::read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
+    let recording = read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
     let mut analysis = crate::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
     stamp(&mut analysis.result, words(plan, test, arguments))?;

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod batch;
+mod check;
 mod complaint;
 mod embedded;
 mod help;
@@ -54,6 +55,8 @@ pub struct CommandLine {
 pub enum Command {
     /// Analyse one recording: table, and with --out a report
     Analyze(analyze::Arguments),
+    /// Before the drop: hold a recording at rest against the cask file
+    Check(check::Arguments),
     /// Analyse a campaign of recordings into one table
     Batch(batch::Arguments),
     /// Put the shards of a campaign together: the files that one run would have written
@@ -128,6 +131,7 @@ pub fn main(words: &[OsString]) -> u8 {
 fn run(command: &Command) -> miette::Result<Ending> {
     match command {
         Command::Analyze(arguments) => analyze::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Predict(arguments) => predict::run(arguments),

@@ -7,7 +7,7 @@ use crate::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Numbers nearer to one another than this share of their magnitude are the same: machines round otherwise.
@@ -83,6 +83,11 @@ impl EarlierResult {
         let text_at =
             |pointer: &str| self.result.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
         Ok(ingest::cask_file::of_text(Path::new(text_at("/input/cask")), text_at("/cask_text"))?)
+    }
+
+    /// The file with the rest before the drop.
+    pub fn rest(&self) -> Option<PathBuf> {
+        self.result["input"]["rest"].as_str().map(PathBuf::from)
     }
 
     /// The corrections that were switched off on its command line, by their keys.

@@ -45,6 +45,12 @@ pub struct Input {
     pub cask: String,
     /// Its SHA-256.
     pub cask_sha256: String,
+    /// The file with the rest before the drop, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<String>,
+    /// Its SHA-256.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest_sha256: Option<String>,
 }
 
 /// How one analytical model stands against the measurement.

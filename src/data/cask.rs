@@ -235,6 +235,13 @@ pub fn block_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
 }
 
 impl Drop {
+    /// What a channel of this axis without offset reads at rest, m/s².
+    #[must_use]
+    pub fn weight_m_s2(&self, axis: Axis) -> f64 {
+        let (along, across) = self.angle_rad.sin_cos();
+        self.gravity_m_s2 * if axis == Axis::Axial { along } else { across }
+    }
+
     /// A free fall from this height at 9.81 m/s², without rotation.
     #[must_use]
     pub fn of_height(height_m: f64, angle_rad: f64) -> Self {

@@ -30,6 +30,8 @@ pub struct CaskFile {
     pub corrections: Corrections,
     /// `[recording] time`.
     pub time: Option<String>,
+    /// `[recording] rest`, from where the program runs.
+    pub rest: Option<PathBuf>,
     /// `[[channel]]` of the accelerometers, in the file's order.
     pub channels: Vec<ChannelSpec>,
     /// `[[channel]]` with `end = "none"`, in the file's order.
@@ -78,6 +80,7 @@ impl CaskFile {
             tolerances: Tolerances::default(),
             corrections: Corrections::default(),
             time: None,
+            rest: None,
             channels: Vec::new(),
             others: Vec::new(),
             test: TestRecord::default(),

@@ -164,6 +164,17 @@ pub struct Channel {
     pub time_jitter_s: f64,
     /// How the sensor is coupled.
     pub coupling: Coupling,
+    /// What the sensor reads in a file of its own with the rest before the drop, offset and all.
+    pub rest: Option<RestReading>,
+}
+
+/// A level at rest, in the unit of the samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RestReading {
+    /// The level.
+    pub level: f64,
+    /// Its standard uncertainty.
+    pub u: f64,
 }
 
 impl Channel {

@@ -46,6 +46,7 @@ pub(crate) fn channel(samples: Vec<f64>) -> Channel {
         gaps: vec![],
         time_jitter_s: 0.0,
         coupling: Coupling::Dc,
+        rest: None,
     }
 }
 

@@ -180,10 +180,14 @@ pub const FILTER: [Key; 2] = [
 ];
 
 /// Keys of `[recording]`.
-pub const RECORDING: [Key; 1] = [text("time", "found").shown(
-    r#""time_s""#,
-    "CSV column, HDF5 dataset or field of messages with the times, where they are not found by themselves",
-)];
+pub const RECORDING: [Key; 2] = [
+    text("time", "found").shown(
+        r#""time_s""#,
+        "CSV column, HDF5 dataset or field of messages with the times, where they are not found by \
+         themselves",
+    ),
+    text("rest", "–").shown(r#""rest.h5""#, "a recording of the rest before the drop, beside this file"),
+];
 
 /// Keys of `[[channel]]`.
 pub const CHANNEL: [Key; 21] = [

@@ -5,6 +5,7 @@ mod at;
 mod cask;
 mod cask_file;
 mod channel;
+mod check;
 mod curves;
 mod estimate;
 #[cfg(test)]
@@ -44,14 +45,15 @@ pub use cask::{
 };
 pub use cask_file::CaskFile;
 pub(crate) use channel::is_number;
-pub use channel::{Channel, Samples, Span};
+pub use channel::{Channel, RestReading, Samples, Span};
+pub use check::{AtRest, BlowAnswer, Check, CheckedChannel};
 pub use curves::{ChannelCurve, Curves, LazyCurves, MotionCurve};
 pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
     AttributeFinding, CODES, ChannelFinding, ClockFinding, Cure, DropFinding, During, FileEnd, Finding,
-    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, Severity, Slip, TableFinding,
-    TimesApart, TimesFinding, shortened,
+    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, RestCause, RestFinding, Severity,
+    Slip, TableFinding, TimesApart, TimesFinding, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;
@@ -69,7 +71,7 @@ pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel, U_RELEASE_S,
 };
-pub use recording::{Recording, RecordingFormat};
+pub use recording::{Recording, RecordingFormat, RestFile};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
     AngleCurve, BodyPath, Criterion, CriticalAngle, MonteCarlo, Pose, PredictionRow, QuantileCurves, Study,

@@ -41,6 +41,19 @@ pub struct Recording {
     pub others: Arc<OtherChannels>,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
+    /// How long before zero the recording's own times begin, s, where they count from a trigger.
+    pub before_trigger_s: Option<f64>,
+    /// The rest before the drop, where it is a file of its own.
+    pub rest: Option<RestFile>,
     /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
     pub issues: Vec<Finding>,
+}
+
+/// A file with the rest before the drop.
+#[derive(Debug, Clone)]
+pub struct RestFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Its SHA-256, lower-case hexadecimal.
+    pub sha256: String,
 }

@@ -5,12 +5,14 @@ mod locate;
 mod onset;
 mod release;
 mod separation;
+mod taps;
 
 pub use answer::answers;
 pub use locate::Changes;
 pub use onset::{first_contact, slap_down};
-pub use release::{FreeFall, free_fall};
+pub use release::{FreeFall, at_rest, feels_gravity, free_fall};
 pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
+pub use taps::blow_answers;
 
 use crate::data::{Axis, Channel, End, Samples, Signal};
 use crate::numerics::reduce;

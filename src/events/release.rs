@@ -2,7 +2,7 @@
 //! it.
 
 use super::block_means_m_s2;
-use crate::data::{Axis, Channel, Drop, Samples};
+use crate::data::{AtRest, Channel, Drop, Samples};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -28,6 +28,10 @@ const NOISE_FACTOR: f64 = 6.0;
 /// not yet the rest: the cask is still hoisted or swings.
 const UNREST: f64 = 0.02;
 const UNREST_SCATTERS: f64 = 5.0;
+/// This share of the levels of a recording at rest tells the rest: a blow on each end moves two or three.
+const STILL: f64 = 0.7;
+/// An axis on which gravity reads no more does not feel the rest, m/s².
+const FLAT_M_S2: f64 = 0.5;
 /// The release is sought this many of the cask file's fall times back, so that a wrong height is seen as
 /// such.
 const REACH: f64 = 3.0;
@@ -55,11 +59,10 @@ pub struct FreeFall {
 /// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None`
 /// where the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
 pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
-    let lean = match channel.axis {
-        Axis::Transverse => drop.angle_rad.cos(),
-        Axis::Axial => drop.angle_rad.sin(),
-    };
-    let weight_m_s2 = drop.gravity_m_s2 * lean;
+    let weight_m_s2 = drop.weight_m_s2(channel.axis);
+    if !feels_gravity(channel, drop) {
+        return None;
+    }
     let fall_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
     let record = Record::new(channel, 0..channel.index_at(contact_s), weight_m_s2)?;
     let contact = (contact_s - channel.time_s(0)) * channel.sample_rate_hz;
@@ -71,6 +74,33 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .filter(|(_, length)| *length > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(fall, _)| fall)
+}
+
+/// Whether gravity reads on a channel's axis at rest.
+pub fn feels_gravity(channel: &Channel, drop: &Drop) -> bool {
+    drop.weight_m_s2(channel.axis) > FLAT_M_S2
+}
+
+/// The level of a recording that is all rest; `None` where it is shorter than two levels.
+///
+/// Levels that a blow moves are left out.
+pub fn at_rest(channel: &Channel, gravity_m_s2: f64) -> Option<AtRest> {
+    let record = Record::new(channel, 0..channel.samples.len(), gravity_m_s2)?;
+    let levels = record.levels(0..record.blocks.len());
+    let median = robust::median(&mut levels.clone());
+    let off = |level: &f64| (level - median).abs();
+    let middle = levels.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let steps: Vec<f64> = levels.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let scatter_m_s2 = robust::spread(&steps).hypot(record.converter_step_m_s2());
+    let most_m_s2 = (UNREST * gravity_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
+    let still: Vec<f64> =
+        levels.iter().copied().filter(|level| (level - middle).abs() <= most_m_s2).collect();
+    Some(AtRest {
+        level_m_s2: robust::mean_and_rms(&still).0,
+        u_m_s2: record.u_mean(&still, scatter_m_s2),
+        is_still: as_f64(still.len()) >= STILL * as_f64(levels.len()),
+        least_step_m_s2: record.converter_step_m_s2(),
+    })
 }
 
 /// The samples before first contact and the means of their blocks: a median would stand on a coarse
@@ -86,12 +116,12 @@ struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
+    /// `None` where the record is shorter than two levels.
     fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
         let size = as_count((BLOCK_S * channel.sample_rate_hz).round()).max(1);
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
         blocks.truncate(samples.len() / size);
-        let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
+        let is_long = blocks.len() > 2 * LEVEL + 2;
         is_long.then_some(Self {
             channel,
             samples,

@@ -13,6 +13,7 @@ const ROLL_RAD_S: f64 = 1.0;
 
 /// Remedies that more than one input has.
 pub(super) const REST: &str = "record the cask at rest before the release";
+pub(super) const RELEASE: &str = "begin the recording before the release";
 pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
 const MEASURE: &str = "measure between the edges that strike";
 const FILM: &str = "high-speed video of the fall";

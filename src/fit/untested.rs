@@ -2,7 +2,7 @@
 //! the half-width of its interval is found by no check.
 
 use super::FitData;
-use super::inputs::{InputShift, Inputs, REST, SECOND_SENSOR, StatedKey, UncertainInput};
+use super::inputs::{InputShift, Inputs, RELEASE, REST, SECOND_SENSOR, StatedKey, UncertainInput};
 use crate::data::{FlightFit, MISSED_U, Quantities, Untested, UntestedMoves};
 
 /// A number so many half-widths off is wrong.
@@ -93,7 +93,12 @@ fn of_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)>
             }
             format!("channel.{}.{}", measured.spec(channel)?.name, own.key)
         }
-        _ => own.key.to_owned(),
+        _ => {
+            if own.remedy == REST && !measured.rests.is_empty() && measured.fall_s.is_none() {
+                own.remedy = RELEASE;
+            }
+            own.key.to_owned()
+        }
     };
     let StatedKey { by, by_u, remedy, .. } = own;
     Some((Untested { what, key, by, moves: UntestedMoves::default(), remedy }, by_u))

@@ -55,6 +55,8 @@ pub(crate) fn recording(
         channels,
         others: others.into(),
         start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
+        before_trigger_s: (raw.zero_unix_ns.is_none() && first_s < 0.0).then_some(-first_s),
+        rest: None,
         issues,
     })
 }
@@ -134,6 +136,7 @@ fn channel(
         gaps: raw.uniform.gaps,
         time_jitter_s: raw.uniform.time_jitter_s,
         coupling: spec.coupling,
+        rest: None,
     })
 }
 

@@ -156,7 +156,10 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
     let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
-    let time = root.table("recording")?.text("time")?.map(|time| time.value);
+    let of_recording = root.table("recording")?;
+    let time = of_recording.text("time")?.map(|time| time.value);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let rest = of_recording.text("rest")?.map(|rest| folder.join(rest.value));
     let (channels, others) = channel::channels(&root, &cask)?;
     let test = record::test(&root.table("test")?, photos)?;
     let observed = record::observed(&root.table("observed")?)?;
@@ -171,6 +174,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         tolerances,
         corrections,
         time,
+        rest,
         channels,
         others,
         test,

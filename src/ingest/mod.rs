@@ -17,7 +17,7 @@ mod listed;
 mod mcap;
 mod number;
 mod opened;
-mod refusal;
+pub(crate) mod refusal;
 mod statement;
 mod strangers;
 pub mod time_base;

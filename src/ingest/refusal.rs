@@ -14,7 +14,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    pub(super) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+    pub(crate) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { place: String::new(), problem: problem.into(), remedy: remedy.into() }
     }
 

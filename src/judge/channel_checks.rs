@@ -27,16 +27,18 @@ const PEAKS: f64 = 3.0;
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
 pub(super) fn judge_by_themselves(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
-    let mut findings = places(signals, cask_file);
+    let mut findings = judge_places(signals, cask_file);
     for signal in signals {
-        findings.extend(noisy(signal, events, cask_file.drop.impact_velocity_m_s));
+        findings.extend(judge_noise(signal, events, cask_file.drop.impact_velocity_m_s));
         findings.extend(under_way(signal, events));
     }
     findings.extend(units(signals));
     findings
 }
 
-fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
+/// What the noise before first contact makes of the velocity.
+#[must_use]
+pub fn judge_noise(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
@@ -61,7 +63,8 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
 }
 
 /// Sensors beyond the ends of the cask, and ends that lie the other way round.
-fn places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
+#[must_use]
+pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     let length_m = cask_file.cask.length_m;
     let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
     let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.on(&s.name);

@@ -1,5 +1,6 @@
 //! Everything found on the way to findings and a verdict: what speaks against the result.
 
+mod at_rest;
 mod blows;
 mod channel_checks;
 mod channels;
@@ -16,8 +17,11 @@ mod rigid;
 mod sampling;
 mod silent;
 mod skew;
+mod taps;
 
+pub use at_rest::{judge_chain, judge_levels, judge_record};
 pub use blows::judge_blows;
+pub use channel_checks::{judge_noise, judge_places};
 pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use copies::judge_copies;
@@ -31,6 +35,7 @@ pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_p
 pub use rigid::{TransversePlace, judge_rigid, places};
 pub use silent::judge_silent;
 pub use skew::judge_skew;
+pub use taps::judge_taps;
 
 use crate::data::{Axis, End, Events, Finding, IssueCode, Severity, Signal, Verdict};
 

@@ -44,7 +44,8 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut findings = Vec::new();
     for (signal, content) in signals.iter().zip(contents) {
-        findings.extend(low_rate(signal, pulse_s, length_s));
+        let low = low_rate(&signal.name, signal.sample_rate_hz, length_s);
+        findings.extend(low.map(|found| found.between(pulse_s.0, pulse_s.1)));
         if !disturbed.contains(&signal.name.as_str()) {
             findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
         }
@@ -74,14 +75,15 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), samples / signal.sample_rate_hz))
 }
 
-fn low_rate(signal: &Signal, pulse_s: (f64, f64), length_s: f64) -> Option<Finding> {
-    let samples = length_s * signal.sample_rate_hz;
+/// Too few samples over a pulse of this length.
+pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64) -> Option<Finding> {
+    let samples = length_s * sample_rate_hz;
     (samples < LEAST_SAMPLES).then(|| {
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
         let off_percent = 100.0 * PI * PI / 12.0 / (samples * samples);
         let least_hz = 2.0 * LEAST_SAMPLES / length_s;
         let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
-        found.on(&signal.name).between(pulse_s.0, pulse_s.1)
+        found.on(name)
     })
 }
 

@@ -332,7 +332,12 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     ];
     facts.extend(input.reader.as_ref().map(|reader| Fact::words("Recording converted by", &reader[..])));
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
+    let rest = input.rest.as_deref().zip(input.rest_sha256.as_deref());
+    let rest = rest.map(|(path, sha256)| {
+        [Fact::words("Rest before the drop", path), Fact::code("SHA-256 of the rest", sha256)]
+    });
     facts.splice(5..5, own.map(|sha256| Fact::code("SHA-256 of the program", sha256)));
+    facts.splice(4..4, rest.into_iter().flatten());
     let stated = settings::of_cask_file(file, &result.settings);
     let is_new = |s: &&Setting| !TOLD.contains(&s.name.as_str());
     let all: Vec<_> = result.settings.iter().chain(&stated).filter(is_new).collect();

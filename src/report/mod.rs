@@ -9,6 +9,7 @@ pub(crate) mod as_html;
 pub(crate) mod as_markdown;
 pub(crate) mod as_text;
 mod campaign;
+mod check;
 mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
@@ -46,6 +47,7 @@ pub use campaign::{
     Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
     folder_name, impossible,
 };
+pub use check::table as check_table;
 pub use curves_csv::in_german;
 pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};

@@ -115,6 +115,8 @@ fn result() -> DropResult {
             reader: None,
             cask: "anf18.toml".into(),
             cask_sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
+            rest: None,
+            rest_sha256: None,
         },
         first_impact: FirstImpact {
             time: estimate(CONTACT_S, 0.000_012, "s"),

@@ -6,6 +6,7 @@ mod clock;
 mod code;
 mod drop;
 mod mcap;
+mod rest;
 mod slip;
 mod table;
 mod times;
@@ -17,6 +18,7 @@ pub use code::{CODES, IssueCode, Severity};
 pub use drop::DropFinding;
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};
+pub use rest::{RestCause, RestFinding};
 pub use slip::{Cure, Slip};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
@@ -41,6 +43,8 @@ pub enum FindingKind {
     Table(TableFinding),
     /// About the attributes of an HDF5 dataset.
     Attribute(AttributeFinding),
+    /// About a recording at rest.
+    Rest(RestFinding),
 }
 
 /// One finding about a recording or a result; a row of `quality` in the result.
@@ -81,7 +85,8 @@ finding_from!(
     Clock of ClockFinding,
     Mcap of McapFinding,
     Table of TableFinding,
-    Attribute of AttributeFinding
+    Attribute of AttributeFinding,
+    Rest of RestFinding
 );
 
 impl ChannelFinding {

@@ -1,0 +1,135 @@
+//! A recording at rest before the drop and the cask file to whether the set-up is ready.
+
+use crate::data::{
+    At, AtRest, Axis, CaskFile, Channel, ChannelFinding, Check, CheckedChannel, CoarseEvent, Corrections,
+    Coupling, Drop, Events, Finding, FindingKind, Prediction, Recording, STANDARD_GRAVITY_M_S2 as G,
+    Severity, Signal,
+};
+use crate::ingest::refusal::Refusal;
+use crate::ingest::{IngestError, error};
+use crate::{condition, events, judge, predict};
+use std::cmp::Reverse;
+
+/// A shorter recording does not tell the rest, s.
+const LEAST_S: f64 = 0.99;
+/// The quiet ends so long before the first blow, s.
+const BEFORE_BLOW_S: f64 = 0.02;
+/// The largest coefficient of restitution that range and record must do for.
+const LARGEST_K: f64 = 1.0;
+
+/// Holds a recording at rest against the cask file; with `has_blows` one on each end too, the first end
+/// first.
+///
+/// # Errors
+/// [`IngestError`] where a channel is too short to tell.
+pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check, IngestError> {
+    for channel in &rest.channels {
+        let length_s = length_s(channel);
+        if length_s < LEAST_S {
+            let problem = format!("it lasts {length_s:.2} s, too short to tell the rest");
+            let mend = "record the cask at rest in the rig for a second or more";
+            return Err(error::of_channel(&rest.path, &channel.name, Refusal::new(problem, mend)));
+        }
+    }
+    let across = rest.channels.iter().filter(|channel| has_blows && channel.axis == Axis::Transverse);
+    let felt: Vec<_> = across.map(|channel| (channel, events::blow_answers(channel))).collect();
+    let first_blow_s = felt.iter().flat_map(|(_, blows)| blows).map(|blow| blow.at_s - BEFORE_BLOW_S);
+    let quiet_to_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).chain(first_blow_s);
+    let (signals, mut found) = quiet(rest, file, quiet_to_s.fold(f64::INFINITY, f64::min));
+    let level = |channel| Some((channel, events::at_rest(channel, file.drop.gravity_m_s2)?));
+    let levels: Vec<(&Channel, AtRest)> = rest.channels.iter().filter_map(level).collect();
+    found.extend(judge::judge_levels(&levels, &file.drop));
+    found.extend(of_drop(rest, file, &signals));
+    found.extend(judge::judge_places(&signals, file));
+    found.extend(judge::judge_copies(&rest.channels));
+    found.extend(rest.issues.iter().cloned());
+    if has_blows {
+        found.extend(judge::judge_silent(&rest.channels));
+        found.extend(judge::judge_taps(&felt));
+    }
+    Ok(gathered(&file.drop, &signals, &levels, found))
+}
+
+fn length_s(channel: &Channel) -> f64 {
+    channel.time_s(channel.samples.len()) - channel.start_s
+}
+
+/// The quiet before a time as an analysis would have the free fall, and what it would say of it; hum is
+/// judged as if it were left in.
+fn quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Finding>) {
+    let mut as_dc = rest.clone();
+    // A droop put back grows through a rest that knows no beginning.
+    for channel in &mut as_dc.channels {
+        channel.coupling = Coupling::Dc;
+    }
+    let reach = condition::Reach { after_s: 0.0, ..condition::Reach::of(&file.cask, &file.drop) };
+    let event = CoarseEvent { near_s: to_s, spread_s: 0.0, velocity_step_m_s: file.drop.impact_velocity_m_s };
+    let corrections = Corrections { offset: true, hum: false, ..file.corrections };
+    let (signals, mut found) = condition::condition(&as_dc, &event, &reach, corrections);
+    let is_level =
+        |f: &Finding| matches!(f.what, FindingKind::Channel(ChannelFinding::OffsetTakenOff { .. }));
+    found.retain(|finding| !is_level(finding));
+    (signals, found)
+}
+
+/// Noise, range, rate and record against the drop that is predicted.
+fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding> {
+    let bodies = predict::bodies(&file.cask);
+    let predicted = bodies.last().map(|body| predict::predict(body, &file.drop, file.contact, LARGEST_K));
+    let flight_s = predicted.as_ref().and_then(|p| p.flight_time_s).unwrap_or(0.0);
+    let stated_s = Some(file.drop.contact_duration_s).filter(|stated_s| *stated_s > 0.0);
+    let mut found = Vec::new();
+    for (channel, signal) in rest.channels.iter().zip(signals) {
+        let end_s = signal.end_s();
+        let (first_contact, slap_down) = (Some(At::exactly(end_s)), Some(At::exactly(end_s + flight_s)));
+        let events = Events { first_contact, slap_down, ..Events::default() };
+        found.extend(judge::judge_noise(signal, &events, file.drop.impact_velocity_m_s));
+        let step_m_s = predicted.as_ref().map_or(0.0, |predicted| step_m_s(channel, file, predicted));
+        found.extend(judge::judge_chain(channel, signal, step_m_s, stated_s));
+    }
+    let lasts_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).fold(f64::INFINITY, f64::min);
+    found.extend(judge::judge_record(
+        rest.before_trigger_s,
+        lasts_s,
+        flight_s + 2.0 * stated_s.unwrap_or(0.02),
+    ));
+    found
+}
+
+/// By how much the first impact changes the velocity that a channel reads, m/s: all of the vertical
+/// velocity of the first end, turned round, less what the rotation takes.
+fn step_m_s(channel: &Channel, file: &CaskFile, predicted: &Prediction) -> f64 {
+    let (sin, cos) = file.drop.angle_rad.sin_cos();
+    let turned_m_s = (1.0 + LARGEST_K) * file.drop.impact_velocity_m_s;
+    match channel.axis {
+        Axis::Transverse => (turned_m_s * cos - predicted.angular_velocity_rad_s * channel.position_m).abs(),
+        Axis::Axial => turned_m_s * sin,
+    }
+}
+
+/// The findings by their channels, and whether any of them speaks against the drop.
+fn gathered(
+    drop: &Drop,
+    signals: &[Signal],
+    levels: &[(&Channel, AtRest)],
+    mut found: Vec<Finding>,
+) -> Check {
+    found.sort_by_key(|finding| Reverse(finding.severity));
+    let is_ready = |found: &[Finding]| found.iter().all(|finding| finding.severity == Severity::Note);
+    let ready = is_ready(&found);
+    let channel = |((channel, level), signal): (&(&Channel, AtRest), &Signal)| {
+        let is_own = |finding: &mut Finding| finding.channel.as_deref() == Some(&channel.name[..]);
+        let findings: Vec<Finding> = found.extract_if(.., is_own).collect();
+        let is_dc = channel.coupling == Coupling::Dc;
+        CheckedChannel {
+            name: channel.name.clone(),
+            ready: is_ready(&findings),
+            reads_g: level.level_m_s2 / G,
+            expected_g: is_dc.then(|| drop.weight_m_s2(channel.axis) / G),
+            noise_g: signal.noise_m_s2 / G,
+            findings,
+        }
+    };
+    let channels = levels.iter().zip(signals).map(channel).collect();
+    Check { schema: "dropcheck.check/1", ready, channels, findings: found }
+}

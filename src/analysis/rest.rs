@@ -1,0 +1,103 @@
+//! A recording and the file with the rest before the drop to the recording whose channels know what they
+//! read at rest.
+
+use crate::data::shown;
+use crate::data::{CaskFile, Channel, Coupling, Drop, Recording, RestFile, RestLevel, RestReading, Signal};
+use crate::events;
+use crate::ingest::refusal::Refusal;
+use crate::ingest::{self, IngestError, Limits, Progress, error};
+use std::path::Path;
+
+/// Rates that recordings of one recorder tell of themselves differ by less than this share.
+const SAME_RATE: f64 = 0.01;
+
+/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content,
+/// and from the file with the rest before the drop where `[recording] rest` names one.
+///
+/// # Errors
+/// [`IngestError`] where a file, a source or its content is at fault.
+pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
+    read_within(path, cask_file, Limits::default(), progress)
+}
+
+/// As [`read`], within other limits than the usual ones.
+///
+/// # Errors
+/// As [`read`]; [`IngestError::TooLarge`] where a file would pass a limit.
+pub fn read_within(
+    path: &Path,
+    cask_file: &CaskFile,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Recording, IngestError> {
+    let mut recording = ingest::read_within(path, cask_file, limits, progress)?;
+    take_rest(&mut recording, cask_file, limits)?;
+    Ok(recording)
+}
+
+/// Gives the channels what they read at rest in the file that the cask file names, if it names one.
+///
+/// # Errors
+/// [`IngestError`] where that file cannot be read, or is none of the same sensors at rest.
+pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
+    let Some(path) = &file.rest else { return Ok(()) };
+    let rest = ingest::read_within(path, file, limits, &|_| ())?;
+    for channel in &mut recording.channels {
+        let Some(at_rest) = rest.channels.iter().find(|at_rest| at_rest.name == channel.name) else {
+            continue;
+        };
+        let level = reading(channel, at_rest, &file.drop);
+        let refused = |(problem, mend)| error::of_channel(path, &channel.name, Refusal::new(problem, mend));
+        channel.rest = level.map_err(refused)?;
+    }
+    recording.rest = Some(RestFile { path: path.clone(), sha256: rest.sha256 });
+    Ok(())
+}
+
+/// What the channel of a drop reads in the file with its rest; `None` where it does not feel gravity. Else
+/// what is wrong with that file, and what mends it.
+fn reading(
+    channel: &Channel,
+    at_rest: &Channel,
+    drop: &Drop,
+) -> Result<Option<RestReading>, (String, &'static str)> {
+    let rates = [at_rest, channel].map(|channel| channel.sample_rate_hz);
+    let [there, here] = if (rates[1] / rates[0] - 1.0).abs() > SAME_RATE {
+        rates.map(|rate_hz| format!("{} Hz", shown::hz(rate_hz)))
+    } else {
+        [&at_rest.unit, &channel.unit].map(Clone::clone)
+    };
+    if here != there {
+        let problem = format!("{there} in this file of the rest, {here} in the recording of the drop");
+        return Err((problem, "record the rest as the drop, take `rest` out, or state what is right"));
+    }
+    if channel.coupling != Coupling::Dc || !events::feels_gravity(channel, drop) {
+        return Ok(None);
+    }
+    let Some(rest) = events::at_rest(at_rest, drop.gravity_m_s2) else {
+        return Err((
+            "its rest is shorter than 0.1 s".into(),
+            "record the cask at rest for a second or more",
+        ));
+    };
+    let (level, u) = (rest.level_m_s2 / channel.scale_m_s2, rest.u_m_s2 / channel.scale_m_s2.abs());
+    let moves = "it does not rest in this file: its level changes by more than 2 % of g";
+    let mend = "cut the file to where the cask hangs still; `dropcheck check` says what else is wrong";
+    if rest.is_still { Ok(Some(RestReading { level, u })) } else { Err((moves.into(), mend)) }
+}
+
+/// What the channels read at rest by the file of its own, less what they read in the free fall.
+pub(super) fn levels(recording: &Recording, signals: &[Signal], file: &CaskFile) -> Vec<RestLevel> {
+    let level = |channel: &Channel| {
+        let rest = channel.rest?;
+        let signal = signals.iter().find(|signal| signal.name == channel.name)?;
+        let is_known = file.corrections.offset && signal.free_fall_s > 0.0;
+        is_known.then(|| RestLevel {
+            channel: channel.name.clone(),
+            axis: channel.axis,
+            rest_m_s2: channel.scale_m_s2 * rest.level - signal.removed_offset_m_s2,
+            u_m_s2: (channel.scale_m_s2 * rest.u).hypot(signal.u_offset_m_s2),
+        })
+    };
+    recording.channels.iter().filter_map(level).collect()
+}

@@ -1,0 +1,52 @@
+//! `check`: a recording at rest before the drop to whether the set-up is ready, as a table or JSON.
+
+use super::Ending;
+use super::limits::Bounds;
+use super::output::{JsonTarget, columns, print};
+use super::progress::with_progress;
+use crate::{analysis, ingest, report};
+use clap::Args;
+use std::path::PathBuf;
+
+const AFTER_HELP: &str = "\
+Record the rigged cask at rest for a second or more, with the sensors, ranges, rate and trigger of the drop.
+For --taps strike each end once from below, the first end first, a second apart, after half a second of rest.
+
+Examples:
+  dropcheck check rest.csv --cask cask.toml
+  dropcheck check taps.csv --cask cask.toml --taps --json -
+
+Exit status: 0 ready; 1 not ready; 2 could not be told.";
+
+#[derive(Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Arguments {
+    /// The recording of the rest: MCAP, HDF5 or CSV, told by its content
+    rest: PathBuf,
+    /// The cask file (TOML) of the drop; `dropcheck init` writes one to fill in
+    #[arg(short, long)]
+    cask: PathBuf,
+    /// The recording holds one blow on each end, the first end first: they tell ends, clocks and signs
+    #[arg(long)]
+    taps: bool,
+    /// Write the findings as JSON to a file; with - to standard output, and nothing else there
+    #[arg(short, long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    bounds: Bounds,
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    let Arguments { rest, cask, taps, .. } = arguments;
+    let json = JsonTarget::checked(arguments.json.as_deref(), &[rest, cask])?;
+    let cask_file = ingest::cask_file::parse(cask)?;
+    let recording = with_progress("reading", |progress| {
+        ingest::read_within(rest, &cask_file, arguments.bounds.limits(), progress)
+    })?;
+    let check = analysis::check(&recording, &cask_file, *taps)?;
+    json.write(|| report::pretty_json(&check))?;
+    if !json.is_standard_output() {
+        print(&report::check_table(&check, *taps, columns()))?;
+    }
+    Ok(if check.ready { Ending::Clear } else { Ending::NeedsALook })
+}

@@ -1,0 +1,154 @@
+//! What the channels read at rest before the drop to what is wrong with their set-up.
+
+use super::sampling::low_rate;
+use crate::data::{
+    AtRest, Axis, Channel, Coupling, Drop, Finding, RestCause, RestFinding, STANDARD_GRAVITY_M_S2 as G,
+    Signal,
+};
+use std::f64::consts::PI;
+
+/// A reading may be so far off, g: at rest an offset is not told from a scale, and the free fall takes the
+/// offset off.
+const MOST_OFF_G: f64 = 0.4;
+/// A reading below this is none, g.
+const NOTHING_G: f64 = 0.05;
+/// A factor explains a reading within this share of what it makes it.
+const WITHIN: f64 = 0.25;
+/// Factors between units that are taken for one another, and by which a gain is set wrong.
+const UNITS: [f64; 4] = [G, 1.0 / G, 1000.0, 0.001];
+const GAINS: [f64; 6] = [2.0, 0.5, 10.0, 0.1, 100.0, 0.01];
+
+/// How long a first impact lasts that nobody states, s: with a limiter the longest, of bare contact as
+/// short as this.
+const LIMITER_S: f64 = 0.02;
+const BARE_S: f64 = 0.005;
+
+/// An offset that is known no better than this leaves 0.05 m/s over contact and flight of 60 ms, m/s².
+const MOST_U_OFFSET_M_S2: f64 = 0.83;
+
+/// Free fall that a recording must hold before the impact, s.
+const LEAST_BEFORE_S: f64 = 0.1;
+
+/// Holds the levels at rest against gravity on each axis; an AC-coupled channel has none.
+#[must_use]
+pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
+    let found = |(channel, rest): &(&Channel, AtRest)| {
+        let (reads_g, expected_g) = (rest.level_m_s2 / G, drop.weight_m_s2(channel.axis) / G);
+        let most_g = MOST_OFF_G + 2.0 * rest.u_m_s2 / G;
+        let found = if rest.least_step_m_s2 == 0.0 {
+            RestFinding::OneValue
+        } else if !rest.is_still {
+            RestFinding::Unsteady
+        } else if channel.coupling == Coupling::Dc && (reads_g - expected_g).abs() > most_g {
+            let cause = cause(channel.axis, reads_g, all, drop);
+            RestFinding::Reads { reads_g, expected_g, most_g, cause }
+        } else {
+            return None;
+        };
+        Some(found.on(&channel.name))
+    };
+    all.iter().filter_map(found).collect()
+}
+
+fn is_near(reads_g: f64, expected_g: f64) -> bool {
+    (reads_g - expected_g).abs() <= MOST_OFF_G
+}
+
+fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> RestCause {
+    let other_axis = if axis == Axis::Axial { Axis::Transverse } else { Axis::Axial };
+    let [expected_g, across_g] = [axis, other_axis].map(|axis| drop.weight_m_s2(axis) / G);
+    let is_exchanged = |(other, rest): &&(&Channel, AtRest)| {
+        let theirs_g = rest.level_m_s2 / G;
+        other.axis == other_axis
+            && is_near(reads_g, across_g)
+            && !is_near(theirs_g, across_g)
+            && is_near(theirs_g, expected_g)
+    };
+    if let Some((other, _)) = all.iter().find(is_exchanged) {
+        return RestCause::Exchanged(other.name.clone());
+    }
+    if reads_g.abs() < NOTHING_G {
+        return RestCause::Nothing;
+    }
+    let ratio = reads_g / expected_g;
+    let units = UNITS.map(|factor| (factor, RestCause::Unit(ratio)));
+    let factors = units.into_iter().chain(GAINS.map(|factor| (factor, RestCause::Gain(ratio))));
+    let factors = factors.map(|(factor, cause)| ((ratio / factor - 1.0).abs(), cause));
+    let others = [(-expected_g, RestCause::Sign), (across_g, RestCause::Axis), (0.0, RestCause::Nothing)];
+    // An offset may be on top of what has no factor.
+    let others = others.map(|(makes_g, cause)| (WITHIN * (reads_g - makes_g).abs() / MOST_OFF_G, cause));
+    let likeliest = factors.chain(others).min_by(|a, b| a.0.total_cmp(&b.0));
+    likeliest.filter(|(off, _)| *off < WITHIN).map_or(RestCause::Open, |(_, cause)| cause)
+}
+
+/// Holds offset, range and rate of a channel against a first impact that changes its velocity by up to
+/// `step_m_s`, and lasts `stated_s` where that is stated   (half sine: π/2 of the mean)
+#[must_use]
+pub fn judge_chain(channel: &Channel, quiet: &Signal, step_m_s: f64, stated_s: Option<f64>) -> Vec<Finding> {
+    let range_g = channel.full_scale.map(|full_scale| full_scale * channel.scale_m_s2.abs() / G);
+    let too_small = |pulse_s: f64, is_sure: bool| {
+        let (range_g, peak_g) = (range_g?, PI / 2.0 * step_m_s / pulse_s / G);
+        let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure };
+        (range_g < peak_g).then(|| found.on(&channel.name))
+    };
+    let range = match stated_s {
+        Some(pulse_s) => too_small(pulse_s, true),
+        None => too_small(LIMITER_S, true).or_else(|| too_small(BARE_S, false)),
+    };
+    let rate = low_rate(&channel.name, channel.sample_rate_hz, stated_s.unwrap_or(BARE_S));
+    let u_offset_m_s2 = quiet.u_offset_m_s2;
+    let offset = RestFinding::OpenOffset { u95_g: 2.0 * u_offset_m_s2 / G };
+    let offset = (u_offset_m_s2 > MOST_U_OFFSET_M_S2).then(|| offset.on(&channel.name));
+    [range, rate, offset].into_iter().flatten().collect()
+}
+
+/// Holds what a record keeps before and behind its trigger against free fall and flight.
+#[must_use]
+pub fn judge_record(before_s: Option<f64>, length_s: f64, needs_s: f64) -> Vec<Finding> {
+    let Some(before_s) = before_s else { return Vec::new() };
+    let after_s = length_s - before_s;
+    let early = RestFinding::ShortPretrigger { before_s, least_s: LEAST_BEFORE_S };
+    let late = RestFinding::ShortRecord { after_s, needs_s };
+    let found = [(before_s < LEAST_BEFORE_S, early), (after_s < needs_s, late)];
+    found.into_iter().filter(|(is_short, _)| *is_short).map(|(_, found)| found.into()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{FindingKind, example};
+
+    /// The cause for a transverse channel at 15° that reads this, beside an axial one that reads right.
+    fn of(reads_g: f64) -> Option<RestCause> {
+        let drop = Drop::of_height(9.0, 15_f64.to_radians());
+        let at_rest = |level_g: f64| AtRest {
+            level_m_s2: level_g * G,
+            u_m_s2: 0.0,
+            is_still: true,
+            least_step_m_s2: 0.1,
+        };
+        let across = example::channel(vec![]);
+        let along = Channel { axis: Axis::Axial, name: "B1".into(), ..across.clone() };
+        let found = judge_levels(&[(&across, at_rest(reads_g)), (&along, at_rest(0.259))], &drop);
+        assert!(found.len() < 2, "{found:?}");
+        match found.into_iter().next()?.what {
+            FindingKind::Rest(RestFinding::Reads { cause, .. }) => Some(cause),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_reading_has_its_likeliest_cause() {
+        for sound in [0.966, 0.7, 1.3] {
+            assert_eq!(of(sound), None);
+        }
+        assert_eq!(of(-0.95), Some(RestCause::Sign));
+        assert_eq!(of(0.27), Some(RestCause::Axis));
+        assert_eq!(of(0.01), Some(RestCause::Nothing));
+        assert!(matches!(of(9.47), Some(RestCause::Unit(_))));
+        assert!(matches!(of(0.098), Some(RestCause::Unit(_))));
+        assert!(matches!(of(9.67), Some(RestCause::Gain(_))));
+        assert!(matches!(of(97.0), Some(RestCause::Gain(_))));
+        assert_eq!(of(5.0), Some(RestCause::Open));
+    }
+}
