@@ -1,8 +1,7 @@
 //! A file's first bytes to its format, whatever its name.
 
 use super::error::{self, IngestError};
-use super::number;
-use super::{opened, strangers};
+use super::{lines, number, opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -39,38 +38,10 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
         return Err(unknown(path, &format!("it is {what}"), mend));
     }
     // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
-    if wide_text(&head).is_some() || looks_like_rows(&head) {
+    if lines::wide_text(&head).is_some() || looks_like_rows(&head) {
         return Ok(RecordingFormat::Csv);
     }
     Err(stranger(path, &head))
-}
-
-/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes
-/// between plain letters.
-pub(super) fn wide_text(head: &[u8]) -> Option<bool> {
-    /// Bytes that are looked at, and the least that tell.
-    const LOOKED_AT: usize = 256;
-    const LEAST: usize = 8;
-    match head {
-        [0xFF, 0xFE, ..] => return Some(true),
-        [0xFE, 0xFF, ..] => return Some(false),
-        _ => {}
-    }
-    let (pairs, _) = head.get(..LOOKED_AT.min(head.len())).unwrap_or_default().as_chunks::<2>();
-    // Three of four: a minus of its own in every cell is another letter.
-    let most = |is_letter: fn(&[u8; 2]) -> bool| {
-        4 * pairs.iter().filter(|pair| is_letter(pair)).count() >= 3 * pairs.len()
-    };
-    match pairs.len() {
-        0..LEAST => None,
-        _ if most(|pair| is_plain(pair[0]) && pair[1] == 0) => Some(true),
-        _ if most(|pair| pair[0] == 0 && is_plain(pair[1])) => Some(false),
-        _ => None,
-    }
-}
-
-fn is_plain(byte: u8) -> bool {
-    matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~')
 }
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format

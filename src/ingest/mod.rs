@@ -12,6 +12,7 @@ pub(crate) mod error;
 pub mod fuzz;
 mod hdf5;
 mod limits;
+mod lines;
 mod mcap;
 mod number;
 mod opened;

@@ -3,10 +3,10 @@
 use super::super::Limits;
 use super::super::clock::Refusal;
 use super::super::error::{self, IngestError};
+use super::super::lines::{Line, Text};
 use super::super::number;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
-use super::lines::{Line, Text};
 use super::rows::RowError;
 use super::wanted::Wanted;
 use std::path::Path;
