@@ -27,7 +27,7 @@ Examples:
 #[command(after_help = AFTER_HELP)]
 #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
 pub struct Arguments {
-    /// The recording: MCAP, HDF5 or CSV, told by its content
+    /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
     #[arg(short, long, required_unless_present = "from")]
@@ -174,7 +174,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep
             // all threads at work.
             RecordingFormat::Mcap => keep_threads_awake(read),
-            RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
+            RecordingFormat::Hdf5
+            | RecordingFormat::Csv
+            | RecordingFormat::Mme
+            | RecordingFormat::Samples => read(),
         }
     })?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {

@@ -10,9 +10,9 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
     let plain: String = text
         .trim()
-        .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')'))
+        .trim_matches(['[', ']'])
         .chars()
-        .filter(|c| !c.is_whitespace() && !matches!(c, '^' | '*' | '·' | '{' | '}'))
+        .filter(|c| !c.is_whitespace() && !matches!(c, '^' | '*' | '·' | '{' | '}' | '(' | ')'))
         .map(|c| {
             if c == '²' {
                 '2'
@@ -38,7 +38,6 @@ pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
         | "m/sec2"
         | "m/sec/sec"
         | "m/ss"
-        | "m/(s2)"
         | "meterspersecondsquared"
         | "metrespersecondsquared"
         | "meterpersecondsquared"

@@ -1,6 +1,7 @@
 //! A file's first bytes to its format, whatever its name.
 
 use super::error::{self, IngestError};
+use super::mme::MmeFiles;
 use super::{lines, number, opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
@@ -11,7 +12,7 @@ const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
 const HEAD_BYTES: u64 = 1 << 16;
-const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
+const FORMATS: &str = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME";
 
 /// The format of the file at `path`.
 ///
@@ -20,7 +21,8 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
     if metadata.is_dir() {
-        return Err(IngestError::Directory { path: path.display().to_string() });
+        let none = || IngestError::Directory { path: path.display().to_string() };
+        return mme(path)?.ok_or_else(none);
     }
     let mut file = opened(path).map_err(|source| error::io(path, source))?;
     let mut head = Vec::new();
@@ -34,6 +36,11 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
         return Ok(RecordingFormat::Hdf5);
     }
+    if head.starts_with(b"PK\x03\x04")
+        && let Some(format) = mme(path)?
+    {
+        return Ok(format);
+    }
     if let Some((what, mend)) = strangers::named(&head) {
         return Err(unknown(path, &format!("it is {what}"), mend));
     }
@@ -42,6 +49,11 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
         return Ok(RecordingFormat::Csv);
     }
     Err(stranger(path, &head))
+}
+
+/// ISO-MME, where the folder or zip at `path` holds a test in it.
+fn mme(path: &Path) -> Result<Option<RecordingFormat>, IngestError> {
+    Ok(MmeFiles::of(path)?.map(|_| RecordingFormat::Mme))
 }
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format

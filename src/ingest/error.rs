@@ -23,7 +23,10 @@ pub enum IngestError {
     },
     /// A directory stands where a file should.
     #[error("{path}: this is a directory, not a recording")]
-    #[diagnostic(help("name one recording file; `dropcheck batch` takes several"))]
+    #[diagnostic(help(
+        "name one recording file; a folder is a recording where it holds an .mme file (ISO-MME); `dropcheck batch` \
+         takes several recordings"
+    ))]
     Directory {
         /// The directory.
         path: String,
@@ -88,6 +91,17 @@ pub enum IngestError {
 /// The operating system's refusal, with the file's name.
 pub(super) fn io(path: &Path, refusal: std::io::Error) -> IngestError {
     IngestError::Io { path: path.display().to_string(), refusal }
+}
+
+/// A place in a file that is at fault.
+pub(super) fn content(
+    path: &Path,
+    place: impl Into<String>,
+    problem: impl Into<String>,
+    mend: impl Into<String>,
+) -> IngestError {
+    let (path, place) = (path.display().to_string(), place.into());
+    IngestError::Content { path, place, problem: problem.into(), mend: mend.into() }
 }
 
 /// A channel whose source is at fault.

@@ -14,6 +14,7 @@ mod hdf5;
 mod limits;
 mod lines;
 mod mcap;
+mod mme;
 mod number;
 mod opened;
 mod statement;
@@ -105,11 +106,18 @@ pub fn read_within(
             rayon::scope(|_| csv::read(path, cask_file, limits, progress))
         }
         RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
+        RecordingFormat::Mme => mme::read(path, cask_file, limits),
     })?;
     assemble::recording(path, format, sha256, raw, cask_file)
 }
 
-/// The SHA-256 of a file, as results have it.
+/// Whether the folder at `path` is a recording, in ISO-MME, and not one of recordings.
+#[must_use]
+pub fn is_recording_folder(path: &Path) -> bool {
+    path.is_dir() && !matches!(mme::MmeFiles::of(path), Ok(None))
+}
+
+/// The SHA-256 of a recording, as results have it.
 ///
 /// # Errors
 /// [`IngestError`] where it cannot be read.
@@ -133,6 +141,7 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, limits, progress),
         RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),
+        RecordingFormat::Mme => mme::list(path, limits),
         RecordingFormat::Csv | RecordingFormat::Samples => csv::list(path, limits, progress),
     }
 }

@@ -18,7 +18,7 @@ pub(super) const TIMES_REMEDY: &str =
 /// Rows that are refused as a whole.
 pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
     let Refusal { problem, remedy } = refusal;
-    IngestError::Content { path: path.display().to_string(), place: "the rows".into(), problem, mend: remedy }
+    error::content(path, "the rows", problem, remedy)
 }
 
 /// No table at all.
@@ -36,12 +36,7 @@ pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
             "export one row a sample with comma, semicolon or tab between the columns",
         )
     };
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the first 64 KiB".into(),
-        problem: problem.into(),
-        mend: mend.into(),
-    }
+    error::content(path, "the first 64 KiB", problem, mend)
 }
 
 /// Times that give no base.
@@ -101,5 +96,5 @@ pub(super) fn row_error(
                 .to_owned(),
         ),
     };
-    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
+    error::content(path, format!("line {line}"), problem, mend)
 }

@@ -1,6 +1,6 @@
 //! The HDF5 library's error stacks to one sentence each that a person can act on.
 
-use super::super::error::IngestError;
+use super::super::error::{self, IngestError};
 use super::answer::{Bytes, decoded};
 use crate::ingest::clock::Refusal;
 use std::path::Path;
@@ -81,12 +81,7 @@ impl From<Refusal> for Fault {
 /// A fault of the whole file.
 pub(super) fn of_file(path: &Path, fault: Fault) -> IngestError {
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: format!("HDF5 file of {size} bytes"),
-        problem: fault.problem,
-        mend: fault.remedy,
-    }
+    error::content(path, format!("HDF5 file of {size} bytes"), fault.problem, fault.remedy)
 }
 
 /// What the library's words mean, outermost first.
