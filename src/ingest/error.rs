@@ -24,8 +24,8 @@ pub enum IngestError {
     /// A directory stands where a file should.
     #[error("{path}: this is a directory, not a recording")]
     #[diagnostic(help(
-        "name one recording file; a folder is a recording where it holds an .mme file (ISO-MME); `dropcheck batch` \
-         takes several recordings"
+        "name one recording file; a folder is a recording where it holds an .mme file (ISO-MME); `dropcheck \
+         batch` takes several recordings"
     ))]
     Directory {
         /// The directory.

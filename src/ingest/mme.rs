@@ -1,4 +1,4 @@
-//! A folder or a zip in ISO-MME (ISO/TS 13499) to the channels that a cask file names, and to the list of all.
+//! A folder or zip in ISO-MME (ISO/TS 13499) to the channels that a cask file names, and to the list of all.
 
 mod channel;
 mod code;

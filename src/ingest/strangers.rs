@@ -16,7 +16,7 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
     (0, b"MATLAB 5.0", "a MATLAB file before version 7.3",
      "save it with -v7.3, which is HDF5, or export CSV"),
-    (0, b"PK\x03\x04", "a ZIP archive without an .mme file, or an office document",
+    (0, b"PK\x03\x04", "a ZIP archive that was cut or holds no .mme file, or an office document",
      "unpack it, or save the sheet as CSV"),
     (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
     (0, b"%PDF", "a PDF document", EXPORT),
@@ -47,6 +47,10 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"{\\rtf", "a text document (RTF)", EXPORT),
     (0, b"\x7FELF", "a program", "name the recording here"),
 ];
+
+/// What lines of files in ISO-MME begin with.
+const OF_MME: [&str; 4] =
+    ["Test object number", "Name of the channel", "Name of channel ", "Data format edition number"];
 
 /// What a file that begins so is and what to do, where it is known to be no recording read here.
 pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
@@ -93,8 +97,6 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Some(("a universal file (UFF)", EXPORT));
     }
-    const OF_MME: [&str; 4] =
-        ["Test object number", "Name of the channel", "Name of channel ", "Data format edition number"];
     if OF_MME.iter().any(|name| first.starts_with(name) || text.contains(&format!("\n{name}"))) {
         return Some((
             "a file of a test in ISO-MME (ISO/TS 13499)",

@@ -1,5 +1,5 @@
-//! A recording, a file or a folder of files, to what is read of it, with the SHA-256 of the very bytes that were
-//! read.
+//! A recording, a file or a folder of files, to what is read of it, with the SHA-256 of the very bytes that
+//! were read.
 
 use super::error::{self, IngestError};
 use super::mme::MmeFiles;
@@ -117,8 +117,8 @@ fn at_rest(path: &Path) -> Result<Vec<Identity>, IngestError> {
     Err(changed(path))
 }
 
-/// SHA-256 of the recording at `path`, lower-case hexadecimal, or of its beginning where it `is_needless` in the
-/// end: of a file its own; of a folder that of the list of its files which `sha256sum` prints.
+/// SHA-256 of the recording at `path`, lower-case hexadecimal, or of its beginning where it `is_needless` in
+/// the end: of a file its own; of a folder that of the list of its files which `sha256sum` prints.
 ///
 /// # Errors
 /// [`IngestError::Io`] where it cannot be read.

@@ -273,7 +273,7 @@ fn a_damaged_channel_in_iso_mme_is_right_doubtful_or_refused() {
     std::fs::write(&path, &bytes).expect("a temporary file");
     let sound = in_iso_mme(&path, "").expect("a sound test");
     let subject = Subject { stem: "anf10-plain", bytes, sound, truth: truth("anf10-plain") };
-    campaign([subject], asked_for().unwrap_or(8 * USUAL_DAMAGES), in_iso_mme);
+    campaign([subject], asked_for().unwrap_or(2 * USUAL_DAMAGES), in_iso_mme);
 }
 
 /// As [`in_child`] of a test in ISO-MME whose first channel is the file at `path`.

@@ -37,7 +37,8 @@ fn zipped(files: &[(String, String)]) -> Vec<u8> {
     for (name, text) in files {
         let mut packed = vec![0; text.len() + 64];
         let mut packer = libdeflater::Compressor::new(libdeflater::CompressionLvl::default());
-        packed.truncate(packer.deflate_compress(text.as_bytes(), &mut packed).expect("room"));
+        let count = packer.deflate_compress(text.as_bytes(), &mut packed).expect("room");
+        packed.truncate(count);
         let [sum, bytes] = [crc32fast::hash(text.as_bytes()), text.len().try_into().expect("short")];
         let sizes = [sum, packed.len().try_into().expect("short"), bytes].map(u32::to_le_bytes).concat();
         let length = u16::try_from(name.len()).expect("short").to_le_bytes();
@@ -109,7 +110,7 @@ fn what_pyisomme_writes_is_read_to_the_last_digit() {
     let [zip, path] = ["T1.zip", "T1.toml"].map(|name| place.path().join(name));
     fs::write(&zip, &stored("odd/mme.jsonl")["mme/by_pyisomme-0.zip"]).expect("a zip");
     let sources = [CODES[0], "T0CASK00R100ACZA.002", "T0CASK00R100ACZA.003"];
-    fs::write(&path, cask(&sources.map(|source| format!("source = \"{source}\"")))).expect("a cask file");
+    fs::write(&path, cask(&sources.map(|source| format!("source = \"{source}\"\n")))).expect("a cask file");
     let file = ingest::cask_file(&path).expect("a cask file");
     let read = ingest::read(&zip, &file, &|_| ()).expect("a recording");
     for (number, channel) in (0_u8..).zip(&read.channels) {

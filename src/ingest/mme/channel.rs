@@ -123,13 +123,11 @@ impl<'a> ChannelFile<'a> {
             return Err(self.text.fault(last, format!("it is number {rows}, and {COUNT} is {stated}")));
         }
         let is_short = stated != Some(rows as u64);
-        if self.text.has_zeros {
-            self.issues.push(TableFinding::ZeroBytes { line: last + 1 }.into());
-        } else if is_short && !self.text.rest.ends_with(b"\n") && self.values.pop().is_some() {
-            self.issues.push(TableFinding::CutLine { line: last }.into());
-        }
+        let is_cut = is_short && !self.text.rest.ends_with(b"\n") && self.values.pop().is_some();
+        let cut = is_cut.then_some(TableFinding::CutLine { line: last });
+        let zeros = self.text.has_zeros.then_some(TableFinding::ZeroBytes { line: last + 1 });
         let missing = stated.filter(|_| is_short).map(|stated| TableFinding::RowsMissing { stated, rows });
-        self.issues.extend(missing.map(Finding::from));
+        self.issues.extend(zeros.or(cut).into_iter().chain(missing).map(Finding::from));
         Ok(())
     }
 
@@ -144,10 +142,10 @@ impl<'a> ChannelFile<'a> {
         let is_explicit = self.text.line(REFERENCE).is_some_and(is_explicit);
         if cask_hz.is_none() && (stated.is_none() || is_explicit) {
             let said = line.map_or("not stated", |line| line.value.as_str());
-            let problem = match is_explicit {
-                true => format!("{}: its times stand in another channel, which is not read", self.text.name),
-                false => format!("{}: {INTERVAL} is {said}", self.text.name),
-            };
+            let said = format!("{INTERVAL} is {said}");
+            let problem =
+                if is_explicit { "its times stand in another channel, which is not read" } else { &said };
+            let problem = format!("{}: {problem}", self.text.name);
             return Err(Refusal::new(problem, "give sample_rate_hz in this channel of the cask file"));
         }
         let claims = Claims { cask_hz, are_times_named: false, stated: stated.into_iter().collect() };

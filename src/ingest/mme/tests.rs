@@ -146,6 +146,7 @@ fn what_is_missing_or_cut_is_told() {
     assert!(told.contains("state 4 samples, and it has 3 rows"), "{told}");
     let (count, told) = of(&(HEADER.to_owned() + "1\n2\n3\n\0\0\0"));
     assert!(count == 3 && told.contains("from line 12 on stand zero bytes"), "{told}");
+    assert_eq!(of(&(HEADER.to_owned() + "1\n2\n3\0\0\0")).0, 2, "a number before zero bytes may be cut");
     let (count, told) = of(&(whole.replace("samples :4", "samples :NOVALUE") + "\n\n"));
     assert!(count == 4 && !told.contains("line"), "{told}");
 }

@@ -7,8 +7,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Lengths of a file's head before its bytes, of its entry in the list of all, and of the end behind that list:
-/// without names and remarks, of which the longest has 64 KiB.
+/// Lengths of a file's head before its bytes, of its entry in the list of all, and of the end behind that
+/// list: without names and remarks, of which the longest has 64 KiB.
 const HEAD_BYTES: u64 = 30;
 const ENTRY_BYTES: usize = 46;
 const END_BYTES: usize = 22;
@@ -18,7 +18,8 @@ const LONGEST_REMARK: u64 = 0xFFFF;
 #[derive(Debug, Clone)]
 pub(super) struct ZipEntry([u8; ENTRY_BYTES]);
 
-/// The paths of the files in the zip at `path`, parted by "/", with their entries; none without a list of them.
+/// The paths of the files in the zip at `path`, parted by "/", with their entries; none without a list of
+/// them.
 pub(super) fn entries(path: &Path) -> io::Result<Vec<(String, ZipEntry)>> {
     let mut file = opened(path)?;
     let longest = END_BYTES as u64 + LONGEST_REMARK;
