@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// The recording: MCAP, HDF5 or CSV, told by its content
+    /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content
     recording: PathBuf,
     /// Write the listing as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]

@@ -139,9 +139,8 @@ fn the_columns_are_the_same_whatever_was_dropped() {
     assert_eq!(heads.last().map(String::as_str), Some("hall"), "what is carried comes last");
     let missing: Vec<&String> = of_all.iter().filter(|name| !heads.contains(name)).collect();
     // Keys that nobody stated, what nobody observed, and channels outside the motion.
-    let is_optional = |name: &str| {
-        name.contains('.') || name.starts_with("observed_") || name == "other_channels"
-    };
+    let is_optional =
+        |name: &str| name.contains('.') || name.starts_with("observed_") || name == "other_channels";
     let unused: Vec<&String> =
         heads.iter().filter(|name| !of_all.contains(*name) && !is_optional(name)).collect();
     assert!(missing.is_empty() && unused.is_empty(), "columns.tsv: {missing:?} {unused:?}");
