@@ -81,15 +81,15 @@ fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
 }
 
 /// A recording's files at one moment.
-struct Look {
+struct FilesState {
     /// Of each.
     identities: Vec<Identity>,
     /// When the last of them was changed.
     latest: Option<SystemTime>,
 }
 
-fn look(path: &Path) -> Result<Look, IngestError> {
-    let mut look = Look { identities: Vec::new(), latest: None };
+fn look(path: &Path) -> Result<FilesState, IngestError> {
+    let mut look = FilesState { identities: Vec::new(), latest: None };
     let names = names(path)?;
     for place in names
         .map_or_else(|| vec![path.to_owned()], |names| names.iter().map(|name| path.join(name)).collect())
@@ -111,7 +111,7 @@ fn names(path: &Path) -> Result<Option<Vec<String>>, IngestError> {
 /// The identities of a recording's files, looked at when a later change must show.
 fn at_rest(path: &Path) -> Result<Vec<Identity>, IngestError> {
     for _ in 0..MOST_LOOKS {
-        let Look { identities, latest } = look(path)?;
+        let FilesState { identities, latest } = look(path)?;
         // A time to come is another clock's, and no tick of this one's.
         match latest.and_then(|latest| latest.elapsed().ok()).and_then(|age| TICKS.checked_sub(age)) {
             Some(wait) if !wait.is_zero() => std::thread::sleep(wait),

@@ -127,22 +127,3 @@ fn what_pyisomme_writes_is_read_to_the_last_digit() {
         assert_eq!(channel.unit, ["g", "m / s2", "m / s2"][usize::from(number)]);
     }
 }
-
-#[test]
-#[ignore = "a measured time: .ci/long"]
-fn two_channels_of_six_hundred_are_read_in_a_third_of_a_second() {
-    let place = tempfile::tempdir().expect("a folder");
-    let folder = place.path().join("T1");
-    let mut files = drop_files();
-    let (text, mut index) = (files[1].1.clone(), files.pop().expect("the index").1);
-    for number in 3..=600 {
-        let code = format!("T0CASK{number:06}FOX0");
-        writeln!(index, "Name of channel {number:03} :{code}").expect("a text");
-        files.push((format!("Channel/T1.{number:03}"), text.replace(CODES[0], &code)));
-    }
-    files.push(("Channel/T1.chn".to_owned(), index));
-    let file = ingest::cask_file(&written(&files, &folder)).expect("a cask file");
-    let begun = std::time::Instant::now();
-    assert_eq!(ingest::read(&folder, &file, &|_| ()).expect("a recording").channels.len(), 2);
-    assert!(begun.elapsed().as_secs_f64() < 0.3, "{:?}", begun.elapsed());
-}

@@ -131,7 +131,7 @@ fn files_that_are_missing_or_doubled_are_refused_by_name() {
 
 #[test]
 fn what_is_missing_or_cut_is_told() {
-    let of = |first: &str| {
+    let read_and_told = |first: &str| {
         let read = read_of(test_of(INDEX, first).path(), &["T0CASK01L1LEACX0.001"]).unwrap();
         (
             samples(&read).len(),
@@ -139,15 +139,19 @@ fn what_is_missing_or_cut_is_told() {
         )
     };
     let whole = HEADER.to_owned() + "1\nNOVALUE\n3\n4";
-    let (count, told) = of(&whole);
+    let (count, told) = read_and_told(&whole);
     assert!(count == 4 && told.contains("1 sample") && !told.contains("line"), "{told}");
-    let (count, told) = of(&(HEADER.to_owned() + "1\n2\n3"));
+    let (count, told) = read_and_told(&(HEADER.to_owned() + "1\n2\n3"));
     assert!(count == 2 && told.contains("line 11, the last, ends in the middle"), "{told}");
     assert!(told.contains("state 4 samples, and it has 3 rows"), "{told}");
-    let (count, told) = of(&(HEADER.to_owned() + "1\n2\n3\n\0\0\0"));
+    let (count, told) = read_and_told(&(HEADER.to_owned() + "1\n2\n3\n\0\0\0"));
     assert!(count == 3 && told.contains("from line 12 on stand zero bytes"), "{told}");
-    assert_eq!(of(&(HEADER.to_owned() + "1\n2\n3\0\0\0")).0, 2, "a number before zero bytes may be cut");
-    let (count, told) = of(&(whole.replace("samples :4", "samples :NOVALUE") + "\n\n"));
+    assert_eq!(
+        read_and_told(&(HEADER.to_owned() + "1\n2\n3\0\0\0")).0,
+        2,
+        "a number before zero bytes may be cut"
+    );
+    let (count, told) = read_and_told(&(whole.replace("samples :4", "samples :NOVALUE") + "\n\n"));
     assert!(count == 4 && !told.contains("line"), "{told}");
 }
 
