@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = include_str!("help/analyze.txt"))]
 #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
 pub struct Arguments {
-    /// The recording: MCAP, HDF5 or CSV, told by its content
+    /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
     #[arg(short, long, required_unless_present = "from")]

@@ -14,14 +14,14 @@ use std::path::PathBuf;
     after_help = "Examples:\n  dropcheck init drop.mcap > cask.toml\n  dropcheck init tests > runs.csv"
 )]
 pub struct Arguments {
-    /// The recording: MCAP, HDF5 or CSV, told by its content; or a folder of them, for a manifest
+    /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content; or a folder of them, for a manifest
     recording: PathBuf,
     #[command(flatten)]
     bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    if arguments.recording.is_dir() {
+    if arguments.recording.is_dir() && !ingest::is_recording_folder(&arguments.recording) {
         print_plain(&template(&arguments.recording)?)?;
         return Ok(Ending::Clear);
     }

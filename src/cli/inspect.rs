@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// The recording: MCAP, HDF5 or CSV, told by its content
+    /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content
     recording: PathBuf,
     /// Folder for recording.html, every source as a curve with its spectrum, and recording.json, the listing
     #[arg(short, long, value_name = "DIR")]

@@ -77,6 +77,9 @@ impl Folder {
         if path.as_os_str().is_empty() {
             return Err(CannotWrite::NoFolder { path: "\"\"".into() });
         }
+        if is_input(path, inputs) {
+            return Err(CannotWrite::Input { path: shown(path) });
+        }
         // A link may have been put there to have files written elsewhere.
         if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
             return Err(CannotWrite::Link { path: shown(path) });

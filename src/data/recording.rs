@@ -19,6 +19,9 @@ pub enum RecordingFormat {
     /// Delimited text.
     #[serde(rename = "CSV")]
     Csv,
+    /// ISO-MME (ISO/TS 13499): a folder of texts, or a zip of it.
+    #[serde(rename = "ISO-MME")]
+    Mme,
     /// None: samples in memory.
     #[serde(rename = "samples")]
     Samples,

@@ -7,7 +7,7 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 /// per unit.
 const ACCELERATIONS: [(&str, f64); 7] = [
     ("g gn g0 gee gs g's g_n g_0 gunits gravity standardgravity", STANDARD_GRAVITY_M_S2),
-    ("m/s2 m/s/s ms-2 m.s-2 m/sec2 m/sec/sec m/ss m/(s2) mps2 m_s2", 1.0),
+    ("m/s2 m/s/s ms-2 m.s-2 m/sec2 m/sec/sec m/ss mps2 m_s2", 1.0),
     ("meterspersecondsquared metrespersecondsquared meterpersecondsquared metrepersecondsquared", 1.0),
     ("mm/s2 mms-2 mm/s/s", 1e-3),
     ("cm/s2 cms-2 gal", 1e-2),
@@ -22,10 +22,10 @@ const ACCELERATIONS: [(&str, f64); 7] = [
 pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
     let plain: String = text
         .trim()
-        .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')'))
+        .trim_matches(['[', ']'])
         .replace('²', "2")
         .replace(['⁻', '−'], "-")
-        .replace(|c: char| c.is_whitespace() || matches!(c, '^' | '*' | '·' | '{' | '}'), "");
+        .replace(|c: char| c.is_whitespace() || "^*·{}()".contains(c), "");
     match plain.as_str() {
         "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
         "Mg" | "MG" => return None,

@@ -264,6 +264,7 @@ mod tests {
             ("m s-2", 1.0),
             ("m·s⁻²", 1.0),
             ("m/s**2", 1.0),
+            ("(m/(s*s))", 1.0),
             ("mm/s^2", 1e-3),
         ] {
             let read_m_s2 = of(None, Some(text)).unwrap().m_s2;

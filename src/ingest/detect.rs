@@ -1,9 +1,9 @@
 //! A file's first bytes to its format, whatever its name.
 
 use super::error::{self, IngestError};
-use super::number;
+use super::mme::MmeFiles;
 use super::refusal::Refusal;
-use super::{opened, strangers};
+use super::{lines, number, opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -13,7 +13,7 @@ const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
 const HEAD_BYTES: u64 = 1 << 16;
-const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
+const FORMATS: &str = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME";
 
 /// The format of the file at `path`.
 ///
@@ -22,11 +22,7 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|source| error::io(path, &source))?;
     if metadata.is_dir() {
-        let refusal = Refusal::new(
-            "this is a directory, not a recording",
-            "name one recording file; `dropcheck batch` takes several",
-        );
-        return Err(error::of_file(path, refusal));
+        return mme(path)?.ok_or_else(|| error::directory(path));
     }
     let mut file = opened(path).map_err(|source| error::io(path, &source))?;
     let mut head = Vec::new();
@@ -40,42 +36,24 @@ pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, &source))? {
         return Ok(RecordingFormat::Hdf5);
     }
+    if head.starts_with(b"PK\x03\x04")
+        && let Some(format) = mme(path)?
+    {
+        return Ok(format);
+    }
     if let Some((what, mend)) = strangers::named(&head) {
         return Err(unknown(path, &format!("it is {what}"), mend));
     }
     // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
-    if wide_text(&head).is_some() || looks_like_rows(&head) {
+    if lines::wide_text(&head).is_some() || looks_like_rows(&head) {
         return Ok(RecordingFormat::Csv);
     }
     Err(stranger(path, &head))
 }
 
-/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes
-/// between plain letters.
-pub(super) fn wide_text(head: &[u8]) -> Option<bool> {
-    /// Bytes that are looked at, and the least that tell.
-    const LOOKED_AT: usize = 256;
-    const LEAST: usize = 8;
-    match head {
-        [0xFF, 0xFE, ..] => return Some(true),
-        [0xFE, 0xFF, ..] => return Some(false),
-        _ => {}
-    }
-    let (pairs, _) = head.get(..LOOKED_AT.min(head.len())).unwrap_or_default().as_chunks::<2>();
-    // Three of four: a minus of its own in every cell is another letter.
-    let most = |is_letter: fn(&[u8; 2]) -> bool| {
-        4 * pairs.iter().filter(|pair| is_letter(pair)).count() >= 3 * pairs.len()
-    };
-    match pairs.len() {
-        0..LEAST => None,
-        _ if most(|pair| is_plain(pair[0]) && pair[1] == 0) => Some(true),
-        _ if most(|pair| pair[0] == 0 && is_plain(pair[1])) => Some(false),
-        _ => None,
-    }
-}
-
-fn is_plain(byte: u8) -> bool {
-    matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~')
+/// ISO-MME, where the folder or zip at `path` holds a test in it.
+fn mme(path: &Path) -> Result<Option<RecordingFormat>, IngestError> {
+    Ok(MmeFiles::of(path)?.map(|_| RecordingFormat::Mme))
 }
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format

@@ -25,11 +25,13 @@ pub enum IngestError {
 }
 
 impl IngestError {
-    /// The same of a file for which another one stood.
-    pub(super) fn in_file(mut self, name: &Path) -> Self {
+    /// The same, of the file `name` where it is of `file`, which stood for it.
+    pub(super) fn in_file(mut self, file: &Path, name: &Path) -> Self {
         match &mut self {
-            Self::CaskFile(_) => {}
-            Self::Refused { path, .. } => *path = name.display().to_string(),
+            Self::Refused { path, .. } if *path == file.display().to_string() => {
+                *path = name.display().to_string();
+            }
+            Self::CaskFile(_) | Self::Refused { .. } => {}
         }
         self
     }
@@ -43,6 +45,13 @@ pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
 /// A refusal of the file itself.
 pub(super) fn of_file(path: &Path, refusal: Refusal) -> IngestError {
     IngestError::Refused { path: path.display().to_string(), refusal }
+}
+
+/// A directory stands where a recording should.
+pub(super) fn directory(path: &Path) -> IngestError {
+    let remedy = "name one recording file; a folder is a recording where it holds an .mme file (ISO-MME); \
+                  `dropcheck batch` takes several recordings";
+    of_file(path, Refusal::new("this is a directory, not a recording", remedy))
 }
 
 /// A refusal of a channel of the cask file.

@@ -1,7 +1,7 @@
 //! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones,
 //! the tests below replay what it kept.
 
-use super::{Limits, ReadRequest, cask_file, csv, hdf5, mcap, number, time_base};
+use super::{Limits, ReadRequest, cask_file, csv, hdf5, mcap, mme, number, time_base};
 use crate::data::{CaskFile, Samples};
 use crate::lab::scene_file;
 use std::io::Write as _;
@@ -13,12 +13,13 @@ use tempfile::NamedTempFile;
 pub type Decoder = fn(&[u8]);
 
 /// Every decoder with its name.
-pub const TARGETS: [(&str, Decoder); 10] = [
+pub const TARGETS: [(&str, Decoder); 11] = [
     ("answer", answer),
     ("cask", |bytes| in_file(bytes, |path| drop(cask_file::parse(path)))),
     ("csv", table),
     ("json", mcap::fuzz::json),
     ("mcap", messages),
+    ("mme", channels),
     ("number", number),
     ("protobuf", mcap::fuzz::protobuf),
     ("ros2", mcap::fuzz::ros2),
@@ -29,6 +30,7 @@ pub const TARGETS: [(&str, Decoder); 10] = [
 static TABLE: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["A1", "A2"]));
 static TOPICS: LazyLock<CaskFile> =
     LazyLock::new(|| cask_of(&["/daq/a1.samples", "/pb.samples", "/imu.linear_acceleration.z"]));
+static CHANNELS: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["T0CASK00L100ACZ0", "A"]));
 static DATASETS: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["/a", "/m[1]", "/r.z", "/daq/a1"]));
 
 /// A cask file whose channels have these sources.
@@ -64,6 +66,26 @@ fn messages(bytes: &[u8]) {
         let _ = mcap::list(ReadRequest::silent(path, limits));
         let _ = mcap::read(ReadRequest::silent(path, limits), &TOPICS);
     });
+}
+
+/// Bytes as a zip in ISO-MME, or parted by form feeds as the index and two channels in a folder.
+fn channels(bytes: &[u8]) {
+    let limits = Limits::of_memory(0);
+    let take = |path: &Path| {
+        let _ = mme::list(ReadRequest::silent(path, limits));
+        let _ = mme::read(ReadRequest::silent(path, limits), &CHANNELS);
+    };
+    if bytes.starts_with(b"PK") {
+        return in_file(bytes, take);
+    }
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    std::fs::create_dir(folder.path().join("Channel")).expect("a folder");
+    let parts = bytes.split(|&byte| byte == b'\x0c');
+    let names = ["Channel/T1.chn", "Channel/T1.001", "Channel/T1.002"].into_iter();
+    for (name, part) in names.zip(parts).chain([("T1.mme", &b""[..])]) {
+        std::fs::write(folder.path().join(name), part).expect("room for a short file");
+    }
+    take(folder.path());
 }
 
 /// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound

@@ -13,8 +13,10 @@ pub(crate) mod foreign;
 pub mod fuzz;
 mod hdf5;
 mod limits;
+mod lines;
 mod listed;
 mod mcap;
+mod mme;
 mod number;
 mod opened;
 pub(crate) mod refusal;
@@ -115,7 +117,7 @@ pub fn read_within(
         let file = converted.as_ref().map_or(path, |converted| &converted.file);
         let format = detect::format(file)?;
         let request = ReadRequest { path: file, limits, progress };
-        let raw = read_raw(request, format, cask_file).map_err(|fault| fault.in_file(path))?;
+        let raw = read_raw(request, format, cask_file).map_err(|fault| fault.in_file(file, path))?;
         Ok(((raw, format), converted.map(|converted| converted.reader)))
     })?;
     let recording = assemble::recording(path, format, sha256, raw, stated)?;
@@ -134,10 +136,17 @@ fn read_raw(
         RecordingFormat::Hdf5 => hdf5::read(request, cask_file),
         // No file is told as `Samples`.
         RecordingFormat::Csv | RecordingFormat::Samples => csv::read(request, cask_file),
+        RecordingFormat::Mme => mme::read(request, cask_file),
     })
 }
 
-/// The SHA-256 of a file, as results have it.
+/// Whether the folder at `path` is a recording, in ISO-MME, and not one of recordings.
+#[must_use]
+pub fn is_recording_folder(path: &Path) -> bool {
+    path.is_dir() && !matches!(mme::MmeFiles::of(path), Ok(None))
+}
+
+/// The SHA-256 of a recording, as results have it.
 ///
 /// # Errors
 /// [`IngestError`] where it cannot be read.
@@ -164,9 +173,10 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     let listing = match detect::format(file)? {
         RecordingFormat::Mcap => mcap::list(request),
         RecordingFormat::Hdf5 => hdf5::list(request),
+        RecordingFormat::Mme => mme::list(request),
         RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
     };
-    let mut listing = listing.map_err(|fault| fault.in_file(path))?;
+    let mut listing = listing.map_err(|fault| fault.in_file(file, path))?;
     if let Some(converted) = converted {
         listing.recording = path.display().to_string();
         listing.bytes = std::fs::metadata(path).map_err(|refusal| error::io(path, &refusal))?.len();

@@ -34,7 +34,8 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"MDF ", "an ASAM MDF file", MDF),
     (0, b"UnFinMF", "an unfinalised ASAM MDF file", MDF),
     (0, b"MATLAB 5.0", "a MATLAB file before version 7.3", MATLAB),
-    (0, b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
+    (0, b"PK\x03\x04", "a ZIP archive that was cut or holds no .mme file, or an office document",
+     "unpack it, or save the sheet as CSV"),
     (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
     (0, b"%PDF", "a PDF document", EXPORT),
     (0, b"\x1f\x8b", "a gzip archive", "unpack it first: `gunzip FILE`"),
@@ -61,6 +62,10 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"{\\rtf", "a text document (RTF)", EXPORT),
     (0, b"\x7FELF", "a program", "name the recording here"),
 ];
+
+/// What lines of files in ISO-MME begin with.
+const OF_MME: [&str; 4] =
+    ["Test object number", "Name of the channel", "Name of channel ", "Data format edition number"];
 
 /// What a file that begins so is and what to do, where it is known to be no recording read here.
 pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
@@ -104,10 +109,10 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Some(("a universal file (UFF)", UFF));
     }
-    if first.starts_with("Test object number") || text.contains("\nName of the channel") {
+    if OF_MME.iter().any(|name| first.starts_with(name) || text.contains(&format!("\n{name}"))) {
         return Some((
-            "a channel file of ISO-MME (ISO/TS 13499)",
-            "export the channels as CSV, one column each with its unit, or as HDF5",
+            "a file of a test in ISO-MME (ISO/TS 13499)",
+            "name the folder of its .mme file, or a zip of that folder",
         ));
     }
     if first.starts_with(['-', '#']) && first.contains("EV5") {

@@ -1,8 +1,11 @@
-//! A file to what is read of it, with the SHA-256 of the very bytes that were read.
+//! A recording, a file or a folder of files, to what is read of it, with the SHA-256 of the very bytes that
+//! were read.
 
 use super::error::{self, IngestError};
+use super::mme::MmeFiles;
 use super::opened;
 use super::refusal::Refusal;
+use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs::Metadata;
@@ -18,7 +21,7 @@ const TICKS: Duration = Duration::from_millis(20);
 /// A file whose times are young at each of so many looks, one second long, is being written.
 const MOST_LOOKS: usize = 50;
 
-/// What `read` makes of the file at `path`, and the file's SHA-256, which is taken beside it.
+/// What `read` makes of the recording at `path`, and its SHA-256, which is taken beside it.
 ///
 /// # Errors
 /// What `read` says, at once; [`IngestError::Refused`] where the file was not the same all the time.
@@ -36,7 +39,7 @@ pub(super) fn hashed<T>(
     });
     let sha256 = sha256.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     // A file that is rewritten may well make no sense: that it is comes first.
-    if look(path)?.0 != before {
+    if look(path)?.identities != before {
         return Err(changed(path));
     }
     Ok((read?, sha256?))
@@ -47,7 +50,7 @@ fn changed(path: &Path) -> IngestError {
         "it changed while it was being read",
         "copy it first and name the copy, or wait until it is written",
     );
-    error::of_file(path, refusal.at("the whole file"))
+    error::of_file(path, refusal.at("the whole recording"))
 }
 
 /// What tells a file from itself at another time.
@@ -77,28 +80,60 @@ fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
     ((file.len(), modified), modified)
 }
 
-fn look(path: &Path) -> Result<(Identity, Option<SystemTime>), IngestError> {
-    std::fs::metadata(path).map(|file| identity(&file)).map_err(|source| error::io(path, &source))
+/// A recording's files at one moment.
+struct FilesState {
+    /// Of each.
+    identities: Vec<Identity>,
+    /// When the last of them was changed.
+    latest: Option<SystemTime>,
 }
 
-/// The file's identity, looked at when a later change must show.
-fn at_rest(path: &Path) -> Result<Identity, IngestError> {
+fn look(path: &Path) -> Result<FilesState, IngestError> {
+    let mut look = FilesState { identities: Vec::new(), latest: None };
+    let names = names(path)?;
+    for place in names
+        .map_or_else(|| vec![path.to_owned()], |names| names.iter().map(|name| path.join(name)).collect())
+    {
+        let file = std::fs::metadata(&place).map_err(|source| error::io(&place, &source))?;
+        let (identity, latest) = identity(&file);
+        look.identities.push(identity);
+        look.latest = look.latest.max(latest);
+    }
+    Ok(look)
+}
+
+/// The names of the files of a recording that is a folder; `None` where it is a file itself.
+fn names(path: &Path) -> Result<Option<Vec<String>>, IngestError> {
+    let found = if path.is_dir() { MmeFiles::of(path)? } else { None };
+    Ok(found.map(|found| found.names().cloned().collect()))
+}
+
+/// The identities of a recording's files, looked at when a later change must show.
+fn at_rest(path: &Path) -> Result<Vec<Identity>, IngestError> {
     for _ in 0..MOST_LOOKS {
-        let (identity, latest) = look(path)?;
+        let FilesState { identities, latest } = look(path)?;
         // A time to come is another clock's, and no tick of this one's.
         match latest.and_then(|latest| latest.elapsed().ok()).and_then(|age| TICKS.checked_sub(age)) {
             Some(wait) if !wait.is_zero() => std::thread::sleep(wait),
-            _ => return Ok(identity),
+            _ => return Ok(identities),
         }
     }
     Err(changed(path))
 }
 
-/// SHA-256 of the file at `path`, lower-case hexadecimal; of its beginning where it `is_needless` in the end.
+/// SHA-256 of the recording at `path`, lower-case hexadecimal, or of its beginning where it `is_needless` in
+/// the end: of a file its own; of a folder that of the list of its files which `sha256sum` prints.
 ///
 /// # Errors
 /// [`IngestError::Refused`] where it cannot be read.
 pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
+    let Some(names) = names(path)? else { return sha256_of_file(path, is_needless) };
+    let hashed = |name: &String| Ok(format!("{}  {name}\n", sha256_of_file(&path.join(name), is_needless)?));
+    let lines = names.par_iter().map(hashed).collect::<Result<Vec<String>, IngestError>>()?;
+    Ok(hexadecimal(&Sha256::digest(lines.concat())))
+}
+
+fn sha256_of_file(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
     let mut file = opened(path).map_err(|source| error::io(path, &source))?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];

@@ -85,6 +85,7 @@ pub(super) fn none(listing: &Listing) -> NoChannels {
              separators, or empty it: an empty cell counts as missing"
         }
         RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
+        RecordingFormat::Mme => "correct these channel files in a copy, or export the test again",
         RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",
     };
     NoChannels {

@@ -1,6 +1,7 @@
 //! From every fixture, damaged in every way that files get damaged, to a result that is right, doubtful or
 //! refused.
 
+use crate::iso_mme;
 use crate::run::{dropcheck, fixture, number, read_json, truth, words};
 use dropcheck::{ingest, report};
 use rand::rngs::ChaCha8Rng;
@@ -217,16 +218,19 @@ fn with_other_line_ends(bytes: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Damages every one of `stems` and counts what became of it.
-fn campaign(stems: &[&'static str], each: usize, analysed: fn(&Path, &str) -> Result<Value, String>) {
+/// Damages every one of `subjects` and counts what became of it.
+fn campaign(
+    subjects: impl IntoIterator<Item = Subject>,
+    each: usize,
+    analysed: fn(&Path, &str) -> Result<Value, String>,
+) {
     let seed = std::env::var("DROPCHECK_SEED").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
     let mut chance = ChaCha8Rng::seed_from_u64(seed);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut counts: BTreeMap<Outcome, usize> = BTreeMap::new();
     let mut defects = Vec::new();
-    for &stem in stems {
-        let subject = Subject::of(stem);
-        let first = chance.random_range(0..10);
+    for subject in subjects {
+        let (stem, first) = (subject.stem, chance.random_range(0..10));
         for number in 0..each {
             let (way, bytes) = damaged(&subject.bytes, first + number, &mut chance);
             let path = folder.path().join(format!("damaged-{stem}-{number}"));
@@ -254,12 +258,33 @@ fn asked_for() -> Option<usize> {
 
 #[test]
 fn a_damaged_recording_is_right_doubtful_or_refused() {
-    campaign(&RUST_READ, asked_for().unwrap_or(USUAL_DAMAGES), in_process);
+    campaign(RUST_READ.map(Subject::of), asked_for().unwrap_or(USUAL_DAMAGES), in_process);
 }
 
 #[test]
 fn a_damaged_hdf5_file_is_right_doubtful_or_refused() {
-    campaign(&C_READ, asked_for().unwrap_or(USUAL_DAMAGES), in_child);
+    campaign(C_READ.map(Subject::of), asked_for().unwrap_or(USUAL_DAMAGES), in_child);
+}
+
+#[test]
+fn a_damaged_channel_in_iso_mme_is_right_doubtful_or_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (bytes, path) = (iso_mme::drop_files()[1].1.clone().into_bytes(), folder.path().join("sound"));
+    std::fs::write(&path, &bytes).expect("a temporary file");
+    let sound = in_iso_mme(&path, "").expect("a sound test");
+    let subject = Subject { stem: "anf10-plain", bytes, sound, truth: truth("anf10-plain") };
+    campaign([subject], asked_for().unwrap_or(2 * USUAL_DAMAGES), in_iso_mme);
+}
+
+/// As [`in_child`] of a test in ISO-MME whose first channel is the file at `path`.
+fn in_iso_mme(path: &Path, _: &str) -> Result<Value, String> {
+    let folder = path.with_extension("folder");
+    let cask = iso_mme::written(&iso_mme::drop_files(), &folder);
+    std::fs::copy(path, folder.join("Channel/T1.001")).expect("a temporary file");
+    let file = ingest::cask_file(&cask).expect("a cask file");
+    let recording = ingest::read(&folder, &file, &|_| ()).map_err(|error| error.to_string())?;
+    let bytes = report::pretty_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
+    Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
 }
 
 #[test]

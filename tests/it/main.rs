@@ -18,6 +18,7 @@ mod golden;
 mod hdf5_room;
 mod house;
 mod impacts;
+mod iso_mme;
 mod layouts;
 mod moved;
 mod odd;

@@ -17,7 +17,8 @@ use std::fs;
 use std::path::Path;
 
 /// Where the odd files are stored: the small ones of each reader, and the large ones of all.
-const STORES: [&str; 4] = ["odd/csv.jsonl", "odd/hdf5.jsonl", "odd/mcap.jsonl", "odd/large.jsonl"];
+const STORES: [&str; 5] =
+    ["odd/csv.jsonl", "odd/hdf5.jsonl", "odd/mcap.jsonl", "odd/mme.jsonl", "odd/large.jsonl"];
 /// Listed sources that are shown; a hash stands for the others.
 const LISTED: usize = 6;
 /// Letters of a line that are shown; a hash stands for the others.

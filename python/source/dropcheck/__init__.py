@@ -100,7 +100,7 @@ def analyze(
     without: Iterable[str] = (),
     max_memory: str | None = None,
 ) -> Result:
-    """Analyses one recording: a file in MCAP, HDF5 or CSV, or samples in memory by name.
+    """Analyses a recording in MCAP, HDF5, CSV or ISO-MME, or samples in memory by name.
 
     The names are those of each `source` in the cask file, or of each channel's `name`. `without` leaves corrections of the
     samples out ("offset", "zero_shift", "skew", "hum"); `max_memory` is what reading may take, such as "8GB".

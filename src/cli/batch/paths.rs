@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
-const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+const RECORDING_ENDINGS: [&str; 6] = ["mcap", "h5", "hdf5", "hdf", "csv", "zip"];
 /// The same where a reader of other formats is there.
 const FOREIGN_ENDINGS: [&str; 8] = ["tdms", "mf4", "mdf", "uff", "unv", "uf", "mat", "ide"];
 
@@ -16,13 +16,13 @@ const FOREIGN_ENDINGS: [&str; 8] = ["tdms", "mf4", "mdf", "uff", "unv", "uf", "m
 pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut recordings = Vec::new();
     for path in paths {
-        if path.is_dir() {
+        if path.is_dir() && !ingest::is_recording_folder(path) {
             recordings.extend(in_folder(path)?);
         } else if is_pattern(path) {
             let pattern = path.display().to_string();
             let found = glob::glob(&pattern).map_err(|fault| miette!("{pattern} is no pattern: {fault}"))?;
             let before = recordings.len();
-            recordings.extend(found.flatten().filter(|path| path.is_file() && !is_summary(path)));
+            recordings.extend(found.flatten().filter(|path| is_one(path) && !is_summary(path)));
             if recordings.len() == before {
                 return Err(miette!("no file is named like {pattern}"));
             }
@@ -36,6 +36,11 @@ pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     Ok(recordings)
 }
 
+/// Whether it may be one recording: a file, or a folder in ISO-MME.
+fn is_one(path: &Path) -> bool {
+    path.is_file() || ingest::is_recording_folder(path)
+}
+
 /// Whether no shell has replaced it yet.
 fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(['*', '?', '[']) && std::fs::symlink_metadata(path).is_err()
@@ -46,15 +51,15 @@ pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(path)
         .map_err(|source| miette!("the folder {} cannot be read: {source}", path.display()))?;
     let mut files: Vec<PathBuf> =
-        entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|p| p.is_file()).collect();
+        entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|path| is_one(path)).collect();
     files.sort();
     let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
-        files.into_iter().filter(|p| !is_summary(p)).partition(|p| has_ending(p));
+        files.into_iter().filter(|p| !is_summary(p)).partition(|p| p.is_dir() || has_ending(p));
     tell_left_out(path, &others);
     if found.is_empty() {
         let mend = "name the recordings themselves: their content, not their name, tells the format";
-        let path = path.display();
-        return Err(miette!(help = mend, "the folder {path} holds no .mcap, .h5, .hdf5, .hdf or .csv file"));
+        let none = "holds no .mcap, .h5, .hdf5, .hdf, .csv or .zip file, nor a folder in ISO-MME";
+        return Err(miette!(help = mend, "the folder {} {none}", path.display()));
     }
     Ok(found)
 }
@@ -132,6 +137,13 @@ mod tests {
             std::fs::write(folder.path().join("campaign.csv"), content).unwrap();
             assert_eq!(recordings(&[folder.path().to_path_buf()]).unwrap().len(), count);
         }
+        // A folder in ISO-MME is one recording, by itself and in a folder.
+        let test = folder.path().join("T1");
+        std::fs::create_dir(&test).unwrap();
+        std::fs::write(test.join("T1.MME"), "").unwrap();
+        assert_eq!(recordings(&[test.clone()]).unwrap(), [test.clone()]);
+        assert!(recordings(&[folder.path().to_path_buf()]).unwrap().contains(&test));
+        assert!(recordings(&[folder.path().join("T*")]).unwrap().contains(&test));
         let empty = tempfile::tempdir().unwrap();
         assert!(recordings(&[empty.path().to_path_buf()]).is_err());
     }

@@ -100,8 +100,8 @@ impl CampaignPlan {
             self.tests.iter().filter_map(|test| real(&out.join(&test.folder))).collect();
         let inputs = self.tests.iter().flat_map(|test| [Some(&test.recording), test.cask.as_ref()]).flatten();
         let is_within = |input: &&PathBuf| {
-            let parent = real(input).and_then(|input| Some(input.parent()?.to_path_buf()));
-            parent.is_some_and(|parent| folders.contains(&parent))
+            // A recording may itself be a folder.
+            real(input).is_some_and(|input| input.ancestors().take(2).any(|place| folders.contains(place)))
         };
         let mend = "choose another --out: no command alters its input";
         inputs.filter(|_| !folders.is_empty()).find(is_within).map_or(Ok(()), |input| {

@@ -2,11 +2,11 @@
 
 use super::super::ReadRequest;
 use super::super::error::{self, IngestError};
+use super::super::lines::{Line, Text};
 use super::super::number;
 use super::super::refusal::Refusal;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
-use super::lines::{Line, Text};
 use super::rows::RowError;
 use super::wanted::Wanted;
 use std::path::Path;

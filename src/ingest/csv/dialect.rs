@@ -1,7 +1,7 @@
 //! The lines at the beginning of a text to its delimiter and decimal mark, and which columns hold numbers.
 
+use super::super::lines::Line;
 use super::cells::Delimiter;
-use super::lines::Line;
 use super::stamp;
 use crate::ingest::number;
 

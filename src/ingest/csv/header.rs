@@ -1,8 +1,8 @@
 //! The lines above the rows to the columns' names and units.
 
+use super::super::lines::Line;
 use super::cells::Delimiter;
 use super::dialect::Judged;
-use super::lines::Line;
 use crate::ingest::{number, vocabulary};
 
 /// So many lines above the rows may be the header: below it stand its units, and minima, maxima or remarks.

@@ -1,8 +1,8 @@
 //! The beginning of a text to its layout: delimiter, decimal mark, header, units, where the rows begin.
 
+use super::super::lines::Text;
 use super::dialect::Dialect;
 use super::header::{self, TableColumn};
-use super::lines::Text;
 use super::preamble::{self, Preamble};
 use super::sensors::{self, Sensors};
 use super::{stamp, time_column};

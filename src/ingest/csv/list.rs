@@ -2,13 +2,13 @@
 
 use super::super::clock::Claims;
 use super::super::error::IngestError;
+use super::super::lines::Text;
 use super::super::refusal::Refusal;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
 use super::complaint::{self, no_table, row_error};
 use super::header::TableColumn;
 use super::layout::Layout;
-use super::lines::Text;
 use super::plan::ColumnPlan;
 use super::rows::{self, RowsPart, Sink};
 use super::sensors::{self, Filled};

@@ -1,6 +1,6 @@
 //! Random tables by pieces of any size: the rows, the error and the ending are those of reading it in order.
 
-use super::lines::Lines;
+use super::super::lines::Lines;
 use super::list::Survey;
 use super::pieces::Sizes;
 use super::rows::{RowError, read_by};

@@ -1,8 +1,8 @@
 //! The lines above a table to what they state of it: how many rows it has, and at what rate they were taken.
 
+use super::super::lines::Line;
 use super::cells::Delimiter;
 use super::header::{header_cells, name_and_unit};
-use super::lines::Line;
 use crate::data::{Finding, TableFinding};
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};

@@ -1,9 +1,9 @@
 //! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
 
+use super::super::lines::{self, Text};
 use super::super::{Progress, ReadRequest};
 use super::cells::{Delimiter, bare, skip};
 use super::layout::Layout;
-use super::lines::{self, Text};
 use super::pieces::{Cut, Sizes, TextBatch};
 use super::wanted::Wanted;
 use crate::data::TableFinding;

@@ -1,9 +1,8 @@
 //! The bytes of a text file to lines in an encoding whose digits and delimiters are ASCII, each ended by \n
 //! alone.
 
-use super::super::Limits;
-use super::super::detect;
-use super::super::error::{self, IngestError};
+use super::Limits;
+use super::error::{self, IngestError};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
 use std::fs::File;
@@ -31,11 +30,22 @@ impl Text {
     /// The text at `path`.
     pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
         let io = |source| error::io(path, &source);
-        let mut file = File::open(path).map_err(io)?;
+        let file = File::open(path).map_err(io)?;
         let bytes = file.metadata().map_err(io)?.len();
+        Self::read(path, Box::new(file), bytes, limits)
+    }
+
+    /// The text of so many bytes that `file` gives, which messages call `path`.
+    pub(super) fn read(
+        path: &Path,
+        mut file: Box<dyn Read + Send>,
+        bytes: u64,
+        limits: Limits,
+    ) -> Result<Self, IngestError> {
+        let io = |source| error::io(path, &source);
         let mut head = Vec::new();
         (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(io)?;
-        if let Some(is_low_first) = detect::wide_text(&head) {
+        if let Some(is_low_first) = wide_text(&head) {
             let (coding, name): (&Encoding, _) = if is_low_first {
                 (UTF_16LE, "UTF-16 (little-endian)")
             } else {
@@ -89,6 +99,34 @@ impl Text {
             .map(|(offset, line)| Line { offset, text: text(line.strip_suffix(b"\n").unwrap_or(line)) })
             .collect()
     }
+}
+
+/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes
+/// between plain letters.
+pub(super) fn wide_text(head: &[u8]) -> Option<bool> {
+    /// Bytes that are looked at, and the least that tell.
+    const LOOKED_AT: usize = 256;
+    const LEAST: usize = 8;
+    match head {
+        [0xFF, 0xFE, ..] => return Some(true),
+        [0xFE, 0xFF, ..] => return Some(false),
+        _ => {}
+    }
+    let (pairs, _) = head.get(..LOOKED_AT.min(head.len())).unwrap_or_default().as_chunks::<2>();
+    // Three of four: a minus of its own in every cell is another letter.
+    let most = |is_letter: fn(&[u8; 2]) -> bool| {
+        4 * pairs.iter().filter(|pair| is_letter(pair)).count() >= 3 * pairs.len()
+    };
+    match pairs.len() {
+        0..LEAST => None,
+        _ if most(|pair| is_plain(pair[0]) && pair[1] == 0) => Some(true),
+        _ if most(|pair| pair[0] == 0 && is_plain(pair[1])) => Some(false),
+        _ => None,
+    }
+}
+
+fn is_plain(byte: u8) -> bool {
+    matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~')
 }
 
 /// A text as it is read, up to its first zero byte; \r\n, \n\r and \r alone are turned into \n.
