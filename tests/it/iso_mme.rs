@@ -23,7 +23,9 @@ pub fn drop_files() -> Vec<(String, String)> {
              samples :{}\n",
             rows.len()
         );
-        rows.iter().for_each(|row| writeln!(text, "{}", row[number]).expect("a text"));
+        for row in &rows {
+            writeln!(text, "{}", row[number]).expect("a text");
+        }
         writeln!(index, "Name of channel {number:03} :{code}").expect("a text");
         files.push((format!("Channel/T1.{number:03}"), text));
     }
@@ -56,7 +58,9 @@ fn zipped(files: &[(String, String)]) -> Vec<u8> {
 /// Writes files into a folder, and the cask file of the drop beside it, whose path is returned.
 pub fn written(files: &[(String, String)], folder: &Path) -> PathBuf {
     fs::create_dir_all(folder.join("Channel")).expect("a folder");
-    files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).expect("a file"));
+    for (name, text) in files {
+        fs::write(folder.join(name), text).expect("a file");
+    }
     let mut cask = fs::read_to_string(fixture("anf10-plain.toml")).expect("a fixture");
     for (source, code) in ["A1", "A2"].iter().zip(CODES) {
         cask = cask.replace(&format!("source = \"{source}\""), &format!("source = \"{code}\""));

@@ -141,7 +141,7 @@ mod tests {
         let test = folder.path().join("T1");
         std::fs::create_dir(&test).unwrap();
         std::fs::write(test.join("T1.MME"), "").unwrap();
-        assert_eq!(recordings(&[test.clone()]).unwrap(), [test.clone()]);
+        assert_eq!(recordings(std::slice::from_ref(&test)).unwrap(), std::slice::from_ref(&test));
         assert!(recordings(&[folder.path().to_path_buf()]).unwrap().contains(&test));
         assert!(recordings(&[folder.path().join("T*")]).unwrap().contains(&test));
         let empty = tempfile::tempdir().unwrap();
