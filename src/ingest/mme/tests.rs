@@ -208,8 +208,8 @@ fn a_listing_has_every_channel_with_what_its_code_says() {
     let said = "UTF-8; acceleration, longitudinal (X), unfiltered (0), at T 0 CASK 01 L1 LE; left, along";
     assert_eq!(first.encoding, said);
     assert_eq!(listing.issues[0].channel.as_deref(), Some("T0CASK01L1LEACX0.001"));
-    let reason = "its files: beside T1.MME there is no Channel/….002: copy or export the test again, with all \
-                  its files";
+    let reason = "its files: beside T1.MME there is no Channel/….002: copy or export the test again, with \
+                  all its files";
     assert_eq!(second.unreadable.as_deref(), Some(reason));
     assert_eq!((third.source.as_str(), third.unit.as_deref()), ("T0CASK01R1LEFOZA", Some("kN")));
 }
