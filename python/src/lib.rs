@@ -202,7 +202,7 @@ fn converted(path: &Path, format: &str, into: &Path) -> Result<String, [String; 
 fn foreign_format(path: PathBuf) -> PyResult<&'static str> {
     ingest::foreign_format(&path).ok_or_else(|| {
         let own = ingest::format(&path).map(|_| "dropcheck reads it itself: hand its name to `analyze`");
-        let said = own.map(|own| miette::miette!("{}: {own}", path.display())).unwrap_or_else(Into::into);
+        let said = own.map_or_else(Into::into, |own| miette::miette!("{}: {own}", path.display()));
         Error::new_err(command::message(&said))
     })
 }

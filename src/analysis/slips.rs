@@ -220,7 +220,9 @@ fn of_steps(recording: &Recording, result: &DropResult) -> Option<(Recording, Fl
 fn is_rigid(slips: &[Slip], of_steps: &(Recording, FlightFit), file: &CaskFile) -> bool {
     let (mut steps, mut flight) = of_steps.clone();
     let mut stated = file.clone();
-    slips.iter().for_each(|slip| put_right(slip, &mut steps, &mut stated));
+    for slip in slips {
+        put_right(slip, &mut steps, &mut stated);
+    }
     for channel in &steps.channels {
         let own = flight.plateaus.iter_mut().find(|p| p.channel == channel.name);
         if let (Some(own), &[step_m_s, u_m_s]) = (own, &channel.force_m_s2(0, 2)[..]) {

@@ -30,7 +30,9 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
     let mut at_rest: Vec<f64> = robust::sampled(&values[..quiet]).filter(|value| value.is_finite()).collect();
     if !at_rest.is_empty() {
         let (noise, rest) = (robust::spread(&at_rest), robust::median(&mut at_rest));
-        values.iter_mut().for_each(|value| *value -= rest);
+        for value in &mut values {
+            *value -= rest;
+        }
         summary.clipped = clipping::clipped(channel, &values, rest, noise, quiet);
         (summary.rest, summary.noise) = (Some(rest), Some(noise));
     }

@@ -300,12 +300,12 @@ mod tests {
         let text = cask_file(&listing(channels.clone())).unwrap();
         assert_eq!(parsed(&text)["channel"].as_array().unwrap().len(), 1);
         let (_, others) = text.split_once("beside the motion.\n").expect("the other channels");
-        let others = parsed(
-            &others.lines().map(|line| format!("{}\n", line.trim_start_matches("# "))).collect::<String>(),
-        )["channel"]
-            .as_array()
-            .unwrap()
-            .clone();
+        let others =
+            parsed(&others.lines().map(|line| line.trim_start_matches("# ")).collect::<Vec<_>>().join("\n"))
+                ["channel"]
+                .as_array()
+                .unwrap()
+                .clone();
         assert_eq!(others.len(), 3);
         assert_eq!((&others[1]["name"], &others[1]["end"]), (&"w".into(), &"none".into()));
         assert!(cask_file(&listing(channels[1..].to_vec())).is_err());

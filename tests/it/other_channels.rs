@@ -186,7 +186,7 @@ fn the_form_has_them_behind_marks() {
     let form = dropcheck(words!["init", Path::new(&drop.recording)]).stdout;
     let (_, others) = form.split_once("beside the motion.\n").unwrap_or_else(|| panic!("{form}"));
     let unmarked: String =
-        others.lines().map(|line| format!("{}\n", line.trim_start_matches("# "))).collect();
+        others.lines().map(|line| line.trim_start_matches("# ")).collect::<Vec<_>>().join("\n");
     let others: toml::Table = unmarked.parse().unwrap_or_else(|e| panic!("{e}\n{unmarked}"));
     assert!(others["channel"].as_array().is_some_and(|all| {
         all.iter().any(|one| one["name"].as_str().is_some_and(|name| name.starts_with("T1")))

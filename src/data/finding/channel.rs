@@ -234,7 +234,7 @@ impl ChannelFinding {
         use Severity::{Error, Note, Warning};
         match *self {
             Self::Clipped { takes_step: true, .. } => (Code::Clipped, Error),
-            Self::Clipped { .. } => (Code::Clipped, Warning),
+            Self::Clipped { .. } | Self::OtherClipped { .. } => (Code::Clipped, Warning),
             Self::LostStep { .. } => (Code::Gap, Error),
             Self::Noise { severity, .. } => (Code::Noise, severity),
             Self::BeginsInImpact { .. } => (Code::BeginsLate, Error),
@@ -246,7 +246,6 @@ impl ChannelFinding {
             Self::LowRate { .. } => (Code::LowRate, Warning),
             Self::Aliasing { .. } => (Code::Aliasing, Warning),
             Self::Dead { .. } => (Code::DeadChannel, Error),
-            Self::OtherClipped { .. } => (Code::Clipped, Warning),
             Self::OtherStill { .. } => (Code::DeadChannel, Note),
             Self::OtherNoise { .. } => (Code::Noise, Note),
             Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),

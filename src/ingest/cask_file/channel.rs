@@ -142,11 +142,6 @@ fn end_or_none(table: &Section) -> Result<Option<End>, CaskFileError> {
     table.word("end", &words, END)?.ok_or_else(|| table.missing("end", END))
 }
 
-pub(crate) fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
-    let end = table.word("end", &[("first", End::First), ("second", End::Second)], mend)?;
-    end.ok_or_else(|| table.missing("end", mend))
-}
-
 const END: &str = "end = \"first\" (low, touches first) or \"second\" (slaps down); \"none\" for a channel \
                    that takes no part in the motion, such as strain or temperature";
 const AXIS: &str =

@@ -4,7 +4,7 @@
 use super::values::{flag, given, needs, spans_s, value, whole};
 use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
-use crate::ingest::cask_file::channel::{axis, coupling, end, polarity};
+use crate::ingest::cask_file::channel::{axis, coupling, polarity};
 use crate::ingest::cask_file::section::Section;
 use crate::lab::data::{Chain, SceneChannel};
 use crate::lab::drawn::{spec, unit_m_s2};
@@ -16,6 +16,11 @@ const WHITE_NOISE_G: f64 = 0.1;
 
 /// A channel as it is, and as stated.
 pub(super) type Both = (SceneChannel, ChannelSpec);
+
+fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
+    let end = table.word("end", &[("first", End::First), ("second", End::Second)], mend)?;
+    end.ok_or_else(|| table.missing("end", mend))
+}
 
 /// One transverse sensor near each end, for a scene without channels.
 pub(super) fn usual(cask: &Cask) -> Vec<Both> {

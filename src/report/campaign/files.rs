@@ -118,7 +118,7 @@ fn extremes(line: &Value) -> Option<String> {
         let [smallest, largest] = ["smallest", "largest"].map(|key| &other[key]["value"]);
         json!({"name": other["name"], "unit": other["unit"], "smallest": smallest, "largest": largest})
     };
-    Some(Value::from_iter(line["other_channels"].as_array()?.iter().map(told)).to_string())
+    Some(line["other_channels"].as_array()?.iter().map(told).collect::<Value>().to_string())
 }
 
 impl Batch {

@@ -122,7 +122,7 @@ mod tests {
         samples[20_000..20_100].fill(f64::NAN);
         (samples[30_003], samples[77_777]) = (-50.0, 99.0);
         let channel = example::channel(samples);
-        let extreme = |time_s, value| Extreme { time_s, value };
+        let extreme = |time_s, value| Extreme { value, time_s };
         let look = ChannelLook {
             smallest: extreme(3.0003, -50.0),
             largest: extreme(7.7777, 99.0),
