@@ -1,6 +1,8 @@
 //! A long curve to the lowest and highest point of each column of the picture, broken where samples are
 //! missing.
 
+use crate::numerics::{as_count, as_f64};
+
 /// Unbroken runs of points, at most two in each unit of x, in order.
 pub(super) fn runs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<PixelColumn>> = vec![Vec::new()];
@@ -20,13 +22,11 @@ pub(super) fn runs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<Vec<(f64
 
 /// Of values at numbered places the lowest and the highest of each `each` places, and not a number between
 /// runs, where values are missing.
-#[allow(clippy::cast_precision_loss, reason = "samples are fewer than 2^52")]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
 pub(super) fn thinned(values: impl IntoIterator<Item = (usize, f64)>, each: usize) -> Vec<(usize, f64)> {
     let mut kept = Vec::new();
-    let places = values.into_iter().map(|(place, value)| (place as f64 / each as f64, value));
+    let places = values.into_iter().map(|(place, value)| (as_f64(place) / as_f64(each), value));
     for (i, run) in runs(places).into_iter().enumerate() {
-        let place = |x: f64| (x * each as f64).round() as usize;
+        let place = |x: f64| as_count((x * as_f64(each)).round());
         kept.extend(run.first().filter(|_| i > 0).map(|(begins, _)| (place(*begins) - 1, f64::NAN)));
         kept.extend(run.into_iter().map(|(x, value)| (place(x), value)));
     }
