@@ -39,11 +39,8 @@ impl Measured {
         let mut is_told = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
         if !findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
             let of_motion = of_motion(flown, impact, events, file);
-            // What follows from a flight that is none is not said beside it.
-            match judge::judge_pressed(flight, &of_motion) {
-                Some(pressed) => findings.push(pressed),
-                None => findings.extend(of_motion),
-            }
+            findings.extend(judge::judge_pressed(flight, &of_motion));
+            findings.extend(of_motion);
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
                 findings.extend(judge::judge_blows(impact.recorded(), flight, events, findings));

@@ -182,7 +182,9 @@ impl DropFinding {
             Self::MissingEnd { .. } => (Code::MissingChannel, Error),
             Self::EndsEarly { .. } => (Code::EndsEarly, Error),
             Self::NoSlapDown { .. } => (Code::NoSlapDown, Error),
-            Self::ShortFlight | Self::Pressed { .. } => (Code::FlightFit, Error),
+            Self::ShortFlight => (Code::FlightFit, Error),
+            // Before what follows from it.
+            Self::Pressed { .. } => (Code::SecondContact, Error),
             Self::NoFlight { .. } | Self::Unresolved { .. } => (Code::FlightFit, Warning),
             Self::SeveralDrops { .. } => (Code::SeveralDrops, Warning),
             Self::SoftTouch { .. } | Self::AllMissed { .. } => (Code::Geometry, Warning),
