@@ -9,16 +9,12 @@ import sys
 import time
 from pathlib import Path
 
-from page import browser, held
+from page import held, opened
 from selenium.webdriver.common.by import By
 
 
 def main(page):
-    driver = browser()
-    driver.get(page.resolve().as_uri())
-    time.sleep(0.3)
-    held("no error on the console", not driver.get_log("browser"))
-    held("no request", driver.execute_script("return performance.getEntriesByType('resource').length") == 0)
+    driver = opened(page)
     table = driver.find_element(By.CSS_SELECTOR, "table.sortable")
     heads = [head.text for head in table.find_elements(By.CSS_SELECTOR, "thead th")]
     column = next(i for i, head in enumerate(heads) if head.startswith("speed"))

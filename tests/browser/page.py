@@ -56,12 +56,18 @@ def printed(driver):
     held("no heading at the foot of a sheet", not [e for e in ends if any(e and h.endswith(e) for h in heads)], ends)
 
 
-def main(page):
+def opened(page):
+    """The page in a browser, where nothing went wrong and nothing was asked for."""
     driver = browser()
     driver.get(page.resolve().as_uri())
     time.sleep(0.5)
     held("no error on the console", not driver.get_log("browser"))
     held("no request", driver.execute_script("return performance.getEntriesByType('resource').length") == 0)
+    return driver
+
+
+def main(page):
+    driver = opened(page)
     charts = driver.find_elements(By.CSS_SELECTOR, ".uplot")
     held("charts", len(charts) >= 8, len(charts))
 

@@ -12,16 +12,12 @@ import time
 from pathlib import Path
 
 from axe_core_python.selenium import Axe
-from page import browser, held, scale
+from page import held, opened, scale
 from selenium.webdriver.common.by import By
 
 
 def main(page):
-    driver = browser()
-    driver.get(page.resolve().as_uri())
-    time.sleep(0.5)
-    held("no error on the console", not driver.get_log("browser"))
-    held("no request", driver.execute_script("return performance.getEntriesByType('resource').length") == 0)
+    driver = opened(page)
     sources = json.loads((page.parent / "recording.json").read_text())["channels"]
     charts = driver.find_elements(By.CSS_SELECTOR, ".uplot")
     held("a chart a source", len(charts) == len(sources), len(charts))
