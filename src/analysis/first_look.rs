@@ -25,14 +25,8 @@ pub fn first_look(channel: &mut Channel) -> ChannelLook {
     let impact_s = impact_s(channel).filter(|_| channel.scale_m_s2.is_finite());
     let fall_s = impact_s.and_then(|impact_s| fall_s(channel, impact_s));
     let (level, noise) = first_level(channel, impact_s);
-    let extreme = |index: Option<usize>| {
-        let value = index.map_or(f64::NAN, |index| channel.samples.get(index));
-        Extreme { time_s: channel.time_s(index.unwrap_or_default()), value }
-    };
-    let numbers = || (0..channel.samples.len()).filter(|&i| is_number(channel.samples.get(i)));
-    let order = |a: &usize, b: &usize| channel.samples.get(*a).total_cmp(&channel.samples.get(*b));
-    // The first of equal ones.
-    let (smallest, largest) = (extreme(numbers().min_by(order)), extreme(numbers().rev().max_by(order)));
+    let none = Extreme { value: f64::NAN, time_s: channel.start_s };
+    let [smallest, largest] = channel.extremes().unwrap_or([none; 2]);
     ChannelLook { smallest, largest, level, noise, fall_s, impact_s }
 }
 

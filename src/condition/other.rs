@@ -1,7 +1,7 @@
 //! A channel that takes no part in the motion to what it reads: level at rest, noise, extremes, limits.
 
 use super::clipping;
-use crate::data::{Channel, Events, Extreme, OtherSummary};
+use crate::data::{Channel, Events, OtherSummary};
 use crate::numerics::robust;
 
 /// What the channel reads over the whole recording; at rest before the release where the record shows it,
@@ -9,20 +9,15 @@ use crate::numerics::robust;
 #[must_use]
 pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
     let mut values = channel.force_m_s2(0, channel.samples.len());
-    let extreme = |is_beyond: fn(&f64, &f64) -> bool| {
-        let numbers = values.iter().copied().enumerate().filter(|(_, value)| value.is_finite());
-        let farther =
-            |best: (usize, f64), next: (usize, f64)| if is_beyond(&next.1, &best.1) { next } else { best };
-        numbers.reduce(farther).map(|(index, value)| Extreme { value, time_s: channel.time_s(index) })
-    };
+    let [smallest, largest] = channel.extremes().map_or([None; 2], |both| both.map(Some));
     let mut summary = OtherSummary {
         name: channel.name.clone(),
         unit: channel.unit.clone(),
         source: channel.source.clone(),
         samples: values.len(),
         sample_rate_hz: channel.sample_rate_hz,
-        smallest: extreme(f64::lt),
-        largest: extreme(f64::gt),
+        smallest,
+        largest,
         ..OtherSummary::default()
     };
     let quiet =

@@ -1,6 +1,7 @@
 //! One accelerometer channel on a uniform time base.
 
 use super::cask::{Axis, Coupling, End};
+use serde::Serialize;
 
 /// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number
 /// (9.91E+37) in SCPI 1999.0, 7.2.1.4.
@@ -115,6 +116,15 @@ impl Samples {
     }
 }
 
+/// A value and when it was read.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Extreme {
+    /// In the channel's unit.
+    pub value: f64,
+    /// When, s: beside a motion from the first sample of the accelerometers.
+    pub time_s: f64,
+}
+
 /// A half-open range of sample indices `from..to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
@@ -194,6 +204,20 @@ impl Channel {
             Samples::F32(v) => v[from..to].iter().map(|&x| f64::from(x) * self.scale_m_s2).collect(),
             Samples::F64(v) => v[from..to].iter().map(|&x| x * self.scale_m_s2).collect(),
         }
+    }
+
+    /// The smallest and the largest sample, in `unit`, each the first of its size; `None` where no sample is
+    /// a number.
+    #[must_use]
+    pub fn extremes(&self) -> Option<[Extreme; 2]> {
+        let at = |index| Extreme { value: self.samples.get(index), time_s: self.time_s(index) };
+        let numbers = (0..self.samples.len()).map(at).filter(|sample| is_number(sample.value));
+        numbers.map(|sample| [sample; 2]).reduce(|[smallest, largest], [next, _]| {
+            [
+                if next.value < smallest.value { next } else { smallest },
+                if next.value > largest.value { next } else { largest },
+            ]
+        })
     }
 
     /// Index of the sample nearest to `time_s`, cut to what there is.

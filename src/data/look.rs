@@ -1,6 +1,6 @@
 //! What a channel shows before there is a cask file.
 
-use super::other::Extreme;
+use super::channel::Extreme;
 use std::ops::Range;
 
 /// What a first look at a channel shows, in the recording's unit.

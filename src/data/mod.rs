@@ -45,7 +45,7 @@ pub use cask::{
 };
 pub use cask_file::CaskFile;
 pub(crate) use channel::is_number;
-pub use channel::{Channel, RestReading, Samples, Span};
+pub use channel::{Channel, Extreme, RestReading, Samples, Span};
 pub use check::{AtRest, BlowAnswer, Check, CheckedChannel};
 pub use curves::{ChannelCurve, Curves, LazyCurves, MotionCurve};
 pub use estimate::Estimate;
@@ -64,7 +64,7 @@ pub use listing::{ListedChannel, Listing};
 pub use look::ChannelLook;
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
-pub use other::{Extreme, OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};
+pub use other::{OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{

@@ -1,7 +1,7 @@
 //! A channel that takes no part in the motion, such as strain or temperature: as stated, as read, as told.
 
 use super::cask::ChannelSpec;
-use super::channel::{Channel, Span};
+use super::channel::{Channel, Extreme, Span};
 use super::finding::{Finding, IssueCode};
 use super::test_record::SensorRecord;
 use serde::Serialize;
@@ -22,15 +22,6 @@ pub struct OtherChannels {
     pub channels: Vec<Channel>,
     /// What reading them found wrong.
     pub issues: Vec<Finding>,
-}
-
-/// A value and when it was read.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Extreme {
-    /// In the channel's unit.
-    pub value: f64,
-    /// When, s: beside a motion from the first sample of the accelerometers.
-    pub time_s: f64,
 }
 
 /// A maximum of an amplitude spectrum.
