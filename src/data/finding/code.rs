@@ -68,7 +68,8 @@ issue_codes! {
     NoImpact, "Drop": "the first end's velocity does not change as in an impact";
     SeveralDrops, "Drop": "the recording has another drop, which was not analysed";
     NoSlapDown, "Drop": "the second end shows no slap-down";
-    SecondContact, "Drop": "the first end touches again or still, or something strikes the cask in the flight";
+    SecondContact, "Drop": "the first end touches again or still, or something strikes the cask in the \
+                            flight";
     Swings, "Drop": "the cask swings as a whole, on its contents or mounts";
     SecondImpact, "Drop": "the recording after the slap-down does not determine the second end's impact";
     Geometry, "Drop": "angle, height or the recorded fall contradict the motion";

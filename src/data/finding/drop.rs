@@ -103,8 +103,8 @@ pub enum DropFinding {
     /// L is still pressed as R strikes.
     #[error(
         "between first contact and the strike of the second end the velocities bend as in no free flight \
-             ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
-             on the target as the second end strikes; contacts that overlap are not followed"
+         ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
+         on the target as the second end strikes; contacts that overlap are not followed"
     )]
     Pressed { frequency_hz: f64, periods: f64 },
     /// The target pushes L through the flight.
