@@ -28,7 +28,7 @@ fn items(samples: usize) -> ItemsCount {
 }
 
 fn read(folder: &Folder) -> Recording {
-    ingest::read(&folder.recording, &folder.cask_file, &|_| ()).expect("the bench's own file")
+    dropcheck::read(&folder.recording, &folder.cask_file, &|_| ()).expect("the bench's own file")
 }
 
 /// What the stages hand on, for those that start in the middle.

@@ -23,7 +23,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// As [`read`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`read`]; [`IngestError::TooLarge`] where a file would pass a limit.
+/// As [`read`]; also where a file would pass a limit.
 pub fn read_within(
     path: &Path,
     cask_file: &CaskFile,

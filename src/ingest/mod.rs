@@ -91,18 +91,11 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::with_photos(cask_file::parse(path)?)?)
 }
 
-/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
+/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content;
+/// the rest before the drop in a file of its own is not read.
 ///
 /// # Errors
-/// [`IngestError`] where a file, a source or its content is at fault.
-pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
-    read_within(path, cask_file, Limits::default(), progress)
-}
-
-/// As [`read`], within other limits than the usual ones.
-///
-/// # Errors
-/// As [`read`]; also where the file would pass a limit.
+/// [`IngestError`] where a file, a source or its content is at fault, or the file would pass a limit.
 pub fn read_within(
     path: &Path,
     cask_file: &CaskFile,

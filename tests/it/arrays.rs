@@ -7,7 +7,7 @@ use dropcheck::ingest::{self, read_arrays};
 /// A fixture's samples as a program would hold them, named by their source, with its cask file.
 fn held() -> (Vec<HeldSamples>, CaskFile) {
     let mut cask_file = ingest::cask_file(&fixture("anf10-plain.toml")).unwrap();
-    let recording = ingest::read(&fixture("anf10-plain.csv"), &cask_file, &|_| ()).unwrap();
+    let recording = dropcheck::read(&fixture("anf10-plain.csv"), &cask_file, &|_| ()).unwrap();
     let as_held = |channel: &dropcheck::data::Channel| {
         let Samples::F64(values) = channel.samples.clone() else { panic!("a table holds f64") };
         HeldSamples {
@@ -39,7 +39,7 @@ fn samples_in_memory_give_what_their_file_gives() {
     let (held, cask_file) = held();
     let analysed = |recording| told(dropcheck::analyze(&recording, &cask_file).result);
     let of_file = analysed(
-        ingest::read(
+        dropcheck::read(
             &fixture("anf10-plain.csv"),
             &ingest::cask_file(&fixture("anf10-plain.toml")).unwrap(),
             &|_| (),

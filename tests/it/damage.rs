@@ -105,7 +105,7 @@ fn in_process(path: &Path, stem: &str) -> Result<Value, String> {
     let answer = THREADS.install(|| {
         catch_unwind(AssertUnwindSafe(|| {
             let file = ingest::cask_file(&fixture(&format!("{stem}.toml"))).expect("a cask file");
-            let recording = ingest::read(path, &file, &|_| ()).map_err(|error| error.to_string())?;
+            let recording = dropcheck::read(path, &file, &|_| ()).map_err(|error| error.to_string())?;
             let bytes = report::pretty_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
             Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
         }))
@@ -282,7 +282,7 @@ fn in_iso_mme(path: &Path, _: &str) -> Result<Value, String> {
     let cask = iso_mme::written(&iso_mme::drop_files(), &folder);
     std::fs::copy(path, folder.join("Channel/T1.001")).expect("a temporary file");
     let file = ingest::cask_file(&cask).expect("a cask file");
-    let recording = ingest::read(&folder, &file, &|_| ()).map_err(|error| error.to_string())?;
+    let recording = dropcheck::read(&folder, &file, &|_| ()).map_err(|error| error.to_string())?;
     let bytes = report::pretty_json(&dropcheck::analyze(&recording, &file).result).expect("JSON");
     Ok(without_input(serde_json::from_slice(&bytes).expect("JSON")))
 }

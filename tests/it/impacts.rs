@@ -270,7 +270,7 @@ fn a_second_simulation_says_the_same_of_both_impacts() {
         [0.004_147, 26.5644, 0.299_40, -17_024.3, 34_048.5, 313_596.3, 28_670.6, 285_514.7, 0.041_460],
     ];
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
-    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     for (table, truths) in result.impacts.iter().zip(truths) {
         let stated = stated(table);

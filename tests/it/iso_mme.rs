@@ -116,7 +116,7 @@ fn what_pyisomme_writes_is_read_to_the_last_digit() {
     let sources = [CODES[0], "T0CASK00R100ACZA.002", "T0CASK00R100ACZA.003"];
     fs::write(&path, cask(&sources.map(|source| format!("source = \"{source}\"\n")))).expect("a cask file");
     let file = ingest::cask_file(&path).expect("a cask file");
-    let read = ingest::read(&zip, &file, &|_| ()).expect("a recording");
+    let read = dropcheck::read(&zip, &file, &|_| ()).expect("a recording");
     for (number, channel) in (0_u8..).zip(&read.channels) {
         // Those of `fixtures/reference/iso_mme.py`.
         let written = (0..48).map(|i| (f64::from(i * i32::from(37 + number) % 101) - 50.0) / 8.0);

@@ -63,7 +63,7 @@ fn of_issue(issue: &Finding) -> String {
 
 /// What reading the recording by the cask file says, a line each.
 fn reading(recording: &Path, cask: &Path) -> Vec<String> {
-    match ingest::cask_file(cask).and_then(|file| ingest::read(recording, &file, &|_| ())) {
+    match ingest::cask_file(cask).and_then(|file| dropcheck::read(recording, &file, &|_| ())) {
         Ok(read) => {
             let since = read.start_unix_ns.map(|ns| format!("zero is {ns} ns since 1970"));
             let channels = read.channels.iter().map(of_channel);

@@ -24,7 +24,7 @@ fn read(recording: &str, cask: &str) -> (Recording, CaskFile) {
 fn read_files(recording: &Path, cask: &Path) -> (Recording, CaskFile) {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let file = ingest::cask_file(cask).expect("a cask file");
-    (ingest::read(recording, &file, &|_| ()).expect("a recording"), file)
+    (dropcheck::read(recording, &file, &|_| ()).expect("a recording"), file)
 }
 
 /// The same channels, in the recording and in the cask file, in another order.

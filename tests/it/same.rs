@@ -45,7 +45,7 @@ pub struct Said {
 pub fn said(name: String, recording: &Path, cask: &Path) -> Said {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let result = ingest::cask_file(cask).and_then(|file| {
-        let read = ingest::read(recording, &file, &|_| ())?;
+        let read = dropcheck::read(recording, &file, &|_| ())?;
         Ok(report::pretty_json(&dropcheck::stages::measure(&read, &file).result).expect("JSON"))
     });
     let listing =

@@ -19,7 +19,7 @@ fn read() -> (Recording, CaskFile) {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let [recording, cask] = ["anf18-german.csv", "anf18-german.toml"].map(fixture);
     let file = ingest::cask_file(&cask).expect("a cask file");
-    let mut recording = ingest::read(&recording, &file, &|_| ()).expect("a recording");
+    let mut recording = dropcheck::read(&recording, &file, &|_| ()).expect("a recording");
     recording.channels.iter_mut().for_each(|c| c.is_unit_recorded = false);
     (recording, file)
 }
@@ -164,7 +164,7 @@ fn the_axes_of_an_end_are_told_apart() {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let [recording, cask] = ["vhlw-rest.h5", "vhlw-rest.toml"].map(fixture);
     let file = ingest::cask_file(&cask).expect("a cask file");
-    let mut recording = ingest::read(&recording, &file, &|_| ()).expect("a recording");
+    let mut recording = dropcheck::read(&recording, &file, &|_| ()).expect("a recording");
     let axial = recording.channels.iter().position(|c| c.axis == Axis::Axial).expect("an axial channel");
     let end = recording.channels[axial].end;
     let is_beside = |c: &Channel| c.axis == Axis::Transverse && c.end == end;

@@ -32,7 +32,7 @@ struct Simulated {
 /// pulse of 4 ms at its second end. The recording is the fixture's with these samples.
 fn simulated(humps: Humps, rings: f64) -> (Recording, CaskFile, Simulated) {
     let mut file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
-    let mut recording = ingest::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
+    let mut recording = dropcheck::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
     file.contact = Contact::Smooth;
     let (cask, drop) = (&file.cask, &file.drop);
     let (g, inertia_m2) = (drop.gravity_m_s2, (cask.length_m.powi(2) + cask.height_m.powi(2)) / 12.0);

@@ -14,7 +14,7 @@ const DRAWS: u32 = 4000;
 #[test]
 fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
-    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     let event = stages::Changes::of(&recording.channels)
         .locate(file.drop.transverse_velocity_m_s())
@@ -73,7 +73,7 @@ fn by_a_slow_clock(recording: &Recording, share: f64) -> Recording {
 fn the_clock_contributes_what_another_rate_changes() {
     let mut file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
     file.contact = Contact::Rough;
-    let recording = ingest::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
     let stated = |recording: &Recording| {
         let result = dropcheck::analyze(recording, &file).result;
         let speed = result.slap_down.speed.expect("a slap-down");
@@ -102,7 +102,7 @@ fn the_clock_contributes_what_another_rate_changes() {
 #[test]
 fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval() {
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
-    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let truth = truth("anf18-json");
     // Off by a share, with a stated tolerance in percent: whether the intervals of k and speed hold the
     // truth.
@@ -125,7 +125,7 @@ fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval
 fn a_clock_that_the_free_fall_contradicts_is_named() {
     ingest::read_hdf5_with(std::path::Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let file = ingest::cask_file(&fixture("vhlw-rest.toml")).expect("a cask file");
-    let recording = ingest::read(&fixture("vhlw-rest.h5"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("vhlw-rest.h5"), &file, &|_| ()).expect("a recording");
     for (share, words) in [(0.02, "clock is 2.0 % slow"), (-0.02, "clock is 2.0 % fast")] {
         let result = dropcheck::analyze(&by_a_slow_clock(&recording, share), &file).result;
         assert_eq!(result.verdict, Verdict::Review);
@@ -140,7 +140,7 @@ fn a_clock_that_the_free_fall_contradicts_is_named() {
 #[test]
 fn every_rung_speaks_and_the_budget_adds_up() {
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
-    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     let choice = result.reconstruction.expect("a reconstruction");
     let rungs: Vec<ReconstructionRung> = choice.candidates.iter().map(|c| c.rung).collect();
@@ -155,7 +155,7 @@ fn every_rung_speaks_and_the_budget_adds_up() {
 fn one_end_alone_gives_its_time_with_an_interval_and_says_what_is_missing() {
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     file.channels.truncate(1);
-    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     let time = result.first_impact.time.expect("a first contact");
     // The fixture strikes at 0.1 s.
@@ -169,7 +169,7 @@ fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     // With a friction off by a fifth, or an inertia by a tenth, the turning says too little of a lost step.
     (file.contact, file.tolerances.friction, file.tolerances.inertia) = (Contact::Rough, 0.02, 0.02);
-    let mut recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let mut recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let whole = dropcheck::analyze(&recording, &file).result;
     let first = recording.channels.iter_mut().find(|c| c.end == End::First).expect("a first end");
     let Samples::F64(samples) = &mut first.samples else { panic!("JSON holds doubles") };

@@ -2,7 +2,7 @@
 
 use crate::data::{CaskFile, Recording, Unit};
 use crate::ingest::mcap::written::cask_file;
-use crate::ingest::{Limits, list, read, read_within, sha256};
+use crate::ingest::{Limits, list, read_within, sha256};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -29,7 +29,7 @@ fn test_of(index: &str, first: impl AsRef<[u8]>) -> TempDir {
 }
 
 fn read_of(folder: &Path, sources: &[&str]) -> Result<Recording, String> {
-    read(folder, &cask_file(sources), &|_| ()).map_err(|error| error.to_string())
+    read_within(folder, &cask_file(sources), Limits::default(), &|_| ()).map_err(|error| error.to_string())
 }
 
 fn samples(recording: &Recording) -> Vec<f64> {
@@ -175,7 +175,9 @@ fn the_cask_file_gives_what_the_files_lack_and_asks_for_no_more_than_there_is() 
     let mut cask = cask_file(&["T0CASK01L1LEACX0.001"]);
     cask.channels[0].sample_rate_hz = Some(500.0);
     cask.channels[0].unit = Some(Unit::G);
-    let read = |cask: &CaskFile| read(folder.path(), cask, &|_| ()).map_err(|error| error.to_string());
+    let read = |cask: &CaskFile| {
+        read_within(folder.path(), cask, Limits::default(), &|_| ()).map_err(|error| error.to_string())
+    };
     let channel = &read(&cask.clone()).unwrap().channels[0];
     assert_eq!((channel.sample_rate_hz, channel.start_s), (500.0, 0.0));
     let mut both = cask.clone();
@@ -190,10 +192,10 @@ fn a_code_that_says_another_quantity_than_the_unit_is_refused() {
     let index = INDEX.replace("L1LEACX0 / left", "L1LEFOX0 / left");
     let folder = test_of(&index, HEADER.replace("ACX0", "FOX0") + "1\n2\n3\n4\n");
     let mut cask = cask_file(&["T0CASK01L1LEFOX0"]);
-    let refused = read(folder.path(), &cask, &|_| ()).unwrap_err().to_string();
+    let refused = read_within(folder.path(), &cask, Limits::default(), &|_| ()).unwrap_err().to_string();
     assert!(refused.contains("its unit is one of acceleration, and its code says force"), "{refused}");
     cask.channels[0].unit = Some(Unit::MetrePerSecondSquared);
-    assert!(read(folder.path(), &cask, &|_| ()).is_ok());
+    assert!(read_within(folder.path(), &cask, Limits::default(), &|_| ()).is_ok());
 }
 
 #[test]

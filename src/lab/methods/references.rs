@@ -1,6 +1,6 @@
 //! Recordings with expected values, the program's own and a site's, to what it makes of each.
 
-use crate::analysis::analyze;
+use crate::analysis::{self, analyze};
 use crate::data::{DropResult, Estimate};
 use crate::ingest;
 use crate::ingest::cask_file::section::Kind;
@@ -107,7 +107,7 @@ impl References {
         let file =
             ingest::cask_file(&self.folder.join(cask_of(name, expected))).map_err(|error| error.to_string());
         let analyzed = file.and_then(|file| {
-            let recording = ingest::read(&self.folder.join(name), &file, &|_| ());
+            let recording = analysis::read(&self.folder.join(name), &file, &|_| ());
             Ok(analyze(&recording.map_err(|error| error.to_string())?, &file).result)
         });
         let mut limits = vec![words(name, expected, analyzed.as_ref())];

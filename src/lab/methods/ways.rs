@@ -16,7 +16,7 @@ use crate::motion::{self, Integrated};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::quadrature::running_integral;
-use crate::{events, fit, ingest};
+use crate::{analysis, events, fit, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -182,7 +182,7 @@ pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
 
 fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
     let file = ingest::cask_file(&drop.cask).ok()?;
-    Some((ingest::read(&drop.recording, &file, &|_| ()).ok()?, file))
+    Some((analysis::read(&drop.recording, &file, &|_| ()).ok()?, file))
 }
 
 /// The drops of a class as files in a folder; those in which R does not strike are left out.
