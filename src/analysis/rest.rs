@@ -5,7 +5,7 @@ use crate::data::shown;
 use crate::data::{CaskFile, Channel, Coupling, Drop, Recording, RestFile, RestLevel, RestReading, Signal};
 use crate::events;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::{self, IngestError, Limits, Progress, error};
+use crate::ingest::{self, IngestError, Limits, Progress, RecordingFile, error};
 use std::path::Path;
 
 /// Rates that recordings of one recorder tell of themselves differ by less than this share.
@@ -24,13 +24,13 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 ///
 /// # Errors
 /// As [`read`]; also where a file would pass a limit.
-pub fn read_within(
-    path: &Path,
+pub fn read_within<'a>(
+    recording: impl Into<RecordingFile<'a>>,
     cask_file: &CaskFile,
     limits: Limits,
     progress: Progress,
 ) -> Result<Recording, IngestError> {
-    let mut recording = ingest::read_within(path, cask_file, limits, progress)?;
+    let mut recording = ingest::read_within(recording, cask_file, limits, progress)?;
     take_rest(&mut recording, cask_file, limits)?;
     Ok(recording)
 }

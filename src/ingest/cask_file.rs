@@ -12,7 +12,7 @@ mod texts;
 pub(super) mod tolerance;
 mod wording;
 
-use super::opened::bytes_of;
+use super::recording_file::bytes_of;
 use super::refusal::Refusal;
 use super::shown::bare;
 use crate::data::keys::TABLES;

@@ -36,8 +36,8 @@ use wanted::Wanted;
 /// # Errors
 /// A column that is not there or holds words, rows that are no table, times that are none.
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
-    let ReadRequest { path, limits, .. } = request;
-    let text = Text::open(path, limits)?;
+    let ReadRequest { file, limits, .. } = request;
+    let (path, text) = (file.path, Text::open(file, limits)?);
     let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path, &text))?;
     let plan = |spec: &ChannelSpec| {
         let plan = ColumnPlan::of(path, spec, cask_file.time_of(spec), &layout);

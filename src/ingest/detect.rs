@@ -2,10 +2,10 @@
 
 use super::error::{self, IngestError};
 use super::mme::MmeFiles;
+use super::recording_file::{Opened, RecordingFile};
 use super::refusal::Refusal;
-use super::{lines, number, opened, strangers};
+use super::{lines, number, strangers};
 use crate::data::RecordingFormat;
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -15,16 +15,18 @@ const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 const HEAD_BYTES: u64 = 1 << 16;
 const FORMATS: &str = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME";
 
-/// The format of the file at `path`.
+/// The format of a recording.
 ///
 /// # Errors
 /// A directory, an unreadable, empty or unknown file, each by its own message.
-pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    let metadata = std::fs::metadata(path).map_err(|source| error::io(path, &source))?;
-    if metadata.is_dir() {
-        return mme(path)?.ok_or_else(|| error::directory(path));
+pub fn format<'a>(recording: impl Into<RecordingFile<'a>>) -> Result<RecordingFormat, IngestError> {
+    let recording = recording.into();
+    let path = recording.path;
+    if recording.is_folder() {
+        return mme(recording)?.ok_or_else(|| error::directory(path));
     }
-    let mut file = opened(path).map_err(|source| error::io(path, &source))?;
+    let mut file = recording.opened().map_err(|source| error::io(path, &source))?;
+    let length = recording.length().map_err(|source| error::io(path, &source))?;
     let mut head = Vec::new();
     (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, &source))?;
     if head.is_empty() {
@@ -33,11 +35,11 @@ pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     if head.starts_with(MCAP_MAGIC) {
         return Ok(RecordingFormat::Mcap);
     }
-    if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, &source))? {
+    if has_hdf5_signature(&mut file, length).map_err(|source| error::io(path, &source))? {
         return Ok(RecordingFormat::Hdf5);
     }
     if head.starts_with(b"PK\x03\x04")
-        && let Some(format) = mme(path)?
+        && let Some(format) = mme(recording)?
     {
         return Ok(format);
     }
@@ -51,14 +53,14 @@ pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     Err(stranger(path, &head))
 }
 
-/// ISO-MME, where the folder or zip at `path` holds a test in it.
-fn mme(path: &Path) -> Result<Option<RecordingFormat>, IngestError> {
-    Ok(MmeFiles::of(path)?.map(|_| RecordingFormat::Mme))
+/// ISO-MME, where the folder or zip holds a test in it.
+fn mme(recording: RecordingFile) -> Result<Option<RecordingFormat>, IngestError> {
+    Ok(MmeFiles::of(recording)?.map(|_| RecordingFormat::Mme))
 }
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format
 /// specification, II.A).
-fn has_hdf5_signature(file: &mut File, length: u64) -> std::io::Result<bool> {
+fn has_hdf5_signature(file: &mut Opened, length: u64) -> std::io::Result<bool> {
     let mut at = 0;
     while at + 8 <= length {
         let mut signature = [0; 8];

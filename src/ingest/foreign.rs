@@ -3,7 +3,7 @@
 
 use super::error::{self, IngestError};
 use super::refusal::Refusal;
-use super::{detect, strangers};
+use super::{RecordingFile, detect, strangers};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tempfile::TempDir;
@@ -41,12 +41,13 @@ pub(super) struct Converted {
     pub(super) reader: String,
 }
 
-/// What stands for the file at `path`, where it is of a format that the reader takes.
+/// What stands for a file on disk, where it is of a format that the reader takes.
 ///
 /// # Errors
 /// What the reader says.
-pub(super) fn converted(path: &Path) -> Result<Option<Converted>, IngestError> {
-    let Some(read) = READER.get() else { return Ok(None) };
+pub(super) fn converted(recording: RecordingFile) -> Result<Option<Converted>, IngestError> {
+    let path = recording.path;
+    let Some(read) = READER.get().filter(|_| recording.in_memory.is_none()) else { return Ok(None) };
     let Some(format) = foreign_format(path) else { return Ok(None) };
     let folder = tempfile::Builder::new().prefix("dropcheck-").tempdir();
     let folder = folder.map_err(|refusal| error::io(&std::env::temp_dir(), &refusal))?;

@@ -101,7 +101,7 @@ fn begin_without_variables(program: &Path) {
 /// # Errors
 /// A damaged file, a source that is not there or holds no numbers, times that are none.
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
-    let file = File::open(request.path, request.limits)?;
+    let file = File::open(request.file.path, request.limits)?;
     let clocks = Clocks::default();
     let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);
@@ -114,7 +114,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         channels.push(RawChannel { spec: index, ..channel });
         starts.push((spec.source.to_string(), start));
         let is_common = starts::require_common(&starts);
-        is_common.map_err(|fault| error::of_channel(request.path, &spec.name, fault))?;
+        is_common.map_err(|fault| error::of_channel(request.file.path, &spec.name, fault))?;
         (request.progress)(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })

@@ -1,11 +1,10 @@
 //! The bytes of a text file to lines in an encoding whose digits and delimiters are ASCII, each ended by \n
 //! alone.
 
-use super::Limits;
 use super::error::{self, IngestError};
+use super::{Limits, RecordingFile};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -27,12 +26,10 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// The text at `path`.
-    pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
-        let io = |source| error::io(path, &source);
-        let file = File::open(path).map_err(io)?;
-        let bytes = file.metadata().map_err(io)?.len();
-        Self::read(path, Box::new(file), bytes, limits)
+    /// The text of a file.
+    pub(super) fn open(file: RecordingFile, limits: Limits) -> Result<Self, IngestError> {
+        let io = |source| error::io(file.path, &source);
+        Self::read(file.path, Box::new(file.opened().map_err(io)?), file.length().map_err(io)?, limits)
     }
 
     /// The text of so many bytes that `file` gives, which messages call `path`.

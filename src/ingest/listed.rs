@@ -1,30 +1,30 @@
 //! The sources of a listing to their samples, as many at a time as the memory allows.
 
-use super::{IngestError, Limits, Progress, ReadRequest, assemble, detect, foreign, read_raw};
+use super::{IngestError, Limits, Progress, ReadRequest, RecordingFile, assemble, detect, foreign, read_raw};
 use crate::data::{
     Cask, CaskFile, Channel, ChannelSpec, Contact, Drop, End, ListedChannel, Unit, acceleration_unit_m_s2,
 };
 use crate::numerics::as_f64;
-use std::path::Path;
 
 /// A sample takes so much while it is read: twice its value, and its time.
 const SAMPLE_BYTES: u64 = 24;
 
-/// Hands over these sources of the recording at `path` one after the other, by their places among them; or
+/// Hands over these sources of a recording one after the other, by their places among them; or
 /// why one cannot be read.
 ///
 /// For want of a statement each is a transverse channel of the first end, in the recording's own unit, empty
 /// where it states none; the scale is no number where that is none of acceleration.
-pub fn read_listed(
-    path: &Path,
+pub fn read_listed<'a>(
+    recording: impl Into<RecordingFile<'a>>,
     listed: &[&ListedChannel],
     limits: Limits,
     progress: Progress,
     mut take: impl FnMut(usize, Result<Channel, IngestError>),
 ) {
     // What cannot be converted is refused as what it is.
-    let converted = foreign::converted(path).ok().flatten();
-    let path = converted.as_ref().map_or(path, |converted| &converted.file);
+    let recording = recording.into();
+    let converted = foreign::converted(recording).ok().flatten();
+    let recording = converted.as_ref().map_or(recording, |converted| (&converted.file).into());
     let all = limits.samples_bytes() / SAMPLE_BYTES;
     let mut from = 0;
     while from < listed.len() {
@@ -37,10 +37,10 @@ pub fn read_listed(
         // What does not fit alone is refused by its reader.
         let count = listed[from..].iter().take_while(fits).count().max(1);
         let group = &listed[from..from + count];
-        match read_together(path, group, limits) {
+        match read_together(recording, group, limits) {
             Ok(read) => (from..).zip(read).for_each(|(place, read)| take(place, Ok(read))),
             Err(_) => (from..).zip(group).for_each(|(place, one)| {
-                let read = read_together(path, &[*one], limits);
+                let read = read_together(recording, &[*one], limits);
                 take(place, read.map(|mut read| read.remove(0)));
             }),
         }
@@ -49,7 +49,11 @@ pub fn read_listed(
     }
 }
 
-fn read_together(path: &Path, group: &[&ListedChannel], limits: Limits) -> Result<Vec<Channel>, IngestError> {
+fn read_together(
+    recording: RecordingFile,
+    group: &[&ListedChannel],
+    limits: Limits,
+) -> Result<Vec<Channel>, IngestError> {
     let m_s2 = |listed: &ListedChannel| listed.unit.as_deref().and_then(acceleration_unit_m_s2);
     let spec = |listed: &&ListedChannel| ChannelSpec {
         source: listed.origin(),
@@ -62,10 +66,10 @@ fn read_together(path: &Path, group: &[&ListedChannel], limits: Limits) -> Resul
     let (cask, drop) = (Cask::block("", 1.0, 1.0, 0.0), Drop::of_height(1.0, 0.0));
     let channels = group.iter().map(spec).collect();
     let file = CaskFile { channels, ..CaskFile::plain(cask, drop, Contact::Unknown) };
-    let format = detect::format(path)?;
-    let raw = read_raw(ReadRequest { path, limits, progress: &|_| () }, format, &file)?;
-    let recording = assemble::recording(path, format, String::new(), raw, &file)?;
-    let read = group.iter().zip(recording.channels).map(|(listed, channel)| Channel {
+    let format = detect::format(recording)?;
+    let raw = read_raw(ReadRequest { file: recording, limits, progress: &|_| () }, format, &file)?;
+    let read = assemble::recording(recording.path, format, String::new(), raw, &file)?;
+    let read = group.iter().zip(read.channels).map(|(listed, channel)| Channel {
         unit: listed.unit.clone().unwrap_or_default(),
         scale_m_s2: m_s2(listed).unwrap_or(f64::NAN),
         start_s: listed.start_s.unwrap_or(channel.start_s),
@@ -79,6 +83,7 @@ mod tests {
     use super::*;
     use crate::data::Listing;
     use crate::ingest::list;
+    use std::path::Path;
 
     fn read(path: &Path, listing: &Listing) -> Vec<Result<Channel, String>> {
         let listed: Vec<&ListedChannel> = listing.channels.iter().collect();

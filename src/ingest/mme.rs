@@ -11,7 +11,7 @@ pub(super) use files::MmeFiles;
 
 use super::error::{self, IngestError};
 use super::refusal::Refusal;
-use super::{RawChannel, RawRecording, ReadRequest};
+use super::{RawChannel, RawRecording, ReadRequest, RecordingFile};
 use crate::data::{
     CaskFile, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2,
     is_number,
@@ -20,15 +20,14 @@ use crate::numerics::as_f64;
 use channel::ChannelFile;
 use index::IndexedChannel;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// The channels of `cask_file` from a folder or zip; no other channel is opened.
 ///
 /// # Errors
 /// A file is not there or damaged, or contradicts itself, its index or its code.
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
-    let ReadRequest { path, limits, .. } = request;
-    let files = files(path)?;
+    let ReadRequest { file, limits, .. } = request;
+    let (path, files) = (file.path, files(file)?);
     files.bytes(limits)?;
     let listed = index::channels(&files, limits)?;
     let (mut channels, mut starts, mut held_bytes) = (Vec::new(), Vec::new(), 0);
@@ -66,9 +65,9 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
-/// The files of the test at `path`.
-fn files(path: &Path) -> Result<MmeFiles, IngestError> {
-    MmeFiles::of(path)?.ok_or_else(|| error::directory(path))
+/// The files of a test.
+fn files(file: RecordingFile) -> Result<MmeFiles, IngestError> {
+    MmeFiles::of(file)?.ok_or_else(|| error::directory(file.path))
 }
 
 /// Lists the channels of a folder or zip.
@@ -76,8 +75,8 @@ fn files(path: &Path) -> Result<MmeFiles, IngestError> {
 /// # Errors
 /// There is no index, or it cannot be read.
 pub(super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
-    let ReadRequest { path, limits, .. } = request;
-    let files = files(path)?;
+    let ReadRequest { file, limits, .. } = request;
+    let (path, files) = (file.path, files(file)?);
     let (bytes, listed) = (files.bytes(limits)?, index::channels(&files, limits)?);
     let (mut channels, mut issues) = (Vec::new(), Vec::new());
     for channel in &listed {

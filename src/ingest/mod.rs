@@ -18,7 +18,7 @@ mod listed;
 mod mcap;
 mod mme;
 mod number;
-mod opened;
+mod recording_file;
 pub(crate) mod refusal;
 mod statement;
 mod strangers;
@@ -34,7 +34,7 @@ pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
 pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use listed::read_listed;
-pub use opened::{bytes_of, opened};
+pub use recording_file::{RecordingFile, bytes_of, opened};
 pub use unchanged::hexadecimal;
 
 use crate::data::shown;
@@ -47,7 +47,7 @@ pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 /// A recording that is to be read or listed.
 #[derive(Clone, Copy)]
 pub(crate) struct ReadRequest<'a> {
-    pub(crate) path: &'a Path,
+    pub(crate) file: RecordingFile<'a>,
     pub(crate) limits: Limits,
     pub(crate) progress: Progress<'a>,
 }
@@ -56,7 +56,7 @@ pub(crate) struct ReadRequest<'a> {
 impl<'a> ReadRequest<'a> {
     /// Of which nobody is told how far it is.
     pub(crate) fn silent(path: &'a Path, limits: Limits) -> Self {
-        Self { path, limits, progress: &|_| () }
+        Self { file: path.into(), limits, progress: &|_| () }
     }
 }
 
@@ -91,26 +91,27 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::with_photos(cask_file::parse(path)?)?)
 }
 
-/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content;
-/// the rest before the drop in a file of its own is not read.
+/// Reads the channels that `cask_file` names from a recording, its format told by its content; the rest before the drop in a file of its own is not read.
 ///
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault, or the file would pass a limit.
-pub fn read_within(
-    path: &Path,
+pub fn read_within<'a>(
+    recording: impl Into<RecordingFile<'a>>,
     cask_file: &CaskFile,
     limits: Limits,
     progress: Progress,
 ) -> Result<Recording, IngestError> {
+    let recording = recording.into();
+    let path = recording.path;
     cask_file::require_channels(cask_file, path)?;
     let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
     // The hash takes as long as the reading: it runs beside it.
-    let (((raw, format), reader), sha256) = unchanged::hashed(path, || {
-        let converted = foreign::converted(path)?;
-        let file = converted.as_ref().map_or(path, |converted| &converted.file);
+    let (((raw, format), reader), sha256) = unchanged::hashed(recording, || {
+        let converted = foreign::converted(recording)?;
+        let file = converted.as_ref().map_or(recording, |converted| (&converted.file).into());
         let format = detect::format(file)?;
-        let request = ReadRequest { path: file, limits, progress };
-        let raw = read_raw(request, format, cask_file).map_err(|fault| fault.in_file(file, path))?;
+        let raw = read_raw(ReadRequest { file, limits, progress }, format, cask_file);
+        let raw = raw.map_err(|fault| fault.in_file(file.path, path))?;
         Ok(((raw, format), converted.map(|converted| converted.reader)))
     })?;
     let recording = assemble::recording(path, format, sha256, raw, stated)?;
@@ -136,7 +137,7 @@ fn read_raw(
 /// Whether the folder at `path` is a recording, in ISO-MME, and not one of recordings.
 #[must_use]
 pub fn is_recording_folder(path: &Path) -> bool {
-    path.is_dir() && !matches!(mme::MmeFiles::of(path), Ok(None))
+    path.is_dir() && !matches!(mme::MmeFiles::of(path.into()), Ok(None))
 }
 
 /// The SHA-256 of a recording, as results have it.
@@ -159,17 +160,23 @@ pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
 ///
 /// # Errors
 /// As [`list`]; also where the file would pass a limit.
-pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
-    let converted = foreign::converted(path)?;
-    let file = converted.as_ref().map_or(path, |converted| &converted.file);
-    let request = ReadRequest { path: file, limits, progress };
+pub fn list_within<'a>(
+    recording: impl Into<RecordingFile<'a>>,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Listing, IngestError> {
+    let recording = recording.into();
+    let path = recording.path;
+    let converted = foreign::converted(recording)?;
+    let file = converted.as_ref().map_or(recording, |converted| (&converted.file).into());
+    let request = ReadRequest { file, limits, progress };
     let listing = match detect::format(file)? {
         RecordingFormat::Mcap => mcap::list(request),
         RecordingFormat::Hdf5 => hdf5::list(request),
         RecordingFormat::Mme => mme::list(request),
         RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
     };
-    let mut listing = listing.map_err(|fault| fault.in_file(file, path))?;
+    let mut listing = listing.map_err(|fault| fault.in_file(file.path, path))?;
     if let Some(converted) = converted {
         listing.recording = path.display().to_string();
         listing.bytes = std::fs::metadata(path).map_err(|refusal| error::io(path, &refusal))?.len();

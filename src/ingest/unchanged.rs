@@ -3,8 +3,8 @@
 
 use super::error::{self, IngestError};
 use super::mme::MmeFiles;
-use super::opened;
 use super::refusal::Refusal;
+use super::{RecordingFile, opened};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -21,14 +21,18 @@ const TICKS: Duration = Duration::from_millis(20);
 /// A file whose times are young at each of so many looks, one second long, is being written.
 const MOST_LOOKS: usize = 50;
 
-/// What `read` makes of the recording at `path`, and its SHA-256, which is taken beside it.
+/// What `read` makes of a recording, and its SHA-256, which is taken beside it.
 ///
 /// # Errors
 /// What `read` says, at once; [`IngestError::Refused`] where the file was not the same all the time.
 pub(super) fn hashed<T>(
-    path: &Path,
+    recording: RecordingFile,
     read: impl FnOnce() -> Result<T, IngestError>,
 ) -> Result<(T, String), IngestError> {
+    let path = recording.path;
+    if let Some(bytes) = recording.in_memory {
+        return Ok((read()?, hexadecimal(&Sha256::digest(bytes))));
+    }
     let before = at_rest(path)?;
     let is_needless = AtomicBool::new(false);
     let (read, sha256) = std::thread::scope(|scope| {
@@ -104,7 +108,7 @@ fn look(path: &Path) -> Result<FilesState, IngestError> {
 
 /// The names of the files of a recording that is a folder; `None` where it is a file itself.
 fn names(path: &Path) -> Result<Option<Vec<String>>, IngestError> {
-    let found = if path.is_dir() { MmeFiles::of(path)? } else { None };
+    let found = if path.is_dir() { MmeFiles::of(path.into())? } else { None };
     Ok(found.map(|found| found.names().cloned().collect()))
 }
 
@@ -181,7 +185,8 @@ mod tests {
         // Two hundred gigabytes take several minutes to hash.
         fs::File::create(&path).unwrap().set_len(200 << 30).unwrap();
         let begun = Instant::now();
-        let refused = hashed(&path, || Err::<(), _>(changed(Path::new("refused")))).unwrap_err();
+        let refused =
+            hashed(path.as_path().into(), || Err::<(), _>(changed(Path::new("refused")))).unwrap_err();
         assert!(refused.to_string().starts_with("refused"), "{refused}");
         assert!(begun.elapsed() < Duration::from_mins(1));
     }
@@ -206,7 +211,7 @@ mod tests {
                     std::thread::sleep(Duration::from_millis(round * 3 % 17));
                     fs::read(&path).map_err(|source| error::io(&path, &source))
                 };
-                match hashed(&path, read) {
+                match hashed(path.as_path().into(), read) {
                     Ok((bytes, found)) => assert_eq!(found, hexadecimal(&Sha256::digest(&bytes))),
                     Err(error) => assert!(error.to_string().contains("changed while"), "{error}"),
                 }
@@ -214,11 +219,11 @@ mod tests {
             is_over.store(true, Ordering::Relaxed);
         });
         // As long as before, and within a tick of the clock of the first look.
-        let refused = hashed(&path, || {
+        let refused = hashed(path.as_path().into(), || {
             fs::write(&path, &content[0]).unwrap();
             Ok(())
         });
         assert!(refused.unwrap_err().to_string().contains("changed while"));
-        assert_eq!(hashed(&path, || Ok(())).map(|found| found.1.len()).unwrap(), 64);
+        assert_eq!(hashed(path.as_path().into(), || Ok(())).map(|found| found.1.len()).unwrap(), 64);
     }
 }

@@ -1,11 +1,11 @@
 //! What is wrong with a table's rows, columns or times, in words.
 
-use super::super::ReadRequest;
 use super::super::error::{self, IngestError};
 use super::super::lines::{Line, Text};
 use super::super::number;
 use super::super::refusal::Refusal;
 use super::super::time_base::TimeBaseError;
+use super::super::{ReadRequest, RecordingFile};
 use super::layout::Layout;
 use super::rows::RowError;
 use super::wanted::Wanted;
@@ -45,7 +45,7 @@ pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> In
 
 /// A row that cannot be read.
 pub(super) fn row_error(
-    ReadRequest { path, limits, .. }: ReadRequest,
+    ReadRequest { file: RecordingFile { path, .. }, limits, .. }: ReadRequest,
     (layout, wanted): (&Layout, &Wanted),
     error: RowError,
 ) -> IngestError {

@@ -121,8 +121,8 @@ impl Sink for Survey<'_> {
 /// # Errors
 /// A file that cannot be read or holds no rows of numbers.
 pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
-    let ReadRequest { path, limits, .. } = request;
-    let text = Text::open(path, limits)?;
+    let ReadRequest { file, limits, .. } = request;
+    let (path, text) = (file.path, Text::open(file, limits)?);
     let (bytes, encoding) = (text.bytes, text.encoding);
     let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
     let time_column = layout.times.taken;

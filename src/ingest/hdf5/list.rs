@@ -46,7 +46,7 @@ struct Lister {
 /// # Errors
 /// A file that the library cannot open.
 pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
-    let file = File::open(request.path, request.limits)?;
+    let file = File::open(request.file.path, request.limits)?;
     let listing = list_objects(&file, request.progress);
     file.whole().map(|()| listing)
 }

@@ -17,8 +17,8 @@ use std::collections::{BTreeMap, HashMap};
 /// # Errors
 /// Only where the file cannot be read at all.
 pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
-    let path = request.path;
-    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, &source))?.len();
+    let path = request.file.path;
+    let bytes = request.file.length().map_err(|source| error::io(path, &source))?;
     let walked = walk(request, None)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schemas.len(), walked.topics.by_channel.len());

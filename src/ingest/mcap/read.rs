@@ -21,7 +21,7 @@ pub(in crate::ingest) fn read(
     request: ReadRequest,
     cask_file: &CaskFile,
 ) -> Result<RawRecording, IngestError> {
-    let path = request.path;
+    let path = request.file.path;
     let specs = &cask_file.channels;
     let (scanned, mut topics) = walk(request, Some(cask_file))?.finish();
     let refused = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);

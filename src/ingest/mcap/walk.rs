@@ -13,7 +13,6 @@ use crate::ingest::error::{self, IngestError};
 use crate::ingest::{Limits, Progress, ReadRequest};
 use mcap::records::{Record, op};
 use rayon::prelude::*;
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -58,9 +57,9 @@ impl From<std::io::Error> for Obstacle {
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
 pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Result<Walked<'a>, IngestError> {
-    let ReadRequest { path, limits, progress } = request;
-    let walked = File::open(path).map_err(Obstacle::from).and_then(|mut file| {
-        let length = file.metadata()?.len();
+    let ReadRequest { file: recording, limits, progress } = request;
+    let walked = recording.opened().map_err(Obstacle::from).and_then(|mut file| {
+        let length = recording.length()?;
         let summary = summary::read(&mut file, length, limits.part_bytes())?;
         let topics = Topics::new(asked, limits, length);
         let mut walk = Walk {
@@ -79,8 +78,8 @@ pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Res
         Ok(walk.walked)
     });
     walked.map_err(|obstacle| match obstacle {
-        Obstacle::Io(source) => error::io(path, &source),
-        Obstacle::Limit(what, limit_bytes) => limits.refusal(path, what, limit_bytes),
+        Obstacle::Io(source) => error::io(recording.path, &source),
+        Obstacle::Limit(what, limit_bytes) => limits.refusal(recording.path, what, limit_bytes),
     })
 }
 

@@ -5,11 +5,12 @@ use crate::ingest::error::{self, IngestError};
 use crate::ingest::lines::Text;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::bare;
-use crate::ingest::{Limits, opened};
+use crate::ingest::{Limits, RecordingFile, opened};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The folder of the index and of the channels, in any case.
 const CHANNELS: &str = "channel";
@@ -18,6 +19,7 @@ const CHANNELS: &str = "channel";
 #[derive(Debug)]
 pub(in crate::ingest) struct MmeFiles {
     path: PathBuf,
+    in_memory: Option<Arc<[u8]>>,
     header: String,
     /// The list of the channels.
     pub(super) index: Option<String>,
@@ -27,14 +29,15 @@ pub(in crate::ingest) struct MmeFiles {
 }
 
 impl MmeFiles {
-    /// The files of the test in the folder or zip at `path`; `None` where it holds no header, `*.mme`.
+    /// The files of the test in a folder or zip; `None` where it holds no header, `*.mme`.
     ///
     /// # Errors
     /// It holds several tests, or two channels of one number; the operating system refuses.
-    pub(in crate::ingest) fn of(path: &Path) -> Result<Option<Self>, IngestError> {
+    pub(in crate::ingest) fn of(recording: RecordingFile) -> Result<Option<Self>, IngestError> {
+        let RecordingFile { path, in_memory } = recording;
         let io = |source| error::io(path, &source);
-        let is_folder = path.is_dir();
-        let zipped = if is_folder { Vec::new() } else { zip::entries(path).map_err(io)? };
+        let is_folder = recording.is_folder();
+        let zipped = if is_folder { Vec::new() } else { zip::entries(recording).map_err(io)? };
         let zipped: BTreeMap<String, ZipEntry> = zipped.into_iter().collect();
         let names = if is_folder { in_folder(path).map_err(io)? } else { zipped.keys().cloned().collect() };
         // Those of "._" are a Mac's remarks on files.
@@ -53,8 +56,14 @@ impl MmeFiles {
         };
         let stem = header.rfind('/').map_or(0, |slash| slash + 1);
         let stem = format!("{}{CHANNELS}/{}", &header[..stem], &header[stem..header.len() - "mme".len()]);
-        let mut files =
-            Self { path: path.to_owned(), header, index: None, channels: BTreeMap::new(), zipped };
+        let mut files = Self {
+            path: path.to_owned(),
+            in_memory: in_memory.cloned(),
+            header,
+            index: None,
+            channels: BTreeMap::new(),
+            zipped,
+        };
         for name in names {
             let lower = name.to_ascii_lowercase();
             let Some(ending) = lower.strip_prefix(&stem.to_ascii_lowercase()) else { continue };
@@ -71,6 +80,10 @@ impl MmeFiles {
         Ok(Some(files))
     }
 
+    fn recording(&self) -> RecordingFile<'_> {
+        RecordingFile { path: &self.path, in_memory: self.in_memory.as_ref() }
+    }
+
     /// The names of all: header, index, channels by number.
     pub(in crate::ingest) fn names(&self) -> impl Iterator<Item = &String> {
         [&self.header].into_iter().chain(&self.index).chain(self.channels.values())
@@ -82,7 +95,7 @@ impl MmeFiles {
     /// They unpack to more than such a zip may.
     pub(super) fn bytes(&self, limits: Limits) -> Result<u64, IngestError> {
         let bytes = self.names().map(|name| self.bytes_of(name)).sum();
-        let most_bytes = limits.unpacked_bytes(fs::metadata(&self.path).map_or(0, |zip| zip.len()));
+        let most_bytes = limits.unpacked_bytes(self.recording().length().unwrap_or_default());
         if !self.zipped.is_empty() && bytes > most_bytes {
             return Err(limits.refusal(&self.path, "its channels unpack to", most_bytes));
         }
@@ -109,7 +122,7 @@ impl MmeFiles {
             Some(entry) => {
                 let mend = "copy the zip again, or unpack it and name the folder";
                 let damaged = |source| error::of_file(&self.path, Refusal::new(bare(&source), mend).at(name));
-                Box::new(Cursor::new(entry.unpacked(&self.path).map_err(damaged)?))
+                Box::new(Cursor::new(entry.unpacked(self.recording()).map_err(damaged)?))
             }
         };
         Text::read(&place, source, bytes, limits)

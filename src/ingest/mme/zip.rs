@@ -1,11 +1,9 @@
 //! A zip to the files in it, stored or deflated: what ISO-MME is sent in, and no more of that format
 //! (APPNOTE.TXT of PKWARE, 4.3).
 
-use crate::ingest::opened;
+use crate::ingest::recording_file::{Opened, RecordingFile};
 use libdeflater::Decompressor;
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
 
 /// Lengths of a file's head before its bytes, of its entry in the list of all, and of the end behind that
 /// list: without names and remarks, of which the longest has 64 KiB.
@@ -18,13 +16,12 @@ const LONGEST_REMARK: u64 = 0xFFFF;
 #[derive(Debug, Clone)]
 pub(super) struct ZipEntry([u8; ENTRY_BYTES]);
 
-/// The paths of the files in the zip at `path`, parted by "/", with their entries; none without a list of
+/// The paths of the files in a zip, parted by "/", with their entries; none without a list of
 /// them.
-pub(super) fn entries(path: &Path) -> io::Result<Vec<(String, ZipEntry)>> {
-    let mut file = opened(path)?;
+pub(super) fn entries(zip: RecordingFile) -> io::Result<Vec<(String, ZipEntry)>> {
+    let mut file = zip.opened()?;
     let longest = END_BYTES as u64 + LONGEST_REMARK;
-    let length = file.metadata()?.len();
-    let tail = bytes_at(&mut file, length.saturating_sub(longest), longest)?;
+    let tail = bytes_at(&mut file, zip.length()?.saturating_sub(longest), longest)?;
     let end = tail.windows(END_BYTES).rev().find(|end| end.starts_with(b"PK\x05\x06"));
     let Some(end) = end else { return Ok(Vec::new()) };
     let list = bytes_at(&mut file, number(end, 16, 4), number(end, 12, 4))?;
@@ -44,12 +41,12 @@ impl ZipEntry {
         number(&self.0, 24, 4)
     }
 
-    /// The file's bytes, unpacked and held against their check sum; the zip is at `path`.
+    /// The file's bytes, unpacked and held against their check sum.
     ///
     /// # Errors
     /// It is packed in another way, or damaged.
-    pub(super) fn unpacked(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let (mut file, head_at) = (opened(path)?, number(&self.0, 42, 4));
+    pub(super) fn unpacked(&self, zip: RecordingFile) -> io::Result<Vec<u8>> {
+        let (mut file, head_at) = (zip.opened()?, number(&self.0, 42, 4));
         let head = bytes_at(&mut file, head_at, HEAD_BYTES)?;
         let behind = if head.starts_with(b"PK\x03\x04") { head.get(26..30) } else { None };
         let behind = behind.map_or(0, |lengths| number(lengths, 0, 2) + number(lengths, 2, 2));
@@ -80,7 +77,7 @@ fn number(bytes: &[u8], at: usize, count: usize) -> u64 {
 }
 
 /// So many bytes from there on, or those up to the end.
-fn bytes_at(file: &mut File, at: u64, count: u64) -> io::Result<Vec<u8>> {
+fn bytes_at(file: &mut Opened, at: u64, count: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.seek(SeekFrom::Start(at))?;
     file.take(count).read_to_end(&mut bytes)?;
