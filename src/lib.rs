@@ -22,7 +22,10 @@
 //! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports
 //! only `data` and `numerics`.
 
+#![cfg_attr(not(feature = "native"), allow(dead_code, unused_imports, reason = "a page asks for less"))]
+
 mod analysis;
+#[cfg(feature = "native")]
 mod cli;
 mod compare;
 mod condition;
@@ -38,6 +41,7 @@ mod judge;
 pub mod lab;
 mod motion;
 mod numerics;
+#[cfg(feature = "native")]
 #[doc(hidden)]
 pub mod ordered_parallel;
 #[doc(hidden)]
@@ -47,11 +51,14 @@ pub mod predict;
 pub mod report;
 
 pub use analysis::{analyze, read};
-pub use ingest::{IngestError, cask_file, read_hdf5_with, serve_hdf5};
+pub use ingest::{IngestError, cask_file};
+#[cfg(feature = "native")]
+pub use ingest::{read_hdf5_with, serve_hdf5};
 pub use predict::{predict, study};
 pub use report::{ReportError, files};
 
 /// The command line, for the program and for another that takes its words; it changes without notice.
+#[cfg(feature = "native")]
 #[doc(hidden)]
 pub mod command {
     #[cfg(feature = "lab")]
@@ -62,9 +69,9 @@ pub mod command {
 /// Stages one by one, for benchmarks and tests; they change without notice.
 #[doc(hidden)]
 pub mod stages {
-    pub use crate::analysis::{measure, sticking};
+    pub use crate::analysis::{look_at_each, measure, read_within, sticking};
     pub use crate::condition::{Reach, condition};
-    pub use crate::data::keys::{Allowed, INNER_TABLES, TABLES, Takes};
+    pub use crate::data::keys::{Allowed, INNER_TABLES, Key, KeyTable, TABLES, Takes};
     pub use crate::events::Changes;
     pub use crate::fit::{FitData, ladder};
     pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};

@@ -1,8 +1,9 @@
 //! A channel of which no cask file says anything to its extremes, level and noise, and to what in it looks
 //! like a fall and an impact.
 
-use crate::data::{Channel, ChannelLook, Drop, Extreme, is_number};
+use crate::data::{Channel, ChannelLook, Drop, Extreme, ListedChannel, is_number};
 use crate::events;
+use crate::ingest::{self, Limits, Progress, RecordingFile};
 use crate::numerics::{as_f64, reduce, robust};
 use std::ops::Range;
 
@@ -19,9 +20,26 @@ const FOOT: f64 = 0.1;
 /// A fall is sought that the drop of IAEA regulations makes, m: three times as long, and down to a tenth.
 const USUAL_HEIGHT_M: f64 = 9.0;
 
+/// Hands over these sources of a recording one after the other, by their places among them, each looked at;
+/// or why one cannot be read.
+pub fn look_at_each<'a>(
+    recording: impl Into<RecordingFile<'a>>,
+    listed: &[&ListedChannel],
+    limits: Limits,
+    progress: Progress,
+    mut take: impl FnMut(usize, Result<(Channel, ChannelLook), String>),
+) {
+    ingest::read_listed(recording, listed, limits, progress, |number, read| {
+        let looked = read.map(|mut channel| {
+            let look = first_look(&mut channel);
+            (channel, look)
+        });
+        take(number, looked.map_err(|refused| refused.to_string()));
+    });
+}
+
 /// Looks at every sample; the channel is as before when it returns.
-#[must_use]
-pub fn first_look(channel: &mut Channel) -> ChannelLook {
+fn first_look(channel: &mut Channel) -> ChannelLook {
     let impact_s = impact_s(channel).filter(|_| channel.scale_m_s2.is_finite());
     let fall_s = impact_s.and_then(|impact_s| fall_s(channel, impact_s));
     let (level, noise) = first_level(channel, impact_s);

@@ -18,7 +18,7 @@ mod setup;
 mod slips;
 
 pub use check::check;
-pub use first_look::first_look;
+pub use first_look::look_at_each;
 pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 

@@ -135,7 +135,7 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
 pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
     let input = &analysis.result.input;
     let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
-    let folder = Folder::checked(folder, &report::FILE_NAMES, &inputs)?;
+    let folder = Folder::checked(folder, report::FILE_NAMES, &inputs)?;
     Ok(folder.write(&report::files(analysis)?)?)
 }
 
@@ -146,7 +146,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let Arguments { recording, cask, from, rest, .. } = arguments;
     let inputs = [Some(recording), cask.as_ref(), from.as_ref(), rest.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let names = [&report::FILE_NAMES[..], &[pdf::NAME]].concat();
+    let names = [report::FILE_NAMES, &[pdf::NAME]].concat();
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 

@@ -12,7 +12,6 @@ pub use plan::SHARD_SCHEMA;
 
 use super::Ending;
 use super::analyze::SwitchedOff;
-use super::complaint::sentence;
 use super::limits::Bounds;
 use super::lines::{self, LineOutput, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print};
@@ -22,6 +21,7 @@ use crate::analysis::read_within;
 use crate::data::{Analysis, CaskFile};
 use crate::ingest::bytes_of;
 use crate::report::Batch;
+use crate::report::sentence;
 use crate::{ingest, report};
 use clap::Args;
 use miette::miette;
@@ -230,7 +230,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     let folder = arguments
         .out
         .as_ref()
-        .map(|out| Folder::checked(&out.join(&test.folder), &report::FILE_NAMES, &inputs));
+        .map(|out| Folder::checked(&out.join(&test.folder), report::FILE_NAMES, &inputs));
     let folder = folder.transpose()?;
     let mut cask_file = ingest::cask_file::with_columns(cask, &test.stated)?;
     if folder.is_some() {

@@ -58,13 +58,8 @@ fn look(arguments: &Arguments, listing: &Listing, folder: &Folder) -> miette::Re
     let drawn = report::drawn(listing);
     let mut page = report::FirstLook::of(listing, &drawn);
     with_progress("drawing", |progress| {
-        ingest::read_listed(recording, &drawn, bounds.limits(), progress, |number, read| {
-            let looked = read.map(|mut channel| {
-                let look = analysis::first_look(&mut channel);
-                (channel, look)
-            });
-            page.add(number, looked.map_err(|refused| refused.to_string()));
-        });
+        let add = |number, looked| page.add(number, looked);
+        analysis::look_at_each(recording, &drawn, bounds.limits(), progress, add);
     });
     Ok(folder.write(&page.files(&sha256)?)?)
 }

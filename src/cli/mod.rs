@@ -22,7 +22,7 @@ mod replace;
 mod rerun;
 mod tuning;
 
-pub use complaint::message;
+pub use crate::report::message;
 #[cfg(feature = "lab")]
 pub use embedded::synthetic;
 pub use embedded::{analysis, listing, prediction, write};

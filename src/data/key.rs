@@ -1,6 +1,8 @@
 //! What a row of a file's keys says: what the key takes, its default, and its line in the form that `init`
 //! writes.
 
+use super::shown::short;
+
 /// What stands behind a key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Takes {
@@ -45,6 +47,17 @@ impl Allowed {
             Self::FromZero => number >= 0.0,
             Self::AboveZero => number > 0.0,
             Self::Within(least, most, _) => (least..=most).contains(&number),
+        }
+    }
+
+    /// Those numbers, in words.
+    #[must_use]
+    pub fn words(self) -> String {
+        match self {
+            Self::Any => "a number".into(),
+            Self::FromZero => "0 or more".into(),
+            Self::AboveZero => "a number above 0".into(),
+            Self::Within(least, most, _) => format!("{} to {}", short(least), short(most)),
         }
     }
 }
@@ -110,7 +123,7 @@ impl Key {
     }
 
     /// Whether a value that the file leaves out enters the result all the same.
-    pub fn is_assumed(&self) -> bool {
+    pub(crate) fn is_assumed(&self) -> bool {
         let is_number = matches!(self.takes, Takes::Number(_) | Takes::TextOrNumber);
         is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)
     }

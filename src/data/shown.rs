@@ -36,3 +36,8 @@ pub(crate) fn bare(refusal: &std::io::Error) -> String {
     let text = refusal.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()
 }
+
+/// Free of the last digits of a sum or a conversion, so that 3 · 0.1 is 0.3; a double holds two to four more.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}

@@ -2,7 +2,7 @@
 
 use super::error::{self, IngestError};
 use super::mme::MmeFiles;
-use super::recording_file::{Opened, RecordingFile};
+use super::recording_file::{OpenFile, RecordingFile};
 use super::refusal::Refusal;
 use super::{lines, number, strangers};
 use crate::data::RecordingFormat;
@@ -60,7 +60,7 @@ fn mme(recording: RecordingFile) -> Result<Option<RecordingFormat>, IngestError>
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format
 /// specification, II.A).
-fn has_hdf5_signature(file: &mut Opened, length: u64) -> std::io::Result<bool> {
+fn has_hdf5_signature(file: &mut OpenFile, length: u64) -> std::io::Result<bool> {
     let mut at = 0;
     while at + 8 <= length {
         let mut signature = [0; 8];

@@ -6,6 +6,7 @@ use super::refusal::Refusal;
 use super::{RecordingFile, detect, strangers};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+#[cfg(feature = "native")]
 use tempfile::TempDir;
 
 /// Writes what the first file holds, of the format that the word names, to the second as HDF5. Its answer is
@@ -34,6 +35,7 @@ pub fn foreign_format(path: &Path) -> Option<&'static str> {
 
 /// The HDF5 file that stands for a recording as long as this value.
 pub(super) struct Converted {
+    #[cfg(feature = "native")]
     _folder: TempDir,
     /// The file.
     pub(super) file: PathBuf,
@@ -45,6 +47,7 @@ pub(super) struct Converted {
 ///
 /// # Errors
 /// What the reader says.
+#[cfg(feature = "native")]
 pub(super) fn converted(recording: RecordingFile) -> Result<Option<Converted>, IngestError> {
     let path = recording.path;
     let Some(read) = READER.get().filter(|_| recording.in_memory.is_none()) else { return Ok(None) };
@@ -57,4 +60,11 @@ pub(super) fn converted(recording: RecordingFile) -> Result<Option<Converted>, I
         Ok(reader) => Ok(Some(Converted { _folder: folder, file, reader })),
         Err([place, problem, mend]) => Err(error::of_file(path, Refusal::new(problem, mend).at(&place))),
     }
+}
+
+/// A page reads by nothing but what is in it.
+#[cfg(not(feature = "native"))]
+#[allow(clippy::unnecessary_wraps, reason = "as where there is a reader")]
+pub(super) fn converted(_: RecordingFile) -> Result<Option<Converted>, IngestError> {
+    Ok(None)
 }

@@ -11,7 +11,30 @@ pub(crate) mod error;
 pub(crate) mod foreign;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
+#[cfg(feature = "native")]
 mod hdf5;
+#[cfg(not(feature = "native"))]
+mod hdf5 {
+    pub(super) mod names;
+
+    use super::{IngestError, ReadRequest, error, refusal::Refusal};
+
+    fn refused(request: ReadRequest) -> IngestError {
+        let mend = "analyse it by the dropcheck command, or export it as MCAP or CSV";
+        error::of_file(request.file.path, Refusal::new("it is HDF5, which this page does not read", mend))
+    }
+
+    pub(super) fn read(
+        request: ReadRequest,
+        _: &super::CaskFile,
+    ) -> Result<super::RawRecording, IngestError> {
+        Err(refused(request))
+    }
+
+    pub(super) fn list(request: ReadRequest) -> Result<super::Listing, IngestError> {
+        Err(refused(request))
+    }
+}
 mod limits;
 mod lines;
 mod listed;
@@ -25,12 +48,14 @@ mod strangers;
 pub mod time_base;
 mod times;
 mod unchanged;
+mod unpack;
 mod vocabulary;
 
 pub use arrays::read_arrays;
 pub use detect::format;
 pub use error::IngestError;
 pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
+#[cfg(feature = "native")]
 pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 pub use listed::read_listed;
@@ -91,7 +116,8 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::with_photos(cask_file::parse(path)?)?)
 }
 
-/// Reads the channels that `cask_file` names from a recording, its format told by its content; the rest before the drop in a file of its own is not read.
+/// Reads the channels that `cask_file` names from a recording, its format told by its content; the rest
+/// before the drop in a file of its own is not read.
 ///
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault, or the file would pass a limit.
@@ -144,8 +170,8 @@ pub fn is_recording_folder(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`IngestError`] where it cannot be read.
-pub fn sha256(path: &Path) -> Result<String, IngestError> {
-    unchanged::sha256(path, &std::sync::atomic::AtomicBool::new(false))
+pub fn sha256<'a>(recording: impl Into<RecordingFile<'a>>) -> Result<String, IngestError> {
+    unchanged::sha256(recording.into(), &std::sync::atomic::AtomicBool::new(false))
 }
 
 /// Lists what the recording at `path` holds.
@@ -193,6 +219,7 @@ pub fn list_within<'a>(
 /// works in a process of its own that can reach nothing but the recording. A program with another `main`
 /// names one that calls this: [`read_hdf5_with`]. Where variables `HDF5_…` are set, by which the library
 /// would load code, the program is started anew without them (Unix).
+#[cfg(feature = "native")]
 #[must_use]
 pub fn serve_hdf5() -> Option<std::process::ExitCode> {
     // On Linux the running program itself, also after a newer one took its place; elsewhere anybody may have
@@ -205,6 +232,7 @@ pub fn serve_hdf5() -> Option<std::process::ExitCode> {
 
 /// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as
 /// `dropcheck` does. The first stays.
+#[cfg(feature = "native")]
 pub fn read_hdf5_with(program: &Path) {
     read_hdf5_by(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
 }

@@ -29,9 +29,9 @@ impl<'a> RecordingFile<'a> {
     ///
     /// # Errors
     /// It is no file, or may not be read.
-    pub(super) fn opened(self) -> io::Result<Opened> {
-        let Some(bytes) = self.in_memory else { return opened(self.path).map(Opened::OnDisk) };
-        Ok(Opened::InMemory(Cursor::new(bytes.clone())))
+    pub(super) fn opened(self) -> io::Result<OpenFile> {
+        let Some(bytes) = self.in_memory else { return opened(self.path).map(OpenFile::OnDisk) };
+        Ok(OpenFile::InMemory(Cursor::new(bytes.clone())))
     }
 
     /// Its length, bytes.
@@ -49,12 +49,12 @@ impl<'a> RecordingFile<'a> {
 }
 
 /// A file that is open for reading.
-pub(super) enum Opened {
+pub(super) enum OpenFile {
     OnDisk(File),
     InMemory(Cursor<Arc<[u8]>>),
 }
 
-impl Read for Opened {
+impl Read for OpenFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self {
             Self::OnDisk(file) => file.read(buffer),
@@ -63,7 +63,7 @@ impl Read for Opened {
     }
 }
 
-impl Seek for Opened {
+impl Seek for OpenFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match self {
             Self::OnDisk(file) => file.seek(to),

@@ -1,10 +1,10 @@
 //! A recording, a file or a folder of files, to what is read of it, with the SHA-256 of the very bytes that
 //! were read.
 
+use super::RecordingFile;
 use super::error::{self, IngestError};
 use super::mme::MmeFiles;
 use super::refusal::Refusal;
-use super::{RecordingFile, opened};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -30,13 +30,13 @@ pub(super) fn hashed<T>(
     read: impl FnOnce() -> Result<T, IngestError>,
 ) -> Result<(T, String), IngestError> {
     let path = recording.path;
-    if let Some(bytes) = recording.in_memory {
-        return Ok((read()?, hexadecimal(&Sha256::digest(bytes))));
+    if recording.in_memory.is_some() {
+        return Ok((read()?, sha256(recording, &AtomicBool::new(false))?));
     }
     let before = at_rest(path)?;
     let is_needless = AtomicBool::new(false);
     let (read, sha256) = std::thread::scope(|scope| {
-        let hashing = scope.spawn(|| sha256(path, &is_needless));
+        let hashing = scope.spawn(|| sha256(recording, &is_needless));
         let read = read();
         is_needless.store(read.is_err(), Ordering::Relaxed);
         (read, hashing.join())
@@ -125,24 +125,27 @@ fn at_rest(path: &Path) -> Result<Vec<Identity>, IngestError> {
     Err(changed(path))
 }
 
-/// SHA-256 of the recording at `path`, lower-case hexadecimal, or of its beginning where it `is_needless` in
+/// SHA-256 of a recording, lower-case hexadecimal, or of its beginning where it `is_needless` in
 /// the end: of a file its own; of a folder that of the list of its files which `sha256sum` prints.
 ///
 /// # Errors
 /// [`IngestError::Refused`] where it cannot be read.
-pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
-    let Some(names) = names(path)? else { return sha256_of_file(path, is_needless) };
-    let hashed = |name: &String| Ok(format!("{}  {name}\n", sha256_of_file(&path.join(name), is_needless)?));
+pub(super) fn sha256(recording: RecordingFile, is_needless: &AtomicBool) -> Result<String, IngestError> {
+    let names = if recording.is_folder() { names(recording.path)? } else { None };
+    let Some(names) = names else { return sha256_of_file(recording, is_needless) };
+    let of_file = |name: &String| sha256_of_file((&recording.path.join(name)).into(), is_needless);
+    let hashed = |name: &String| Ok(format!("{}  {name}\n", of_file(name)?));
     let lines = names.par_iter().map(hashed).collect::<Result<Vec<String>, IngestError>>()?;
     Ok(hexadecimal(&Sha256::digest(lines.concat())))
 }
 
-fn sha256_of_file(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
-    let mut file = opened(path).map_err(|source| error::io(path, &source))?;
+fn sha256_of_file(file: RecordingFile, is_needless: &AtomicBool) -> Result<String, IngestError> {
+    let io = |source| error::io(file.path, &source);
+    let mut file = file.opened().map_err(io)?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     while !is_needless.load(Ordering::Relaxed) {
-        let read = file.read(&mut buffer).map_err(|source| error::io(path, &source))?;
+        let read = file.read(&mut buffer).map_err(io)?;
         if read == 0 {
             break;
         }
@@ -173,7 +176,7 @@ mod tests {
         fs::write(&path, "abc").unwrap();
         // FIPS 180-4, example B.1.
         assert_eq!(
-            sha256(&path, &AtomicBool::new(false)).unwrap(),
+            sha256((&path).into(), &AtomicBool::new(false)).unwrap(),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
         );
     }

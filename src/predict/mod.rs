@@ -13,7 +13,7 @@ mod study;
 mod support;
 
 pub use ladder::{ladder, predict_by};
-pub use study::{default_uncertain, study};
+pub use study::{default_uncertain, study, usual_request};
 
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction};
 use path::Way;

@@ -115,12 +115,12 @@ impl<'a> FirstLook<'a> {
     pub fn files(self, sha256: &str) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
         /// What `inspect --json` writes, and of which recording.
         #[derive(Serialize)]
-        struct RecordingFile<'a> {
+        struct ListingFile<'a> {
             #[serde(flatten)]
             listing: &'a Listing,
             recording_sha256: &'a str,
         }
-        let listing = json::pretty(&RecordingFile { listing: self.listing, recording_sha256: sha256 })?;
+        let listing = json::pretty(&ListingFile { listing: self.listing, recording_sha256: sha256 })?;
         let page = as_html::page(&self.document(sha256), &self.pictures).into_bytes();
         Ok(FIRST_LOOK_NAMES.map(str::to_owned).into_iter().zip([page, listing]).collect())
     }

@@ -10,8 +10,11 @@ pub(crate) mod as_markdown;
 pub(crate) mod as_text;
 mod campaign;
 mod check;
+mod complaint;
 mod curves_csv;
+#[cfg(feature = "native")]
 pub(crate) mod curves_h5;
+#[cfg(feature = "native")]
 mod curves_mcap;
 pub(crate) mod document;
 mod first_look;
@@ -35,6 +38,7 @@ mod sample;
 mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
+#[cfg(feature = "native")]
 mod scratch;
 mod settings;
 pub(crate) mod table;
@@ -48,11 +52,15 @@ pub use campaign::{
     folder_name, impossible,
 };
 pub use check::table as check_table;
+#[cfg(feature = "native")]
+pub(crate) use complaint::{in_lines, told};
+pub use complaint::{message, sentence};
 pub use curves_csv::in_german;
 pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};
 pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;
+pub use pictures::setup_picture;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
@@ -70,12 +78,15 @@ pub enum ReportError {
     #[error("the CSV table could not be written")]
     Csv(#[from] csv::Error),
     /// The MCAP writer failed.
+    #[cfg(feature = "native")]
     #[error("the MCAP file could not be written")]
     Mcap(#[from] mcap::McapError),
     /// The HDF5 library failed.
+    #[cfg(feature = "native")]
     #[error("the HDF5 file could not be written")]
     Hdf5(#[from] hdf5_metno::Error),
     /// The scratch file of the HDF5 library failed.
+    #[cfg(feature = "native")]
     #[error("the HDF5 file needs a scratch file in {folder}, and that failed")]
     #[diagnostic(help("make room there, or set TMPDIR to a folder with room"))]
     Scratch {
@@ -104,12 +115,14 @@ pub fn table(analysis: &Analysis, width: usize) -> String {
 
 /// The names of the files of a report, in the order of [`files`]; the last one is there where a channel takes
 /// no part in the motion.
-pub const FILE_NAMES: [&str; 16] = [
+pub const FILE_NAMES: &[&str] = &[
     "report.html",
     "result.json",
     "results.tex",
     "curves.csv",
+    #[cfg(feature = "native")]
     "curves.h5",
+    #[cfg(feature = "native")]
     "curves.mcap",
     "setup.svg",
     "accelerations.svg",
@@ -134,16 +147,31 @@ fn file_names(analysis: &Analysis) -> &'static [&'static str] {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    // curves.mcap takes as long as all the others together.
-    let ((curves_mcap, curves_csv), (curves_h5, pictures)) = rayon::join(
-        || rayon::join(|| curves_mcap::bytes(analysis), || curves_csv::bytes(&analysis.curves)),
-        || rayon::join(|| curves_h5::bytes(analysis), || pictures::draw(analysis)),
+    let (binary, (curves_csv, pictures)) = rayon::join(
+        || binary_curves(analysis),
+        || rayon::join(|| curves_csv::bytes(&analysis.curves), || pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
     let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));
-    let bytes = [page, result, table, curves_csv?, curves_h5?, curves_mcap?];
-    let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
+    let text = [page, result, table, curves_csv?];
+    let bytes =
+        text.into_iter().chain(binary?).chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
     Ok(file_names(analysis).iter().map(|name| (*name).to_owned()).zip(bytes).collect())
+}
+
+/// `curves.h5` and `curves.mcap`.
+#[cfg(feature = "native")]
+fn binary_curves(analysis: &Analysis) -> Result<Vec<Vec<u8>>, ReportError> {
+    // curves.mcap takes as long as all the others together.
+    let (mcap, h5) = rayon::join(|| curves_mcap::bytes(analysis), || curves_h5::bytes(analysis));
+    Ok(vec![h5?, mcap?])
+}
+
+/// A page writes no file that it cannot show.
+#[cfg(not(feature = "native"))]
+#[allow(clippy::unnecessary_wraps, reason = "as where there are some")]
+fn binary_curves(_: &Analysis) -> Result<Vec<Vec<u8>>, ReportError> {
+    Ok(Vec::new())
 }
 
 #[cfg(test)]
@@ -153,7 +181,7 @@ mod tests {
     #[test]
     fn a_report_holds_every_file_of_the_contract() {
         let files = files(&sample::with_other()).unwrap();
-        assert!(files.iter().map(|(name, _)| name.as_str()).eq(FILE_NAMES));
+        assert!(files.iter().map(|(name, _)| name.as_str()).eq(FILE_NAMES.iter().copied()));
         assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
     }
 

@@ -1,7 +1,8 @@
 //! The options of `predict` and a cask file to what a study is asked.
 
 use super::Arguments;
-use super::sweep::{MOST_PREDICTIONS, name, rounded};
+use super::sweep::{MOST_PREDICTIONS, name};
+use crate::data::shown::rounded;
 use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use crate::predict;
 use miette::miette;
@@ -20,15 +21,18 @@ pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<StudyRe
     let sweeps = &arguments.sweep;
     each_once(arguments)?;
     lengths_hold_the_section(sweeps, file)?;
-    let (contacts, ks) = cases(arguments, file);
+    let usual = predict::usual_request(file);
+    let (contacts, ks) = cases(arguments, file, &usual);
     let request = StudyRequest {
         contacts,
         ks,
-        angle_deg: arguments.angle.unwrap_or_else(|| rounded(file.drop.angle_rad.to_degrees())),
+        angle_deg: arguments.angle.unwrap_or(usual.angle_deg),
         sweeps: sweeps.clone(),
-        angles_deg: curve_angles_deg(swept(sweeps, SweepVariable::Angle)),
+        angles_deg: swept(sweeps, SweepVariable::Angle)
+            .and_then(curve_angles_deg)
+            .unwrap_or(usual.angles_deg),
         band_percent: arguments.band,
-        uncertain: uncertain(arguments, file),
+        uncertain: uncertain(arguments, usual.uncertain),
     };
     few_enough(&request, file)?;
     Ok(request)
@@ -82,7 +86,7 @@ fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result
 }
 
 /// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
-fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
+fn cases(arguments: &Arguments, file: &CaskFile, usual: &StudyRequest) -> (Vec<Contact>, Vec<f64>) {
     let both = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
     let swept = |variable| swept(&arguments.sweep, variable).and_then(ends).map(both);
     let rubbed = |coefficients: Vec<f64>| coefficients.into_iter().map(Contact::Coulomb).collect();
@@ -90,48 +94,38 @@ fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     let contacts = arguments.contact.map(|contact| vec![contact]);
     match (contacts.or_else(|| swept(SweepVariable::Friction).map(rubbed)), ks) {
         (Some(contacts), Some(ks)) => (contacts, ks),
-        (Some(contacts), None) => (contacts, vec![0.0, 1.0]),
+        (Some(contacts), None) => (contacts, usual.ks.clone()),
         // A prediction needs one: the borderline case that the paper found.
         (None, Some(ks)) if file.contact == Contact::Unknown => (vec![Contact::Rough], ks),
         (None, Some(ks)) => (vec![file.contact], ks),
-        (None, None) => (vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0]),
+        (None, None) => (usual.contacts.clone(), usual.ks.clone()),
     }
 }
 
-/// The angles of a sweep that is more than a few points, those between filled in to half a degree; else 0 to
-/// 90°.
-fn curve_angles_deg(swept: Option<&[f64]>) -> Vec<f64> {
+/// The angles of a sweep that is more than a few points, those between filled in to half a degree.
+fn curve_angles_deg(swept: &[f64]) -> Option<Vec<f64>> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
     let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
         let steps = steps.min(MOST_CURVE_STEPS).ceil() as u32;
         (0..=steps).map(|i| rounded(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
     };
-    let values = swept.filter(|values| values.len() >= LEAST_CURVE_ANGLES).unwrap_or_default();
-    let (Some((from, to)), [first, second, ..]) = (ends(values), values) else {
-        return evenly(0.0, 90.0, 90.0 / CURVE_STEP_DEG);
-    };
-    let step = second - first;
+    let (from, to) = ends(swept).filter(|_| swept.len() >= LEAST_CURVE_ANGLES)?;
+    let step = swept[1] - swept[0];
     // Every step of the sweep in equal parts, so that its own angles stay among the curve's.
-    evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil())
+    Some(evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil()))
 }
 
 /// What Monte Carlo draws from: the cask's usual tolerances, each replaced by what the options say of it.
-fn uncertain(arguments: &Arguments, file: &CaskFile) -> Uncertain {
-    let usual = predict::default_uncertain(file);
+fn uncertain(arguments: &Arguments, usual: Uncertain) -> Uncertain {
     let percent = |percent: f64| percent / 100.0;
     let geometry = arguments.geometry_tolerance.map(percent);
     let swept = |variable| swept(&arguments.sweep, variable).and_then(ends);
     Uncertain {
         k: arguments.k_range.or(arguments.k.map(|k| (k, k))).or(swept(SweepVariable::K)).unwrap_or(usual.k),
-        friction: arguments.friction_range.or(swept(SweepVariable::Friction)).or_else(|| {
-            // Rough and smooth bound the table; what is drawn has the contact of the cask file.
-            match file.contact {
-                _ if arguments.contact.is_some() => None,
-                Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
-                Contact::Smooth => Some((0.0, 0.0)),
-                Contact::Rough | Contact::Unknown => usual.friction,
-            }
-        }),
+        friction: arguments
+            .friction_range
+            .or(swept(SweepVariable::Friction))
+            .or(usual.friction.filter(|_| arguments.contact.is_none())),
         angle_deg: arguments.angle_tolerance.unwrap_or(usual.angle_deg),
         size: geometry.unwrap_or(usual.size),
         cog: geometry.unwrap_or(usual.cog),

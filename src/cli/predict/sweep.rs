@@ -1,6 +1,7 @@
 //! `[VARIABLE=]FROM:TO:STEP` to the values of a sweep.
 
 use super::words::{ascending, number};
+use crate::data::shown::rounded;
 use crate::data::{Sweep, SweepVariable};
 
 /// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds
@@ -9,9 +10,6 @@ pub const MOST_PREDICTIONS: usize = 200_000;
 
 /// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
 const ALIKE: f64 = 0.75;
-
-/// Digits kept of a value, so that 3 · 0.1 is shown as 0.3; a double holds two to four more.
-const DIGITS_AFTER_THE_FIRST: usize = 12;
 
 /// What can be swept, and what a person may call it.
 struct Known {
@@ -103,11 +101,6 @@ fn values_of(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 200 000")]
     let count = count as u32;
     Ok((0..count).map(|i| rounded(from + f64::from(i) * step).min(to)).collect())
-}
-
-/// Free of the last digits of a sum or a conversion.
-pub fn rounded(value: f64) -> f64 {
-    format!("{value:.DIGITS_AFTER_THE_FIRST$e}").parse().unwrap_or(value)
 }
 
 fn called(word: &str) -> Option<&'static Known> {

@@ -23,15 +23,16 @@ impl Section<'_> {
     pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
         let Some(Takes::Number(allowed)) = self.row(key).map(|row| row.takes) else { return Ok(()) };
         let check = format!("check the value{}", unit_of(key));
-        let (must, expected, mend) = match allowed {
+        let mut expected = allowed.words();
+        let (must, mend) = match allowed {
             _ if allowed.holds(number.value) => return Ok(()),
-            Allowed::Within(least, most, why) => {
-                let degrees = if key.ends_with("_deg") { " degrees" } else { "" };
-                let range = format!("{} to {}", short(least), short(most));
-                (format!(", outside {range}"), range + degrees, why)
+            Allowed::Within(_, _, why) => {
+                let must = format!(", outside {expected}");
+                expected.push_str(if key.ends_with("_deg") { " degrees" } else { "" });
+                (must, why)
             }
-            Allowed::FromZero => (": it must not be below 0".into(), "0 or more".into(), &check[..]),
-            _ => (": it must be above 0".into(), "a number above 0".into(), &check[..]),
+            Allowed::FromZero => (": it must not be below 0".into(), &check[..]),
+            _ => (": it must be above 0".into(), &check[..]),
         };
         Err(self.wrong(number.span.clone(), format!("{what}{must}"), expected, mend))
     }

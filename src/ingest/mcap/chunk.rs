@@ -3,7 +3,7 @@
 
 use super::records::{Counts, Records};
 use super::topic::Part;
-use std::io::Read;
+use crate::ingest::unpack;
 
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: usize = 64;
@@ -172,15 +172,8 @@ impl ChunkHeader {
     fn unpack(&self, packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
         let unpacked = match self.compression.as_str() {
             "" => Ok(0),
-            // Right into its place where all of it is there; bulk needs no window of what came before.
-            "zstd" if most == self.uncompressed => {
-                into.reserve_exact(usize::try_from(most).unwrap_or_default());
-                zstd::bulk::Decompressor::new()
-                    .and_then(|mut unpacker| unpacker.decompress_to_buffer(packed, into))
-            }
-            "zstd" => zstd::stream::read::Decoder::with_buffer(packed)
-                .and_then(|decoder| decoder.take(most).read_to_end(into)),
-            "lz4" => lz4::Decoder::new(packed).and_then(|decoder| decoder.take(most).read_to_end(into)),
+            "zstd" => unpack::zstd(packed, most, most == self.uncompressed, into),
+            "lz4" => unpack::lz4(packed, most, into),
             name => {
                 return Err(format!("it is compressed with {name:?}, and only zstd, lz4 and none are read"));
             }

@@ -1,19 +1,19 @@
 //! An MCAP file to its bytes, and to whether they are those that its writer summed up.
 
 use super::summary::Summary;
-use crate::ingest::recording_file::Opened;
+use crate::ingest::recording_file::OpenFile;
 use std::io::{Read, Seek, SeekFrom};
 
 /// A file that is summed up as it is read, from its beginning to the end of its data.
 pub(super) struct Summed {
-    file: Opened,
+    file: OpenFile,
     /// The sum so far and how many bytes it lacks, where the file states one.
     pub(super) sum: Option<(crc32fast::Hasher, u64)>,
     stated: u32,
 }
 
 impl Summed {
-    pub(super) fn of(file: Opened, summary: Option<&Summary>) -> Self {
+    pub(super) fn of(file: OpenFile, summary: Option<&Summary>) -> Self {
         let end = summary.and_then(|summary| summary.data_end).filter(|end| end.check_sum != 0);
         let sum = end.map(|end| (crc32fast::Hasher::new(), end.at));
         Self { file, sum, stated: end.map_or(0, |end| end.check_sum) }

@@ -1,8 +1,8 @@
 //! A zip to the files in it, stored or deflated: what ISO-MME is sent in, and no more of that format
 //! (APPNOTE.TXT of PKWARE, 4.3).
 
-use crate::ingest::recording_file::{Opened, RecordingFile};
-use libdeflater::Decompressor;
+use crate::ingest::recording_file::{OpenFile, RecordingFile};
+use crate::ingest::unpack;
 use std::io::{self, Read, Seek, SeekFrom};
 
 /// Lengths of a file's head before its bytes, of its entry in the list of all, and of the end behind that
@@ -53,12 +53,7 @@ impl ZipEntry {
         let packed = bytes_at(&mut file, head_at + HEAD_BYTES + behind, number(&self.0, 20, 4))?;
         let bytes = match number(&self.0, 10, 2) {
             0 => packed,
-            8 => {
-                let mut bytes = vec![0; usize::try_from(self.bytes()).unwrap_or_default()];
-                let count = Decompressor::new().deflate_decompress(&packed, &mut bytes).unwrap_or_default();
-                bytes.truncate(count);
-                bytes
-            }
+            8 => unpack::deflate(&packed, usize::try_from(self.bytes()).unwrap_or_default()),
             method => {
                 return Err(io::Error::other(format!("it is packed by method {method}, not by deflate")));
             }
@@ -77,7 +72,7 @@ fn number(bytes: &[u8], at: usize, count: usize) -> u64 {
 }
 
 /// So many bytes from there on, or those up to the end.
-fn bytes_at(file: &mut Opened, at: u64, count: u64) -> io::Result<Vec<u8>> {
+fn bytes_at(file: &mut OpenFile, at: u64, count: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.seek(SeekFrom::Start(at))?;
     file.take(count).read_to_end(&mut bytes)?;

@@ -8,7 +8,7 @@ mod poses;
 mod rows;
 mod uncertain;
 
-pub use uncertain::default_uncertain;
+pub use uncertain::{default_uncertain, usual_request};
 
 use super::{bodies, ladder, predict};
 use crate::data::{

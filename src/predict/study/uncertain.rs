@@ -1,7 +1,8 @@
 //! What is not known before a test to its default ranges, and to casks and drops drawn from them.
 
 use super::{Fall, raised, resized};
-use crate::data::{CaskFile, Contact, Uncertain};
+use crate::data::shown::rounded;
+use crate::data::{CaskFile, Contact, StudyRequest, Uncertain};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -12,6 +13,32 @@ const SIGMAS_OF_95: f64 = 1.959_963_984_540_054;
 /// Least share of a length or inertia that a draw leaves: far out of reach of any half-width that a cask file
 /// would state.
 const LEAST_SHARE: f64 = 0.1;
+
+/// Curves are drawn at every half degree: finer than a drop can be rigged.
+const CURVE_ANGLES: u32 = 180;
+
+/// What a study is asked of a cask file alone: the four borderline cases at its angle, curves from 0 to 90°.
+#[must_use]
+pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
+    let usual = default_uncertain(cask_file);
+    // Rough and smooth bound the table; what is drawn has the contact of the cask file.
+    let friction = match cask_file.contact {
+        Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
+        Contact::Smooth => Some((0.0, 0.0)),
+        Contact::Rough | Contact::Unknown => usual.friction,
+    };
+    StudyRequest {
+        contacts: vec![Contact::Rough, Contact::Smooth],
+        ks: vec![0.0, 1.0],
+        angle_deg: rounded(cask_file.drop.angle_rad.to_degrees()),
+        sweeps: Vec::new(),
+        angles_deg: (0..=CURVE_ANGLES)
+            .map(|i| rounded(90.0 * f64::from(i) / f64::from(CURVE_ANGLES)))
+            .collect(),
+        band_percent: 5.0,
+        uncertain: Uncertain { friction, ..usual },
+    }
+}
 
 /// Ranges and half-widths for a cask whose user states none.
 #[must_use]

@@ -24,9 +24,14 @@ mod sweep;
 pub(super) use recorded::recorded;
 pub(super) use study::{draw_study, names as study_names};
 
-use crate::data::Analysis;
+use crate::data::{Analysis, CaskFile};
 use draw::Picture;
 use rayon::prelude::*;
+
+/// The drawing of the set-up, SVG.
+pub fn setup_picture(file: &CaskFile) -> String {
+    setup::picture(file).svg
+}
 
 /// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show
 /// says so.

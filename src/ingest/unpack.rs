@@ -1,0 +1,44 @@
+//! Packed bytes to what they were: by C libraries, and in a page by libraries in Rust alone.
+
+use std::io::{self, Read};
+
+/// What a frame of zstd unpacks to, `most` bytes at most, into what is empty; whether that `is_all` of it.
+#[cfg(feature = "native")]
+pub(super) fn zstd(packed: &[u8], most: u64, is_all: bool, into: &mut Vec<u8>) -> io::Result<usize> {
+    if !is_all {
+        let decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
+        return decoder.take(most).read_to_end(into);
+    }
+    // Right into its place: bulk needs no window of what came before.
+    into.reserve_exact(usize::try_from(most).unwrap_or_default());
+    zstd::bulk::Decompressor::new()?.decompress_to_buffer(packed, into)
+}
+
+/// What a frame of zstd unpacks to, `most` bytes at most, into what is empty.
+#[cfg(not(feature = "native"))]
+pub(super) fn zstd(packed: &[u8], most: u64, _: bool, into: &mut Vec<u8>) -> io::Result<usize> {
+    let decoder = ruzstd::decoding::StreamingDecoder::new(packed).map_err(io::Error::other)?;
+    decoder.take(most).read_to_end(into)
+}
+
+/// What a frame of lz4 unpacks to, `most` bytes at most, into what is empty.
+pub(super) fn lz4(packed: &[u8], most: u64, into: &mut Vec<u8>) -> io::Result<usize> {
+    #[cfg(feature = "native")]
+    let decoder = lz4::Decoder::new(packed)?;
+    #[cfg(not(feature = "native"))]
+    let decoder = lz4_flex::frame::FrameDecoder::new(packed);
+    decoder.take(most).read_to_end(into)
+}
+
+/// What deflated bytes unpack to, empty where it is not `length` bytes.
+pub(super) fn deflate(packed: &[u8], length: usize) -> Vec<u8> {
+    let mut bytes = vec![0; length];
+    #[cfg(feature = "native")]
+    let count = libdeflater::Decompressor::new().deflate_decompress(packed, &mut bytes).ok();
+    #[cfg(not(feature = "native"))]
+    let count =
+        miniz_oxide::inflate::decompress_slice_iter_to_slice(&mut bytes, [packed].into_iter(), false, false)
+            .ok();
+    bytes.truncate(count.unwrap_or_default());
+    bytes
+}
