@@ -76,7 +76,8 @@ class Drawing {
       "aria-valuetext": isPlaced ? `${channel.position_m} m from the first end` : "no place yet" },
     drawn("circle", { r: 34 }));
     // The program draws the name of a channel that is stated in full.
-    if (!this.isDrawn(channel)) handle.append(drawn("text", { y: 10, "text-anchor": "middle", "font-size": 26 }, name));
+    const word = { y: 10, "text-anchor": "middle", "font-size": 26 };
+    if (!this.isDrawn(channel)) handle.append(drawn("text", word, name));
     handle.onpointerdown = (event) => this.drag(handle, i, event);
     handle.onkeydown = (event) => this.key(event, i, isPlaced ? channel.position_m : 0);
     return handle;

@@ -118,8 +118,9 @@ class Asker {
   }
 }
 
-// One for the form, so that it answers while the other reads a recording.
+// Each answers while the others work: the form is typed in while a recording is read, and its curves are drawn.
 const forForm = new Asker();
+const forLook = new Asker();
 const forRecording = new Asker();
 
 window.dropcheck = {

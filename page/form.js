@@ -149,7 +149,8 @@ class Form {
       inputmode: key.takes === "number" ? "decimal" : null, list: key.name === "source" ? "sources" : null };
     const none = key.asked ? "choose" : "left out";
     const input = choices
-      ? element("select", { id, "aria-describedby": attributes["aria-describedby"] }, element("option", { value: "" }, none),
+      ? element("select", { id, "aria-describedby": attributes["aria-describedby"] },
+        element("option", { value: "" }, none),
         ...Object.entries(choices).map(([value, words]) => element("option", { value }, words)))
       : element("input", { type: "text", ...attributes });
     const error = element("p", { class: "error", id: `${id}-error` });

@@ -24,6 +24,8 @@ function save(name, bytes) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
+const stillOpen = (count) => `${count} ${count === 1 ? "field is" : "fields are"} still to be filled in`;
+
 /** A page of the program in a frame as high as the page. */
 function frame(id, html) {
   const place = byId(id);
@@ -31,12 +33,13 @@ function frame(id, html) {
     const { document: inside, ResizeObserver } = place.contentWindow;
     const fit = () => { place.style.height = `${inside.documentElement.offsetHeight + 4}px`; };
     new ResizeObserver(fit).observe(inside.documentElement);
-    // A frame without an address of its own would follow a link to its own places out of itself.
+    // Without an address of its own a frame would follow a link to its own places, or to files beside it, away.
     inside.addEventListener("click", (event) => {
-      const to = event.target.closest?.("a[href^='#']")?.getAttribute("href");
+      const to = event.target.closest?.("a")?.getAttribute("href");
       if (!to) return;
       event.preventDefault();
-      inside.getElementById(to.slice(1))?.scrollIntoView();
+      if (to.startsWith("#")) inside.getElementById(to.slice(1))?.scrollIntoView();
+      else state.files.filter(([name]) => name === to).forEach((file) => save(...file));
     });
   };
   place.srcdoc = html;
@@ -85,21 +88,24 @@ async function recorded(recording) {
     byId("anew").hidden = !state.isOwn;
     if (state.isOwn && form.channels().length) await inTurn(shown_anew);
     else await inTurn(() => begun({ keep: true }));
-    const look = await forRecording.text({ op: "look", name }, recording);
+    const look = await forLook.text({ op: "look", name }, recording);
     if (turn !== state.asked) return;
     frame("look-frame", look);
     byId("look").hidden = false;
+    byId("look").open = listing.channels.length <= 4;
   } catch (refusal) {
     if (turn === state.asked) refuse("recording-refusal", refusal);
   }
 }
 
 function listed(listing) {
-  const number = (value, digits = 4) => (value === null ? "–" : Number(value.toPrecision(digits)).toLocaleString("en"));
+  const number = (value, digits = 4) => (value === null ? "–"
+    : Number(value.toPrecision(digits)).toLocaleString("en").replace("-", "−"));
   const heads = ["Channel", "Samples", "Rate in Hz", "Length in s", "Unit", "From", "To", "Gaps"];
   const rows = listing.channels.map((channel) => [channel.source, number(channel.samples, 12),
     number(channel.sample_rate_hz, 6), number(channel.duration_s), channel.unit ?? "not stated",
-    number(channel.range?.[0] ?? null), number(channel.range?.[1] ?? null), channel.unreadable ?? channel.gaps ?? "–"]);
+    number(channel.range?.[0] ?? null), number(channel.range?.[1] ?? null),
+    channel.unreadable ?? channel.gaps ?? "–"]);
   const head = heads.map((word, i) => element("th", { scope: "col", class: i && i !== 4 ? "n" : null }, word));
   const body = rows.map((row) => element("tr", {}, ...row.map((cell, i) =>
     (i ? element("td", { class: i !== 4 ? "n" : null }, String(cell)) : element("th", { scope: "row" }, cell)))));
@@ -171,8 +177,7 @@ async function shown_anew() {
   }
   form.show(values);
   const missing = form.missing();
-  say("form-word", missing.length ? `${missing.length} ${missing.length === 1 ? "field is" : "fields are"} still to be filled in.`
-    : "Nothing is missing.");
+  say("form-word", missing.length ? `${stillOpen(missing.length)}.` : "Nothing is missing.");
   try {
     await forForm.ask({ op: "check", cask: withExamples(state.text) });
   } catch (refusal) {
@@ -246,8 +251,8 @@ function predicted({ predictions }) {
   const [least, most] = among("slap_down_speed_m_s").map((speed) => speed.toFixed(1));
   const contacts = new Set(body.map(({ contact }) => contact));
   const friction = contacts.size > 1 ? ", and friction from none to sticking" : "";
-  return `Predicted slap-down speed at ${shown(body[0].angle_deg)}°: ${least} to ${most} m/s, for a restitution k from `
-    + `${among("k").join(" to ")}${friction}.`;
+  return `Predicted slap-down speed at ${shown(body[0].angle_deg)}°: ${least} to ${most} m/s, `
+    + `for a restitution k from ${among("k").join(" to ")}${friction}.`;
 }
 
 // The result.
@@ -263,8 +268,8 @@ async function analysed() {
   const fault = form.firstAtFault();
   if (fault) {
     const many = form.missing().length;
-    const problem = many ? `${many} ${many === 1 ? "field is" : "fields are"} still to be filled in` : "a field is wrong";
-    refuse("analysis-refusal", { problem, mend: "the first of them has the cursor now" });
+    refuse("analysis-refusal", { problem: many ? stillOpen(many) : "a field is wrong",
+      mend: "the first of them has the cursor now" });
     form.focus(fault);
     return;
   }
@@ -272,7 +277,8 @@ async function analysed() {
   byId("stop").hidden = false;
   try {
     const question = { op: "report", name: state.recording.name, cask: state.text };
-    const answer = await during("progress", `Analysing ${question.name} …`, forRecording.ask(question, state.recording));
+    const work = forRecording.ask(question, state.recording);
+    const answer = await during("progress", `Analysing ${question.name} …`, work);
     let at = 0;
     state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
     const [[, report], ...others] = state.files;
@@ -283,13 +289,30 @@ async function analysed() {
     }));
     byId("result").hidden = false;
     frame("report-frame", new TextDecoder().decode(report));
-    byId("report-frame").scrollIntoView();
+    say("progress", withoutPictures());
+    byId("result").scrollIntoView();
   } catch (refusal) {
-    if (form.blame(refusal.key, told(refusal))) form.focus(refusal.key);
+    const path = refusal.key ?? fieldNamed(refusal);
+    if (form.blame(path, told(refusal))) form.focus(path);
     else refuse("analysis-refusal", refusal);
   } finally {
     byId("stop").hidden = true;
   }
+}
+
+/** The field of a channel that a refusal of the recording speaks of: the key that its remedy names, or the source. */
+function fieldNamed({ problem, mend }) {
+  const i = form.channels().findIndex(({ name }) => problem.includes(`channel "${name}"`));
+  const keys = form.tables.get("channel").keys.map((key) => key.name);
+  const named = [...(mend ?? "").matchAll(/`(\w+)/g)].map(([, word]) => word).find((word) => keys.includes(word));
+  return i < 0 ? null : `channel.${i}.${named ?? "source"}`;
+}
+
+/** What the report has not, since it stands in other files. */
+function withoutPictures() {
+  const { test, report } = form.values;
+  if (!isStated(test?.photos) && !isStated(report?.logo)) return "";
+  return "The report here is without photographs and logo: a page cannot open the files beside the cask file.";
 }
 
 async function started() {

@@ -37,13 +37,13 @@ function named(table, key) {
 }
 
 /** What a key means, which numbers it takes, and what holds where it is left out. */
-function hint({ remark, allowed, default: otherwise, example, takes }) {
+function hint({ name, remark, allowed, default: otherwise, example, takes }) {
   const plain = (text) => text.replaceAll("`", "");
-  const words = [plain(remark)];
+  const words = [name === "source" ? "a channel of the recording" : plain(remark)];
   if (/\d/.test(allowed)) words.push(allowed);
   const isTold = /left out|default|^$|^–|^required/.test(remark.match(/left out|default/) ?? otherwise);
   if (!isTold) words.push(`left out: ${plain(otherwise)}`);
-  if (["other", "date", "texts"].includes(takes) && example) words.push(`such as ${example}`);
+  if (["other", "date", "texts"].includes(takes) && example && name !== "source") words.push(`such as ${example}`);
   return words.filter(Boolean).join("; ");
 }
 
@@ -54,7 +54,8 @@ function toml(value) {
   if (Array.isArray(value)) return `[${value.map(toml).join(", ")}]`;
   if (typeof value !== "object") return String(value);
   if ("$__toml_private_datetime" in value) return value.$__toml_private_datetime;
-  const pairs = Object.entries(value).map(([key, value]) => `${/^[\w-]+$/.test(key) ? key : toml(key)} = ${toml(value)}`);
+  const name = (key) => (/^[\w-]+$/.test(key) ? key : toml(key));
+  const pairs = Object.entries(value).map(([key, value]) => `${name(key)} = ${toml(value)}`);
   return `{ ${pairs.join(", ")} }`;
 }
 
