@@ -26,8 +26,8 @@ function save(name, bytes) {
 
 const stillOpen = (count) => `${count} ${count === 1 ? "field is" : "fields are"} still to be filled in`;
 
-/** A page of the program in a frame as high as the page. */
-function frame(id, html) {
+/** A page of the program in a frame as high as the page, with the files that lie beside it. */
+function frame(id, html, files) {
   const place = byId(id);
   place.onload = () => {
     const { document: inside, ResizeObserver } = place.contentWindow;
@@ -39,8 +39,9 @@ function frame(id, html) {
       if (!to) return;
       event.preventDefault();
       if (to.startsWith("#")) inside.getElementById(to.slice(1))?.scrollIntoView();
-      else state.files.filter(([name]) => name === to).forEach((file) => save(...file));
+      else files.filter(([name]) => name === to).forEach((file) => save(...file));
     });
+    place.contentWindow.scrollTo(0, inside.getElementById("curves-and-spectra")?.offsetTop ?? 0);
   };
   place.srcdoc = html;
 }
@@ -90,7 +91,7 @@ async function recorded(recording) {
     else await inTurn(() => begun({ keep: true }));
     const look = await forLook.text({ op: "look", name }, recording);
     if (turn !== state.asked) return;
-    frame("look-frame", look);
+    frame("look-frame", look, [["recording.json", JSON.stringify(listing, null, 2)]]);
     byId("look").hidden = false;
     byId("look").open = listing.channels.length <= 4;
   } catch (refusal) {
@@ -171,8 +172,8 @@ async function shown_anew() {
   let values;
   try {
     values = await forForm.json({ op: "values", cask: state.text });
-  } catch (refusal) {
-    refuse("form-refusal", refusal);
+  } catch {
+    await forForm.ask({ op: "check", cask: state.text });
     return;
   }
   form.show(values);
@@ -288,7 +289,7 @@ async function analysed() {
       return button;
     }));
     byId("result").hidden = false;
-    frame("report-frame", new TextDecoder().decode(report));
+    frame("report-frame", new TextDecoder().decode(report), others);
     say("progress", withoutPictures());
     byId("result").scrollIntoView();
   } catch (refusal) {
@@ -324,6 +325,8 @@ async function started() {
   const [drop, file] = [byId("drop"), byId("file")];
   file.onchange = () => taken([...file.files]);
   byId("cask").onchange = ({ target }) => opened(target.files[0]);
+  // So that the same file can be chosen again, once it was changed.
+  for (const input of [file, byId("cask")]) input.onclick = () => { input.value = ""; };
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
   document.addEventListener("dragover", () => drop.classList.add("over"));
   document.addEventListener("dragleave", () => drop.classList.remove("over"));

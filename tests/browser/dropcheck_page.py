@@ -87,12 +87,18 @@ def told(driver, place):
     return driver.find_element(By.ID, place).text
 
 
+def chosen(driver, recording):
+    file = driver.find_element(By.ID, "file")
+    driver.execute_script("arguments[0].value = ''", file)
+    file.send_keys(str(recording))
+
+
 def soon(what, is_so):
     """Holds a check as soon as it holds, after twenty seconds at the latest."""
     end = time.time() + 20
     while not is_so() and time.time() < end:
         time.sleep(0.1)
-    held(what, is_so())
+    held(what, bool(is_so()))
 
 
 def typed(driver, text):
@@ -125,7 +131,7 @@ def by_hand(form):
 
 def filled_in(driver, command, folder):
     """A recording to its cask file by keys alone, with decimal commas; equal to `init` and a hand."""
-    driver.find_element(By.ID, "file").send_keys(str(EXAMPLES / "anf18-json.mcap"))
+    chosen(driver, EXAMPLES / "anf18-json.mcap")
     soon("the channels are listed", lambda: "/daq/a2.samples" in told(driver, "listing"))
     soon("the form asks for what only a person knows", lambda: told(driver, "form-word").startswith("10 fields"))
     answers = {"cask.name": "ANF-18", "cask.mass_kg": "4466", "cask.length_m": "5,512",
@@ -195,6 +201,43 @@ def refused(driver):
     soon("and taken when it is right", lambda: not told(driver, "field-cask.length_m-error"))
 
 
+def text_of(driver):
+    return driver.find_element(By.ID, "text").get_attribute("value")
+
+
+def changed_besides(driver, folder):
+    """A channel more and less, the text by hand, the report on paper, a recording that is too large."""
+    whole = text_of(driver)
+    driver.find_element(By.CSS_SELECTOR, "#form > p > button").click()
+    soon("a channel more asks for itself", lambda: told(driver, "form-word").startswith("5 fields"))
+    driver.find_element(By.ID, "remove-2").click()
+    soon("and goes without a trace", lambda: text_of(driver).strip() == whole.strip())
+    driver.find_element(By.ID, "remove-1").click()
+    soon("a channel less", lambda: text_of(driver) == whole[:whole.rindex("[[channel]]")])
+    driver.execute_script("document.getElementById('as-text').open = true")
+    box = driver.find_element(By.ID, "text")
+    box.send_keys(Keys.CONTROL, Keys.END)
+    box.send_keys("[[channel")
+    soon("broken text is refused above the form", lambda: "cask.toml, line" in told(driver, "form-refusal"))
+    put = "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))"
+    driver.execute_script(put, box, whole)
+    soon("mended text is in the form", lambda: driver.find_elements(By.ID, "field-channel.1.source"))
+    soon("with its values", lambda: value(driver, "channel.1.source") == "/daq/a2.samples")
+    held("and nothing is refused", not told(driver, "form-refusal"), told(driver, "form-refusal"))
+    frame = "document.getElementById('report-frame').contentWindow"
+    driver.execute_script(f"{frame}.print = () => {{ window.isPrinted = 1; }}")
+    driver.find_element(By.ID, "print").click()
+    held("the report is printed", driver.execute_script("return window.isPrinted") == 1)
+    large = folder / "large.csv"
+    with large.open("wb") as file:
+        file.truncate(1_200_000_000)
+    chosen(driver, large)
+    soon("a recording too large is refused unread", lambda: "1.2 GB are more" in told(driver, "recording-refusal"))
+    chosen(driver, EXAMPLES / "anf18-json.mcap")
+    soon("the next one is read", lambda: "/daq/a2.samples" in told(driver, "listing"))
+    held("and the cask file is kept", text_of(driver) == whole)
+
+
 def refused_later(driver):
     """What the recording speaks against stands under the field of its channel."""
     field = driver.find_element(By.ID, "field-channel.1.source")
@@ -238,13 +281,15 @@ def closed(driver):
 def main(page, command, is_short):
     driver = opened(page)
     driver.set_script_timeout(120)
-    with tempfile.TemporaryDirectory() as folder:
-        driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": folder})
-        filled_in(driver, command, Path(folder))
-        analysed(driver, Path(folder))
-    moved(driver)
-    refused(driver)
-    seen(driver)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": name})
+        filled_in(driver, command, folder)
+        analysed(driver, folder)
+        moved(driver)
+        refused(driver)
+        seen(driver)
+        changed_besides(driver, folder)
     refused_later(driver)
     equal(driver, command, is_short)
     held("no error on the console", not driver.get_log("browser"))
