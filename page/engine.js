@@ -1,0 +1,129 @@
+// Questions to the module `page/src`, asked in a worker, to its answers: the page never waits for one.
+
+const LARGEST_BYTES = 1e9;
+
+/** What was wrong, with the place in the cask file if it lies there; its message is the command's. */
+class Refusal extends Error {
+  constructor({ text, problem = text, mend = null, key = null }) {
+    super(text);
+    Object.assign(this, { name: "Refusal", problem, mend, key });
+  }
+}
+
+/** Runs in the worker, of which it is the whole text. Each question has an instance, and so a memory, of its own. */
+function atWork() {
+  let engine;
+  const refused = (problem, mend) => ({ header: { error: { text: `${problem}\n  help: ${mend}`, problem, mend } } });
+
+  function asked(header, recording) {
+    const { memory, alloc, call } = new WebAssembly.Instance(engine).exports;
+    const question = new TextEncoder().encode(JSON.stringify(header));
+    const length = 4 + question.length + recording.length;
+    const at = alloc(length) >>> 0;
+    new DataView(memory.buffer).setUint32(at, question.length, true);
+    const block = new Uint8Array(memory.buffer, at, length);
+    block.set(question, 4);
+    block.set(recording, 4 + question.length);
+    let place = call(at, length) >>> 0;
+    const next = () => {
+      const size = new DataView(memory.buffer).getUint32(place, true);
+      const bytes = new Uint8Array(memory.buffer, place + 4, size).slice();
+      place += 4 + size;
+      return bytes;
+    };
+    return { header: JSON.parse(new TextDecoder().decode(next())), body: next() };
+  }
+
+  async function answered({ header, recording }) {
+    let bytes = new Uint8Array();
+    try {
+      if (recording) bytes = new Uint8Array(await recording.arrayBuffer());
+    } catch {
+      return refused(`${header.name}: the browser can no longer read the file`,
+        "it was moved, changed or is too large for the memory that is free; choose it again");
+    }
+    try {
+      return asked(header, bytes);
+    } catch (fault) {
+      return refused(`${header.name || "the cask file"}: the program ended without an answer (${fault.message})`,
+        "a large recording may need more memory than a page gets (4 GB): cut it to some seconds around the drop, "
+        + "or analyse it by the dropcheck command; a small one that does this is a fault of dropcheck to report");
+    }
+  }
+
+  self.onmessage = async ({ data }) => {
+    if (data.engine) { engine = data.engine; return; }
+    const { header, body } = await answered(data);
+    self.postMessage({ id: data.id, header, body }, body ? [body.buffer] : []);
+  };
+}
+
+/** The module out of the page's own text. */
+async function compiled() {
+  const packed = Uint8Array.from(atob(document.getElementById("engine").textContent.trim()), (c) => c.charCodeAt(0));
+  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(plain).arrayBuffer());
+}
+
+const engine = compiled();
+
+/** A worker that is asked one question after the other. */
+class Asker {
+  constructor() {
+    this.waiting = new Map();
+    this.number = 0;
+    this.start();
+  }
+
+  start() {
+    const text = URL.createObjectURL(new Blob([`(${atWork})()`], { type: "text/javascript" }));
+    const worker = new Worker(text);
+    worker.onmessage = ({ data }) => {
+      const { resolve, reject } = this.waiting.get(data.id);
+      this.waiting.delete(data.id);
+      if (data.header.error) reject(new Refusal(data.header.error));
+      else resolve(data);
+    };
+    this.worker = engine.then((engine) => { worker.postMessage({ engine }); return worker; });
+  }
+
+  /** Ends what it works on. */
+  async stop() {
+    (await this.worker).terminate();
+    for (const { reject } of this.waiting.values()) reject(new Refusal({ text: "stopped" }));
+    this.waiting.clear();
+    this.start();
+  }
+
+  /** The answer's header and body; `recording` is a Blob or nothing. */
+  async ask(header, recording = null) {
+    if (recording && recording.size > LARGEST_BYTES) {
+      const problem = `${header.name}: ${(recording.size / 1e9).toFixed(1)} GB are more than a page can hold (1 GB)`;
+      const mend = "cut it to some seconds around the drop, or analyse it by the dropcheck command";
+      throw new Refusal({ text: `${problem}\n  help: ${mend}`, problem, mend });
+    }
+    const worker = await this.worker;
+    const id = this.number++;
+    const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+    worker.postMessage({ id, header, recording });
+    return answer;
+  }
+
+  async text(header, recording) {
+    return new TextDecoder().decode((await this.ask(header, recording)).body);
+  }
+
+  async json(header, recording) {
+    return JSON.parse(await this.text(header, recording));
+  }
+}
+
+// Each answers while the others work: the form is typed in while a recording is read, and its curves are drawn.
+const forForm = new Asker();
+const forLook = new Asker();
+const forRecording = new Asker();
+
+window.dropcheck = {
+  inspect: (bytes, name) => forRecording.json({ op: "inspect", name }, new Blob([bytes])),
+  analyze: (bytes, name, cask) => forRecording.json({ op: "analyze", name, cask }, new Blob([bytes])),
+};

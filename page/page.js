@@ -1,0 +1,350 @@
+// A recording and a form to the report: what the person does, in its order.
+
+const CASK_NAME = "cask.toml";
+const EMPTY = "[cask]\n\n[drop]\n";
+
+/** What the page holds: the recording, its listing, and the text of the cask file, which is the truth. */
+const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [] };
+let form;
+let drawing;
+
+/** One change of the text after the other. */
+let queue = Promise.resolve();
+const inTurn = (work) => (queue = queue.then(work).catch((refusal) => refuse("form-refusal", refusal)));
+
+function refuse(place, refusal = null) {
+  byId(place).replaceChildren(...(refusal ? told(refusal.problem ? refusal : { problem: String(refusal) }) : []));
+}
+
+const say = (place, words) => byId(place).replaceChildren(words);
+
+function save(name, bytes) {
+  const link = element("a", { download: name, href: URL.createObjectURL(new Blob([bytes])) });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+const stillOpen = (count) => `${count} ${count === 1 ? "field is" : "fields are"} still to be filled in`;
+
+/** A page of the program in a frame as high as the page. */
+function frame(id, html) {
+  const place = byId(id);
+  place.onload = () => {
+    const { document: inside, ResizeObserver } = place.contentWindow;
+    const fit = () => { place.style.height = `${inside.documentElement.offsetHeight + 4}px`; };
+    new ResizeObserver(fit).observe(inside.documentElement);
+    // Without an address of its own a frame would follow a link to its own places, or to files beside it, away.
+    inside.addEventListener("click", (event) => {
+      const to = event.target.closest?.("a")?.getAttribute("href");
+      if (!to) return;
+      event.preventDefault();
+      if (to.startsWith("#")) inside.getElementById(to.slice(1))?.scrollIntoView();
+      else state.files.filter(([name]) => name === to).forEach((file) => save(...file));
+    });
+  };
+  place.srcdoc = html;
+}
+
+/** Words with the seconds that a work takes, until it ends. */
+async function during(place, words, work) {
+  const begin = Date.now();
+  say(place, words);
+  const ticking = setInterval(() => say(place, `${words} ${Math.round((Date.now() - begin) / 1000)} s`), 1000);
+  try {
+    return await work;
+  } finally {
+    clearInterval(ticking);
+    say(place, "");
+  }
+}
+
+// The recording.
+
+async function taken(files) {
+  const isCask = (file) => /\.toml$/i.test(file.name);
+  const cask = files.find(isCask);
+  const recordings = files.filter((file) => !isCask(file));
+  if (cask) await opened(cask);
+  if (recordings.length > 1) {
+    refuse("recording-refusal", { problem: `${recordings.length} files: one recording is analysed at a time`,
+      mend: "choose one of them; a folder of ISO-MME as one zip" });
+  } else if (recordings.length) await recorded(recordings[0]);
+}
+
+async function recorded(recording) {
+  const { name } = recording;
+  for (const place of ["recording-refusal", "analysis-refusal"]) refuse(place);
+  byId("listing").replaceChildren();
+  byId("look").hidden = byId("result").hidden = true;
+  Object.assign(state, { recording: null, listing: null });
+  const turn = ++state.asked;
+  try {
+    const listing = await during("recording-word", `Reading ${name} …`,
+      forRecording.json({ op: "inspect", name }, recording));
+    if (turn !== state.asked) return;
+    Object.assign(state, { recording, listing });
+    byId("listing").replaceChildren(...listed(listing));
+    form.sources = listing.channels.map((channel) => channel.source);
+    byId("anew").hidden = !state.isOwn;
+    if (state.isOwn && form.channels().length) await inTurn(shown_anew);
+    else await inTurn(() => begun({ keep: true }));
+    const look = await forLook.text({ op: "look", name }, recording);
+    if (turn !== state.asked) return;
+    frame("look-frame", look);
+    byId("look").hidden = false;
+    byId("look").open = listing.channels.length <= 4;
+  } catch (refusal) {
+    if (turn === state.asked) refuse("recording-refusal", refusal);
+  }
+}
+
+function listed(listing) {
+  const number = (value, digits = 4) => (value === null ? "–"
+    : Number(value.toPrecision(digits)).toLocaleString("en").replace("-", "−"));
+  const heads = ["Channel", "Samples", "Rate in Hz", "Length in s", "Unit", "From", "To", "Gaps"];
+  const rows = listing.channels.map((channel) => [channel.source, number(channel.samples, 12),
+    number(channel.sample_rate_hz, 6), number(channel.duration_s), channel.unit ?? "not stated",
+    number(channel.range?.[0] ?? null), number(channel.range?.[1] ?? null),
+    channel.unreadable ?? channel.gaps ?? "–"]);
+  const head = heads.map((word, i) => element("th", { scope: "col", class: i && i !== 4 ? "n" : null }, word));
+  const body = rows.map((row) => element("tr", {}, ...row.map((cell, i) =>
+    (i ? element("td", { class: i !== 4 ? "n" : null }, String(cell)) : element("th", { scope: "row" }, cell)))));
+  const issues = listing.issues.map((issue) => element("p", {}, element("strong", {}, "Note: "), issue.message));
+  return [element("p", {}, `${listing.recording}: ${listing.format}, ${number(listing.bytes / 1e6, 3)} MB, `
+    + `${rows.length} ${rows.length === 1 ? "channel" : "channels"}.`),
+  element("table", { tabindex: 0, "aria-label": "Channels of the recording" },
+    element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body)), ...issues];
+}
+
+/** The form that the recording calls for, with what is stated already of the cask and the drop. */
+async function begun({ keep }) {
+  const { recording } = state;
+  let text = await forRecording.text({ op: "init", name: recording.name }, recording);
+  for (const [table, keys] of Object.entries(keep ? form.values : {}).filter(([table]) => table !== "channel")) {
+    for (const [key, value] of Object.entries(keys).filter(([, value]) => isStated(value))) {
+      text = await forForm.text({ op: "edit", cask: text, path: `${table}.${key}`, value: toml(value) });
+    }
+  }
+  state.isOwn = keep && state.isOwn;
+  state.text = text;
+  await shown_anew();
+}
+
+// The cask file.
+
+async function opened(file) {
+  state.text = await file.text();
+  state.isOwn = true;
+  byId("anew").hidden = !state.recording;
+  await inTurn(shown_anew);
+}
+
+/** A change that a field, a handle or a button asks for. */
+const changed = (path, value) => inTurn(async () => {
+  state.isOwn = true;
+  const edit = async (path, value) => {
+    state.text = await forForm.text({ op: "edit", cask: state.text, path, value });
+  };
+  if (value === "add") {
+    const keys = form.tables.get("channel").keys.filter((key) => key.asked);
+    const lines = keys.map((key) => `${key.name} = ${key.takes === "number" ? "nan" : '"FILL IN"'}\n`);
+    state.text = `${state.text.trimEnd()}\n\n[[channel]]\n${lines.join("")}`;
+  } else await edit(path, value);
+  if (/^channel\.\d+\.end$/.test(path) && value === '"none"') {
+    for (const key of ["axis", "position_m", "offset_m", "polarity"]) await edit(path.replace("end", key), null);
+  }
+  await shown_anew();
+});
+
+const moved = (i, position_m) => {
+  const { end } = form.channels()[i];
+  changed(`channel.${i}.position_m`, String(position_m));
+  const nearer = position_m < drawing.length / 2 ? "first" : "second";
+  if (!isStated(end)) changed(`channel.${i}.end`, toml(nearer));
+};
+
+/** Shows the text in form, drawing and prediction, and what is wrong in it. */
+async function shown_anew() {
+  if (document.activeElement !== byId("text")) byId("text").value = state.text;
+  refuse("form-refusal");
+  form.forgive();
+  let values;
+  try {
+    values = await forForm.json({ op: "values", cask: state.text });
+  } catch (refusal) {
+    refuse("form-refusal", refusal);
+    return;
+  }
+  form.show(values);
+  const missing = form.missing();
+  say("form-word", missing.length ? `${stillOpen(missing.length)}.` : "Nothing is missing.");
+  try {
+    await forForm.ask({ op: "check", cask: withExamples(state.text) });
+  } catch (refusal) {
+    const isOpen = refusal.key ? missing.includes(refusal.key) : missing.length > 0;
+    if (!isOpen && !form.blame(refusal.key, told(refusal))) refuse("form-refusal", refusal);
+  }
+  await drawnAnew();
+  foretold();
+}
+
+/** The text with an example in each place that is still open: what is wrong beside these is told at once. */
+function withExamples(text) {
+  const keys = ["cask", "drop", "channel"].flatMap((table) => form.tables.get(table).keys);
+  const example = (name) => keys.find((key) => key.asked && key.name === name)?.example;
+  return text.replace(/^(\w+)(\s*=\s*)(nan|"FILL IN")/gm, (line, name, equals) =>
+    (example(name) ? `${name}${equals}${example(name)}` : line));
+}
+
+/** A cask file of some of what is stated. */
+function draft(tables, channels = []) {
+  const lines = (values) => Object.entries(values).filter(([, value]) => isStated(value))
+    .map(([key, value]) => `${key} = ${toml(value)}\n`).join("");
+  const [one, all] = [Object.entries(tables).map(([table, values]) => `[${table}]\n${lines(values ?? {})}`),
+    channels.map((channel) => `[[channel]]\n${lines(channel)}`)];
+  return one.concat(all).join("");
+}
+
+async function drawnAnew() {
+  const { cask = {}, drop = {} } = form.values;
+  if (!isStated(cask.length_m) || !isStated(drop.angle_deg)) {
+    drawing.clear("The drawing of the set-up appears here with the length of the cask and the drop angle.");
+    return;
+  }
+  // What the drawing does not show may still be open.
+  const tables = { cask: { mass_kg: 1, ...cask }, drop: { height_m: 1, angle_deg: drop.angle_deg } };
+  if (!isStated(cask.mass_kg)) tables.cask.mass_kg = 1;
+  delete tables.cask.inertia_kg_m2;
+  const channels = form.channels().map((channel, i) => ({ ...channel, source: `s${i}` }))
+    .filter((channel) => drawing.isDrawn(channel))
+    .map(({ name, end, axis, source, position_m, offset_m, polarity }) =>
+      ({ name, end, axis, source, position_m, offset_m, polarity }));
+  try {
+    const svg = await forForm.text({ op: "setup", cask: draft(tables, channels) });
+    drawing.show(svg, form.channels(), cask);
+  } catch {
+    drawing.clear("There is no drawing of what the fields state: see what is marked there.");
+  }
+}
+
+let waiting;
+
+/** The prediction, once nothing more is typed for a while. */
+function foretold() {
+  clearTimeout(waiting);
+  waiting = setTimeout(async () => {
+    const { cask, drop, contact, tolerance } = form.values;
+    const isOpen = form.missing().some((path) => !path.startsWith("channel."));
+    try {
+      const tables = { cask, drop, contact, tolerance };
+      say("prediction", isOpen ? "" : predicted(await forForm.json({ op: "predict", cask: draft(tables) })));
+    } catch {
+      say("prediction", "");
+    }
+  }, 400);
+}
+
+function predicted({ predictions }) {
+  const body = predictions.filter(({ model, slap_down_speed_m_s: speed }) => model === "body" && speed !== null);
+  if (!body.length) return "The model predicts no slap-down of this drop.";
+  const among = (key) => [Math.min(...body.map((one) => one[key])), Math.max(...body.map((one) => one[key]))];
+  const [least, most] = among("slap_down_speed_m_s").map((speed) => speed.toFixed(1));
+  const contacts = new Set(body.map(({ contact }) => contact));
+  const friction = contacts.size > 1 ? ", and friction from none to sticking" : "";
+  return `Predicted slap-down speed at ${shown(body[0].angle_deg)}°: ${least} to ${most} m/s, `
+    + `for a restitution k from ${among("k").join(" to ")}${friction}.`;
+}
+
+// The result.
+
+async function analysed() {
+  refuse("analysis-refusal");
+  await queue;
+  if (!state.recording) {
+    refuse("analysis-refusal", { problem: "there is no recording yet", mend: "choose one above, under 1" });
+    byId("file").focus();
+    return;
+  }
+  const fault = form.firstAtFault();
+  if (fault) {
+    const many = form.missing().length;
+    refuse("analysis-refusal", { problem: many ? stillOpen(many) : "a field is wrong",
+      mend: "the first of them has the cursor now" });
+    form.focus(fault);
+    return;
+  }
+  byId("result").hidden = true;
+  byId("stop").hidden = false;
+  try {
+    const question = { op: "report", name: state.recording.name, cask: state.text };
+    const work = forRecording.ask(question, state.recording);
+    const answer = await during("progress", `Analysing ${question.name} …`, work);
+    let at = 0;
+    state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
+    const [[, report], ...others] = state.files;
+    byId("files").replaceChildren(...others.map(([name, bytes]) => {
+      const button = element("button", { type: "button" }, `Save ${name}`);
+      button.onclick = () => save(name, bytes);
+      return button;
+    }));
+    byId("result").hidden = false;
+    frame("report-frame", new TextDecoder().decode(report));
+    say("progress", withoutPictures());
+    byId("result").scrollIntoView();
+  } catch (refusal) {
+    const path = refusal.key ?? fieldNamed(refusal);
+    if (form.blame(path, told(refusal))) form.focus(path);
+    else refuse("analysis-refusal", refusal);
+  } finally {
+    byId("stop").hidden = true;
+  }
+}
+
+/** The field of a channel that a refusal of the recording speaks of: the key that its remedy names, or the source. */
+function fieldNamed({ problem, mend }) {
+  const i = form.channels().findIndex(({ name }) => problem.includes(`channel "${name}"`));
+  const keys = form.tables.get("channel").keys.map((key) => key.name);
+  const named = [...(mend ?? "").matchAll(/`(\w+)/g)].map(([, word]) => word).find((word) => keys.includes(word));
+  return i < 0 ? null : `channel.${i}.${named ?? "source"}`;
+}
+
+/** What the report has not, since it stands in other files. */
+function withoutPictures() {
+  const { test, report } = form.values;
+  if (!isStated(test?.photos) && !isStated(report?.logo)) return "";
+  return "The report here is without photographs and logo: a page cannot open the files beside the cask file.";
+}
+
+async function started() {
+  const tables = await forForm.json({ op: "keys" });
+  form = new Form(byId("form"), tables, changed);
+  drawing = new Drawing(byId("drawing"), moved, (i) => form.focus(`channel.${i}.position_m`));
+  await inTurn(shown_anew);
+
+  const [drop, file] = [byId("drop"), byId("file")];
+  file.onchange = () => taken([...file.files]);
+  byId("cask").onchange = ({ target }) => opened(target.files[0]);
+  for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
+  document.addEventListener("dragover", () => drop.classList.add("over"));
+  document.addEventListener("dragleave", () => drop.classList.remove("over"));
+  document.addEventListener("drop", (event) => {
+    drop.classList.remove("over");
+    const isFolder = [...event.dataTransfer.items].some((item) => item.webkitGetAsEntry?.()?.isDirectory);
+    if (!isFolder) taken([...event.dataTransfer.files]);
+    else refuse("recording-refusal", { problem: "this is a folder", mend: "pack it as a zip, and drop that" });
+  });
+  byId("anew").onclick = () => inTurn(() => begun({ keep: false }));
+  byId("form").onsubmit = (event) => event.preventDefault();
+  byId("text").oninput = () => inTurn(() => {
+    Object.assign(state, { text: byId("text").value, isOwn: true });
+    return shown_anew();
+  });
+  byId("save-cask").onclick = () => queue.then(() => save(CASK_NAME, state.text));
+  byId("analyse").onclick = analysed;
+  byId("stop").onclick = () => forRecording.stop();
+  byId("save-report").onclick = () => save(...state.files[0]);
+  byId("print").onclick = () => byId("report-frame").contentWindow.print();
+}
+
+started().catch((fault) => refuse("broken", { problem: `This browser cannot run the page: ${fault.message}.`,
+  mend: "It needs a browser of 2023 or newer that may run WebAssembly." }));

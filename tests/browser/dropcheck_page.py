@@ -1,0 +1,258 @@
+"""Open the page that analyses recordings in a real browser, and hold it to the command.
+
+    python3 tests/browser/dropcheck_page.py dropcheck.html COMMAND [--short]
+
+COMMAND is the dropcheck of the same source; --short compares one recording a format. Needs Chromium with its driver,
+and selenium and axe-core-python from PyPI. Prints one line a check; the first that fails ends it with status 1.
+"""
+
+import base64
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from axe_core_python.selenium import Axe
+from page import held, opened
+from selenium.webdriver import ActionChains, Keys
+from selenium.webdriver.common.by import By
+
+EXAMPLES = Path(__file__).parents[2] / "fixtures/examples"
+SHORT = ["anf18-json", "anf10-plain", "vhlw-rest"]
+# When, where, by which words and by what the recording was read; a page has other ones.
+OF_THE_CALL = {"program", "command", "analysed", "cask", "version", "recording", "read with"}
+# What has no interval of its own, and what is zero but for the last digits.
+RELATIVE, ABSOLUTE = 1e-6, 1e-12
+
+ASKED = """
+const [method, bytes, name, cask, done] = arguments;
+const plain = Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0));
+const refused = (refusal) => done({refusal: refusal.message});
+window.dropcheck[method](plain, name, cask).then((json) => done({json}), refused);
+"""
+
+
+def asked(driver, method, recording, cask=None):
+    """What the page answers to a program: its JSON, or the words of its refusal."""
+    data = base64.b64encode(recording.read_bytes()).decode()
+    return driver.execute_async_script(ASKED, method, data, recording.name, cask and cask.read_text())
+
+
+def said(command, *words):
+    """What the command answers: its JSON, or the words of its refusal."""
+    done = subprocess.run([command, *words, "--json", "-"], cwd=EXAMPLES, capture_output=True, text=True, check=False)
+    return {"json": json.loads(done.stdout)} if done.stdout else {"refusal": done.stderr}
+
+
+def differences(one, other, path="", u95=0.0):
+    """Where two answers differ by more than a thousandth of the half-width."""
+    if path.rsplit(".", 1)[-1] in OF_THE_CALL:
+        return []
+    if isinstance(one, dict) and isinstance(other, dict):
+        half = one.get("u95") if isinstance(one.get("u95"), float) else 0.0
+        keys = {**one, **other}
+        return [d for k in keys for d in differences(one.get(k), other.get(k), f"{path}.{k}", half)]
+    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        return [d for i, (a, b) in enumerate(zip(one, other)) for d in differences(a, b, f"{path}[{i}]", u95)]
+    try:
+        gap, size = abs(float(one) - float(other)), max(abs(float(one)), abs(float(other)))
+        is_near = gap <= max(1e-3 * u95, RELATIVE * size, ABSOLUTE)
+    except (TypeError, ValueError):
+        is_near = one == other
+    return [] if is_near else [f"{path}: {one} {other} (u95 {u95})"[:300]]
+
+
+def equal(driver, command, is_short):
+    casks = [c for c in sorted(EXAMPLES.glob("*.toml")) if not is_short or c.stem in SHORT]
+    for cask in casks:
+        for recording in [r for r in EXAMPLES.glob(f"{cask.stem}.*") if r != cask]:
+            pairs = {"inspect": (asked(driver, "inspect", recording), said(command, "inspect", recording.name)),
+                     "analyze": (asked(driver, "analyze", recording, cask),
+                                 said(command, "analyze", recording.name, "--cask", cask.name))}
+            for what, (page, here) in pairs.items():
+                if recording.suffix == ".h5" and "does not read" in page.get("refusal", ""):
+                    print(f"not compared: {page['refusal']}")
+                    continue
+                found = differences(here, page)
+                held(f"{what} of {recording.name} as the command", "json" in page and not found, found[:9])
+
+
+def value(driver, path):
+    return driver.find_element(By.ID, f"field-{path}").get_attribute("value")
+
+
+def told(driver, place):
+    return driver.find_element(By.ID, place).text
+
+
+def soon(what, is_so):
+    """Holds a check as soon as it holds, after twenty seconds at the latest."""
+    end = time.time() + 20
+    while not is_so() and time.time() < end:
+        time.sleep(0.1)
+    held(what, is_so())
+
+
+def typed(driver, text):
+    """Types where the cursor stands."""
+    ActionChains(driver).send_keys(text).perform()
+
+
+def to(driver, place):
+    """Goes to an element by the key Tab alone; whether it came there."""
+    for _ in range(200):
+        if driver.execute_script("return document.activeElement.id") == place:
+            return
+        typed(driver, Keys.TAB)
+    held(f"the key Tab leads to {place}", False)
+
+
+def by_hand(form):
+    """The form of `init` as a hand would fill it in."""
+    for old, new in [('# name = "CASK" ', 'name = "ANF-18" '), ("mass_kg = nan", "mass_kg = 4466"),
+                     ("length_m = nan", "length_m = 5.512"), ("# height_m = 0.8 ", "height_m = 0.792 "),
+                     ("height_m = nan", "height_m = 9"),
+                     ("angle_deg = nan", "angle_deg = 15"), ('end = "FILL IN"', 'end = "first"'),
+                     ('axis = "FILL IN"', 'axis = "transverse"'), ("position_m = nan", "position_m = 0.15"),
+                     ('end = "FILL IN"', 'end = "second"'), ('axis = "FILL IN"', 'axis = "transverse"'),
+                     ("position_m = nan", "position_m = 5.362")]:
+        before, behind = form.split(old, 1)
+        form = before + new + behind
+    return form
+
+
+def filled_in(driver, command, folder):
+    """A recording to its cask file by keys alone, with decimal commas; equal to `init` and a hand."""
+    driver.find_element(By.ID, "file").send_keys(str(EXAMPLES / "anf18-json.mcap"))
+    soon("the channels are listed", lambda: "/daq/a2.samples" in told(driver, "listing"))
+    soon("the form asks for what only a person knows", lambda: told(driver, "form-word").startswith("10 fields"))
+    answers = {"cask.name": "ANF-18", "cask.mass_kg": "4466", "cask.length_m": "5,512",
+               "cask.height_m": "0,792", "drop.height_m": "9",
+               "drop.angle_deg": "15", "channel.0.end": "f", "channel.0.axis": "t", "channel.0.position_m": "0,15",
+               "channel.1.end": "s", "channel.1.axis": "t", "channel.1.position_m": "5,362"}
+    for path, text in answers.items():
+        to(driver, f"field-{path}")
+        typed(driver, text)
+    typed(driver, Keys.TAB)
+    soon("nothing is missing", lambda: told(driver, "form-word") == "Nothing is missing.")
+    sentence = "Predicted slap-down speed at 15°: 18.4 to 26.8 m/s"
+    soon("a prediction in a sentence", lambda: told(driver, "prediction").startswith(sentence))
+    to(driver, "save-cask")
+    typed(driver, Keys.ENTER)
+    soon("the cask file is saved", (folder / "cask.toml").exists)
+    saved = (folder / "cask.toml").read_text()
+    init = [command, "init", "anf18-json.mcap"]
+    hand = by_hand(subprocess.run(init, cwd=EXAMPLES, capture_output=True, text=True, check=True).stdout)
+    held("the file is the one of init and a hand", saved == hand,
+         [pair for pair in zip(saved.splitlines(), hand.splitlines()) if pair[0] != pair[1]][:3])
+
+
+def analysed(driver, folder):
+    """The report, to see and to save."""
+    to(driver, "analyse")
+    typed(driver, Keys.ENTER)
+    soon("the report is there", driver.find_element(By.ID, "save-report").is_displayed)
+    held("no refusal", not told(driver, "analysis-refusal"))
+    driver.switch_to.frame("report-frame")
+    soon("with its curves", lambda: len(driver.find_elements(By.CSS_SELECTOR, ".uplot")) >= 8)
+    words = driver.find_element(By.TAG_NAME, "body").text
+    held("and its verdict", "DATA SOUND" in words and "20.62 ± 0.40 m/s" in words, words[:60])
+    driver.switch_to.default_content()
+    driver.find_element(By.ID, "save-report").click()
+    soon("it is saved", (folder / "report.html").exists)
+    held("as it is", "<title>ANF-18: slap-down drop test" in (folder / "report.html").read_text())
+
+
+def moved(driver):
+    """A sensor is moved along the cask by the pointer, and by keys."""
+    handle = driver.find_element(By.CSS_SELECTOR, ".handle[data-channel='0']")
+    driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", handle)
+    ActionChains(driver).click_and_hold(handle).move_by_offset(60, -16).release().perform()
+
+    def is_at(place):
+        text = f"position_m = {place:g}"
+        return text in driver.find_element(By.ID, "text").get_attribute("value")
+
+    place = float(value(driver, "channel.0.position_m").replace(",", "."))
+    held("a drag moves a sensor", 0.4 < place < 1.2, place)
+    soon("in the text too", lambda: is_at(place))
+    typed(driver, Keys.ARROW_LEFT)
+    soon("an arrow by a step", lambda: is_at(place - 0.01))
+
+
+def refused(driver):
+    """What is wrong stands under its field."""
+    field = driver.find_element(By.ID, "field-cask.length_m")
+    wrong = {"5512": "5512 mm are 5.512", "5,5 m": "without a unit", "1.234,5": "more than one decimal"}
+    for text, word in wrong.items():
+        field.clear()
+        field.send_keys(text, Keys.TAB)
+        soon(f"{text} is refused under its field", lambda word=word: word in told(driver, "field-cask.length_m-error"))
+    field.clear()
+    field.send_keys("5,512", Keys.TAB)
+    soon("and taken when it is right", lambda: not told(driver, "field-cask.length_m-error"))
+
+
+def refused_later(driver):
+    """What the recording speaks against stands under the field of its channel."""
+    field = driver.find_element(By.ID, "field-channel.1.source")
+    field.clear()
+    field.send_keys("/daq/a7.samples", Keys.TAB)
+    driver.find_element(By.ID, "analyse").click()
+    soon("a source that is not there is refused under its field",
+         lambda: "/daq/a7.samples" in told(driver, "field-channel.1.source-error"))
+    held("the cursor stands there",
+         driver.execute_script("return document.activeElement.id") == "field-channel.1.source")
+
+
+def seen(driver):
+    """Accessible, in the light and in the dark, and no wider than its screen."""
+    driver.execute_script("document.querySelectorAll('details').forEach((details) => { details.open = true; })")
+    for scheme in ("light", "dark"):
+        feature = {"name": "prefers-color-scheme", "value": scheme}
+        driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
+        axe = Axe().run(driver, options="{iframes: false}")
+        found = [(v["id"], [n["html"][:120] for n in v["nodes"]][:2]) for v in axe["violations"]]
+        held(f"axe finds nothing in the {scheme}", not found, found)
+    for size in (375, 768, 1440):
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": size < 400})
+        time.sleep(0.5)
+        wide = driver.execute_script("return document.documentElement.scrollWidth")
+        held(f"nothing wider than {size} px", wide <= size, wide)
+    driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def closed(driver):
+    """A page that can ask for nothing."""
+    held("no request is allowed", driver.execute_async_script(
+        "fetch('https://example.org').then(() => arguments[0](false), () => arguments[0](true))"))
+    policy = driver.find_element(By.CSS_SELECTOR, "meta[http-equiv]").get_attribute("content")
+    held("by its policy", "default-src 'none'" in policy and "connect-src 'none'" in policy, policy)
+    log = [line["message"] for line in driver.get_log("browser")]
+    held("the policy refused it", any("Content Security Policy" in line for line in log))
+
+
+def main(page, command, is_short):
+    driver = opened(page)
+    driver.set_script_timeout(120)
+    with tempfile.TemporaryDirectory() as folder:
+        driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": folder})
+        filled_in(driver, command, Path(folder))
+        analysed(driver, Path(folder))
+    moved(driver)
+    refused(driver)
+    seen(driver)
+    refused_later(driver)
+    equal(driver, command, is_short)
+    held("no error on the console", not driver.get_log("browser"))
+    asked_for = driver.execute_script("return performance.getEntriesByType('resource').map((entry) => entry.name)")
+    held("no request", not [name for name in asked_for if not name.startswith("blob:")], asked_for)
+    closed(driver)
+    driver.quit()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]).resolve(), "--short" in sys.argv[3:])
