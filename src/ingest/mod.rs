@@ -58,6 +58,7 @@ pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
 #[cfg(feature = "native")]
 pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
+pub(crate) use lines::in_utf8;
 pub use listed::read_listed;
 pub use recording_file::{RecordingFile, bytes_of, opened};
 pub use unchanged::hexadecimal;
@@ -80,8 +81,8 @@ pub(crate) struct ReadRequest<'a> {
 #[cfg(any(test, fuzzing))]
 impl<'a> ReadRequest<'a> {
     /// Of which nobody is told how far it is.
-    pub(crate) fn silent(path: &'a Path, limits: Limits) -> Self {
-        Self { file: path.into(), limits, progress: &|_| () }
+    pub(crate) fn silent(file: impl Into<RecordingFile<'a>>, limits: Limits) -> Self {
+        Self { file: file.into(), limits, progress: &|_| () }
     }
 }
 
