@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// What the cask file is called.
 const CASK_NAME: &str = "cask.toml";
 
+/// What reading may take of the 4 GiB that a page can have; the recording and the analysis need as much.
+const MEMORY_BYTES: u64 = 2 << 30;
+
 /// What is asked, and of what.
 #[derive(Deserialize)]
 struct Header {
@@ -99,7 +102,7 @@ impl Question {
     }
 
     fn listing(&self) -> Result<Listing, Report> {
-        Ok(ingest::list_within(self.recording(), Limits::default(), &|_| ())?)
+        Ok(ingest::list_within(self.recording(), Limits::of_memory(MEMORY_BYTES), &|_| ())?)
     }
 
     /// The page with every source as a curve.
@@ -108,7 +111,7 @@ impl Question {
         let drawn = report::drawn(&listing);
         let mut page = report::FirstLook::of(&listing, &drawn);
         let add = |number, looked| page.add(number, looked);
-        stages::look_at_each(self.recording(), &drawn, Limits::default(), &|_| (), add);
+        stages::look_at_each(self.recording(), &drawn, Limits::of_memory(MEMORY_BYTES), &|_| (), add);
         let mut files = page.files(&ingest::sha256(self.recording())?)?;
         Ok(files.swap_remove(0).1)
     }
@@ -121,7 +124,8 @@ impl Question {
                 "{CASK_NAME}: the rest lies in a file of its own, which a page cannot open"
             ));
         }
-        let recording = stages::read_within(self.recording(), &file, Limits::default(), &|_| ())?;
+        let recording =
+            stages::read_within(self.recording(), &file, Limits::of_memory(MEMORY_BYTES), &|_| ())?;
         Ok(dropcheck::analyze(&recording, &file))
     }
 

@@ -124,6 +124,7 @@ fn hypotheses(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
             all.push(vec![exchanged]);
         }
     }
+    all.extend(of_skin(channels, file.cask.height_m));
     for group in across.chunks(1).chain(all_of) {
         // Message types imply m/s², which fewer samples are in than carry it.
         let may_be_implied = |c: &Channel| c.unit != "g" && recording.format == RecordingFormat::Mcap;
@@ -137,6 +138,19 @@ fn hypotheses(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
         all.extend([vec![reversed(group)], vec![from_end]]);
     }
     all
+}
+
+/// Sensors on the skin, above or below, that are stated on the axis: the axial ones tell.
+fn of_skin(channels: &[Channel], section_m: f64) -> Vec<Vec<Slip>> {
+    let is_stated = channels.iter().any(|c| c.offset_m != 0.0);
+    if is_stated || section_m <= 0.0 || channels.iter().all(|c| c.axis == Axis::Transverse) {
+        return Vec::new();
+    }
+    let names: Vec<String> = channels.iter().map(|c| c.name.clone()).collect();
+    let on_skin = |right, offset_m| vec![slip("offset_m", names.clone(), right, [offset_m, 0.0])];
+    let half_m = section_m / 2.0;
+    let above = on_skin("as half the section, on the upper skin", half_m);
+    vec![above, on_skin("as minus half the section, on the lower skin", -half_m)]
 }
 
 fn slip(key: &'static str, names: Vec<String>, right: &'static str, [from, by]: [f64; 2]) -> Slip {
@@ -192,6 +206,7 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
             cask.inertia_kg_m2 *= if is_default { by * by } else { 1.0 };
         }
         "source" => exchange(own),
+        "offset_m" => own.for_each(|c| mend(&mut c.offset_m)),
         "position_m" => own.for_each(|c| mend(&mut c.position_m)),
         "sample_rate_hz" => own.for_each(|c| mend(&mut c.sample_rate_hz)),
         // What the sensor can read stays what it is.

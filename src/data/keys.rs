@@ -199,7 +199,8 @@ pub const CHANNEL: [Key; 21] = [
     Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),
     text("unit", "the recording's").shown(r#""g""#, "left out: the recording says so itself"),
     number("position_m", REQUIRED).asked("0.15", "along the axis, from the first end"),
-    number("offset_m", "0").shown("0.0", "across the axis, positive away from the target"),
+    number("offset_m", "0")
+        .shown("0.0", "across the axis, positive away from the target: half the section on the upper skin"),
     number("polarity", "1").shown("1", "-1: mounted the other way round"),
     number("sensitivity", "").above_zero().shown("10.0", r#"mV per g, with "V" and "mV""#),
     number("full_scale", "–").above_zero().shown("2000.0", "in `unit`: where the channel clips"),

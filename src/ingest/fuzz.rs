@@ -1,12 +1,12 @@
 //! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones,
 //! the tests below replay what it kept.
 
-use super::{Limits, ReadRequest, cask_file, csv, hdf5, mcap, mme, number, time_base};
+use super::{Limits, ReadRequest, RecordingFile, cask_file, csv, hdf5, mcap, mme, number, time_base};
 use crate::data::{CaskFile, Samples};
 use crate::lab::scene_file;
 use std::io::Write as _;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 use tempfile::NamedTempFile;
 
 /// Takes bytes apart; none may panic, hang or take memory without bound.
@@ -52,31 +52,34 @@ fn in_file(bytes: &[u8], read: impl FnOnce(&Path)) {
     read(file.path());
 }
 
+fn in_memory(bytes: &[u8], read: impl Fn(ReadRequest)) {
+    let bytes: Arc<[u8]> = bytes.into();
+    let file = RecordingFile::in_memory(Path::new("recording"), &bytes);
+    read(ReadRequest::silent(file, Limits::of_memory(0)));
+}
+
 fn table(bytes: &[u8]) {
-    let limits = Limits::of_memory(0);
-    in_file(bytes, |path| {
-        let _ = csv::list(ReadRequest::silent(path, limits));
-        let _ = csv::read(ReadRequest::silent(path, limits), &TABLE);
+    in_memory(bytes, |request| {
+        let _ = csv::list(request);
+        let _ = csv::read(request, &TABLE);
     });
 }
 
 fn messages(bytes: &[u8]) {
-    let limits = Limits::of_memory(0);
-    in_file(bytes, |path| {
-        let _ = mcap::list(ReadRequest::silent(path, limits));
-        let _ = mcap::read(ReadRequest::silent(path, limits), &TOPICS);
+    in_memory(bytes, |request| {
+        let _ = mcap::list(request);
+        let _ = mcap::read(request, &TOPICS);
     });
 }
 
 /// Bytes as a zip in ISO-MME, or parted by form feeds as the index and two channels in a folder.
 fn channels(bytes: &[u8]) {
-    let limits = Limits::of_memory(0);
-    let take = |path: &Path| {
-        let _ = mme::list(ReadRequest::silent(path, limits));
-        let _ = mme::read(ReadRequest::silent(path, limits), &CHANNELS);
+    let take = |request: ReadRequest| {
+        let _ = mme::list(request);
+        let _ = mme::read(request, &CHANNELS);
     };
     if bytes.starts_with(b"PK") {
-        return in_file(bytes, take);
+        return in_memory(bytes, take);
     }
     let folder = tempfile::tempdir().expect("a folder for temporary files");
     std::fs::create_dir(folder.path().join("Channel")).expect("a folder");
@@ -85,7 +88,7 @@ fn channels(bytes: &[u8]) {
     for (name, part) in names.zip(parts).chain([("T1.mme", &b""[..])]) {
         std::fs::write(folder.path().join(name), part).expect("room for a short file");
     }
-    take(folder.path());
+    take(ReadRequest::silent(folder.path(), Limits::of_memory(0)));
 }
 
 /// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound

@@ -57,8 +57,8 @@ pub(crate) struct ReadRequest<'a> {
 #[cfg(any(test, fuzzing))]
 impl<'a> ReadRequest<'a> {
     /// Of which nobody is told how far it is.
-    pub(crate) fn silent(path: &'a Path, limits: Limits) -> Self {
-        Self { file: path.into(), limits, progress: &|_| () }
+    pub(crate) fn silent(file: impl Into<RecordingFile<'a>>, limits: Limits) -> Self {
+        Self { file: file.into(), limits, progress: &|_| () }
     }
 }
 

@@ -228,3 +228,27 @@ fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_t
     // Six of twelve stand 3 u and more out of what the other closures and all tolerances explain.
     assert!(told >= 10 && 2 * found >= told && found + held + 2 >= told, "{found} and {held} of {told}");
 }
+
+#[test]
+fn sensors_on_the_skin_that_are_stated_on_the_axis_are_named_and_never_wrong() {
+    let drawn = (0..140).map(|n| campaign::scene(20_261_127, SceneNumber::Undamaged(n), true).0);
+    let is_axial = |file: &SceneFile| file.stated.channels.iter().any(|c| c.axis == Axis::Axial);
+    let (mut passed, mut named, mut told) = (0, 0, 0);
+    for mut file in drawn.filter(is_axial).take(8) {
+        let motion = synth::simulate(&file.scene);
+        let half_m = file.stated.cask.height_m / 2.0;
+        for (channel, spec) in file.scene.channels.iter_mut().zip(&mut file.stated.channels) {
+            (channel.offset_m, spec.offset_m) = (-half_m, 0.0);
+        }
+        let recording = synth::record(&file.scene, &motion);
+        let read = in_memory::synthetic(&recording, &file.stated).expect("a recording");
+        let result = analyze(&read, &file.stated).result;
+        let truth_m_s = motion.truth.speed.expect("R strikes");
+        let is_off = |speed: dropcheck::data::Estimate| (speed.value - truth_m_s).abs() > 2.0 * speed.u95;
+        let says = |f: &Finding| f.message.contains("`offset_m`") && f.message.contains("on the lower skin");
+        passed += usize::from(result.verdict == Verdict::Pass && result.slap_down.speed.is_some_and(is_off));
+        named += usize::from(result.quality.iter().any(says));
+        told += usize::from(result.verdict != Verdict::Pass);
+    }
+    assert!(passed == 0 && 2 * named >= told && told > 0, "{named} of {told} named, {passed} pass wrongly");
+}
