@@ -26,7 +26,9 @@ fn plain(object: &Object) -> Object {
                 told.value_bytes = 0;
             }
             if let Storage::Chunked { chunks, .. } = &mut told.storage {
-                chunks.iter_mut().for_each(|chunks| chunks.sort_by_key(|chunk| (chunk.row, chunk.column)));
+                if let Some(chunks) = chunks {
+                    chunks.sort_by_key(|chunk| (chunk.row, chunk.column));
+                }
             }
         }
         Object::Broken(_) => object = Object::Broken(Vec::new()),
