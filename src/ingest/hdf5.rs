@@ -28,6 +28,8 @@ mod types;
 mod wall;
 
 pub(super) use list::list;
+#[cfg(not(feature = "native"))]
+pub(super) use pure::READER;
 #[cfg(any(test, fuzzing))]
 pub(super) use room::answer_by;
 #[cfg(feature = "native")]

@@ -116,7 +116,10 @@ pub fn read_within<'a>(
         let format = detect::format(file)?;
         let raw = read_raw(ReadRequest { file, limits, progress }, format, cask_file);
         let raw = raw.map_err(|fault| fault.in_file(file.path, path))?;
-        Ok(((raw, format), converted.map(|converted| converted.reader)))
+        let reader = converted.map(|converted| converted.reader);
+        #[cfg(not(feature = "native"))]
+        let reader = reader.or_else(|| (format == RecordingFormat::Hdf5).then(|| hdf5::READER.to_owned()));
+        Ok(((raw, format), reader))
     })?;
     let recording = assemble::recording(path, format, sha256, raw, stated)?;
     Ok(Recording { reader, ..recording })

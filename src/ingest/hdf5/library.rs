@@ -176,7 +176,7 @@ impl Opened<'_> {
 fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     let made = dataset.create_plist()?;
     let dtype = dataset.dtype()?;
-    let mut told = Dataset::of_type(&types::of_library::of(&dtype));
+    let mut told = types::of_library::of(&dtype).dataset();
     if made.get_layout()? == Layout::Virtual {
         return Ok(told);
     }

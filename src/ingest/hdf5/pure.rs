@@ -3,15 +3,15 @@
 
 mod attributes;
 mod filters;
+mod number;
 mod places;
+mod words;
 
 use super::answer::{
-    AttributeValue, Bytes, Dataset, FRAME_NUMBERS, Filter, NumberType, Object, Packing, Reply, Slab, Storage,
+    AttributeValue, Bytes, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Reply, Slab, Storage,
     StoredChunk, receive, send,
 };
-use super::fault::BEYOND;
 use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
-use super::types::{Kind, Order, Type, of_message};
 use hdf5_reader::chunk_index::ChunkEntry;
 use hdf5_reader::error::Error;
 use hdf5_reader::messages::HdfMessage;
@@ -19,14 +19,16 @@ use hdf5_reader::messages::dataspace::DataspaceType;
 use hdf5_reader::messages::layout::DataLayout;
 use hdf5_reader::object_header::ObjectHeader;
 use hdf5_reader::{Hdf5File, OpenOptions};
+use number::{NumberIn, type_of};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 use std::rc::Rc;
 use std::sync::Arc;
+use words::{beyond, words};
 
 /// The library and its version, as Cargo.lock has it.
-pub(super) const READER: &str = "hdf5-reader 0.12.1";
+pub(in crate::ingest) const READER: &str = "hdf5-reader 0.12.1";
 
 /// A file in memory as the library has it open.
 pub(super) struct InMemory {
@@ -70,24 +72,18 @@ pub(super) fn opened(bytes: &Arc<[u8]>) -> Result<(InMemory, u64), Vec<Bytes>> {
     Ok((store, user_block))
 }
 
-/// Words for what the library does not read, or might read wrong.
-fn beyond(what: &str) -> Vec<Bytes> {
-    vec![format!("{BEYOND}{what}").into_bytes()]
+/// A dataset as the library has it open.
+struct OpenDataset {
+    dataset: hdf5_reader::Dataset,
+    /// Whether the library fills what was never written with an attribute, which the C library does not.
+    is_filled_otherwise: bool,
 }
 
-/// The library's words why something failed.
-fn words(error: Error) -> Vec<Bytes> {
-    match error {
-        Error::Context { source, .. } => words(*source),
-        Error::UnsupportedLayoutClass(3) => beyond("a dataset whose values lie in other datasets"),
-        Error::DecompressionError(_) | Error::FilterError(_) => {
-            vec![b"filter returned failure".to_vec(), error.to_string().into_bytes()]
-        }
-        Error::InvalidData(what) if what.contains("UTF-8") => beyond("names that are not in UTF-8"),
-        error => match error.to_string().strip_prefix("unsupported ") {
-            Some(what) => beyond(what),
-            None => vec![error.to_string().into_bytes()],
-        },
+impl OpenDataset {
+    /// Of so many values along each side, in the file: text of varying length takes other room in memory.
+    fn bytes_of(&self, sizes: &[usize]) -> Result<u64, Vec<Bytes>> {
+        let value_bytes = self.dataset.raw_element_size().map_err(words)? as u64;
+        Ok(sizes.iter().fold(value_bytes, |all, &size| all.saturating_mul(size as u64)))
     }
 }
 
@@ -118,7 +114,7 @@ impl InMemory {
     /// A dataset without its numbers.
     fn dataset(&mut self, path: &str, header: &ObjectHeader) -> Result<Dataset, Vec<Bytes>> {
         let dataset = self.file.dataset(path).map_err(words)?;
-        let mut told = Dataset::of_type(&type_of(&dataset.raw_datatype().map_err(words)?)?);
+        let mut told = type_of(&dataset.raw_datatype().map_err(words)?)?.dataset();
         let (mut layout, mut fill) = (None, None);
         for message in &header.messages {
             match message {
@@ -149,7 +145,8 @@ impl InMemory {
         told.attributes = attributes::held(&self.file, &raw)?;
         let is_filled_otherwise =
             fill.is_none() && raw.iter().any(|attribute| attribute.name() == "_FillValue");
-        self.place(&mut told, layout, &dataset, is_filled_otherwise)?;
+        let layout = layout.ok_or_else(|| beyond("a dataset without a layout"))?;
+        self.place(&mut told, layout, &OpenDataset { dataset, is_filled_otherwise })?;
         Ok(told)
     }
 
@@ -157,52 +154,49 @@ impl InMemory {
     fn place(
         &self,
         told: &mut Dataset,
-        layout: Option<&DataLayout>,
-        dataset: &hdf5_reader::Dataset,
-        is_filled_otherwise: bool,
+        layout: &DataLayout,
+        dataset: &OpenDataset,
     ) -> Result<(), Vec<Bytes>> {
-        let shape = told.shape.as_deref().unwrap_or(&[]);
-        // In the file: text of varying length takes other room there than in memory.
-        let value_bytes = dataset.raw_element_size().map_err(words)? as u64;
-        let bytes = |sizes: &[usize]| sizes.iter().fold(value_bytes, |all, &n| all.saturating_mul(n as u64));
-        let base = self.file.superblock().base_address;
         match layout {
-            Some(DataLayout::Compact { data }) => {
+            DataLayout::Compact { data } => {
                 (told.storage, told.stored_bytes) = (Storage::Compact, data.len() as u64);
             }
-            Some(DataLayout::Contiguous { address, .. }) => {
-                let at = (*address != u64::MAX).then(|| address.saturating_add(base));
-                told.stored_bytes = at.map_or(0, |_| bytes(shape));
-                told.storage = Storage::Contiguous(at);
+            DataLayout::Contiguous { address: u64::MAX, .. } => told.storage = Storage::Contiguous(None),
+            DataLayout::Contiguous { address, .. } => {
+                let at = address.saturating_add(self.file.superblock().base_address);
+                told.stored_bytes = dataset.bytes_of(told.shape.as_deref().unwrap_or(&[]))?;
+                told.storage = Storage::Contiguous(Some(at));
             }
-            Some(DataLayout::Chunked { address, dims, chunk_indexing, .. }) => {
-                let chunk: Vec<usize> = dims.iter().take(shape.len()).map(|&n| n as usize).collect();
-                let chunk_bytes = bytes(&chunk);
-                let grid = shape.iter().zip(&chunk).map(|(&whole, &chunk)| whole.div_ceil(chunk.max(1)));
-                let count = grid.fold(1_usize, usize::saturating_mul);
-                let is_cut =
-                    shape.iter().zip(&chunk).any(|(whole, chunk)| !whole.is_multiple_of(*chunk.max(&1)));
+            DataLayout::Chunked { address, dims, chunk_indexing, .. } => {
+                let shape = told.shape.as_deref().unwrap_or(&[]);
+                let chunk: Vec<usize> =
+                    dims.iter().take(shape.len()).map(|&size| (size as usize).max(1)).collect();
+                let sides = || shape.iter().zip(&chunk).map(|(&whole, &chunk)| (whole, chunk));
+                let is_cut = sides().any(|(whole, chunk)| !whole.is_multiple_of(chunk));
                 if told.filters == [Filter::Shuffle] && is_cut && chunk_indexing.is_some() {
                     return Err(beyond("shuffled blocks at an edge, which may be shuffled or not"));
                 }
+                let index = chunk_indexing.as_ref();
                 let mut chunks =
-                    places::chunks(&self.file, dataset, *address, chunk_indexing.as_ref()).map_err(words)?;
-                if told.filters.is_empty() {
-                    chunks.iter_mut().for_each(|stored| stored.size = chunk_bytes);
-                }
-                if is_filled_otherwise && chunks.len() < count {
+                    places::chunks(&self.file, &dataset.dataset, *address, index).map_err(words)?;
+                let count =
+                    sides().fold(1_usize, |all, (whole, chunk)| all.saturating_mul(whole.div_ceil(chunk)));
+                if dataset.is_filled_otherwise && chunks.len() < count {
                     return Err(beyond("blocks that were never written beside an attribute _FillValue"));
                 }
+                if told.filters.is_empty() {
+                    let bytes = dataset.bytes_of(&chunk)?;
+                    for chunk in &mut chunks {
+                        chunk.size = bytes;
+                    }
+                }
                 told.stored_bytes = chunks.iter().fold(0, |all: u64, chunk| all.saturating_add(chunk.size));
-                let is_told = Packing::of(&told.filters).is_some() && chunk.len() <= 2;
-                let chunks = (is_told && chunks.len() <= MOST_CHUNKS)
-                    .then(|| {
-                        chunks.iter().map(|chunk| stored(chunk, base)).collect::<Option<Vec<StoredChunk>>>()
-                    })
-                    .flatten();
-                told.storage = Storage::Chunked { shape: chunk, chunks };
+                let is_told =
+                    Packing::of(&told.filters).is_some() && chunk.len() <= 2 && chunks.len() <= MOST_CHUNKS;
+                let base = self.file.superblock().base_address;
+                let stored = || chunks.iter().map(|chunk| stored(chunk, base)).collect();
+                told.storage = Storage::Chunked { shape: chunk, chunks: is_told.then(stored).flatten() };
             }
-            None => return Err(beyond("a dataset without a layout")),
         }
         Ok(())
     }
@@ -280,15 +274,6 @@ impl Store for InMemory {
     }
 }
 
-/// The type that a message states.
-fn type_of(message: &[u8]) -> Result<Type, Vec<Bytes>> {
-    let dtype = of_message::of(message).ok_or_else(|| beyond("values of an unknown type"))?;
-    if matches!(dtype.kind, Kind::OddNumber) && !of_message::is_half(message) {
-        return Err(beyond(&format!("numbers of an unusual kind, {} bytes each", dtype.bytes)));
-    }
-    Ok(dtype)
-}
-
 /// A chunk in a file that begins so many bytes behind its first; `None` where filters were left out.
 fn stored(chunk: &ChunkEntry, base: u64) -> Option<StoredChunk> {
     let place = |i: usize| chunk.offsets.get(i).map_or(Some(0), |&n| usize::try_from(n).ok());
@@ -299,57 +284,6 @@ fn stored(chunk: &ChunkEntry, base: u64) -> Option<StoredChunk> {
         at: chunk.address.checked_add(base)?,
         bytes,
     })
-}
-
-/// How a number is stored.
-#[derive(Clone, Copy)]
-struct NumberIn {
-    number: NumberType,
-    is_big_endian: bool,
-    is_half: bool,
-}
-
-impl NumberIn {
-    /// `None` where the type is none of numbers.
-    fn of(dtype: &Type, message: &[u8]) -> Option<Self> {
-        let is_big_endian = dtype.order == Order::Highest;
-        Some(Self { number: dtype.number()?, is_big_endian, is_half: of_message::is_half(message) })
-    }
-
-    fn bytes(self) -> usize {
-        if self.is_half { 2 } else { self.number.bytes() }
-    }
-
-    /// From its bytes.
-    #[allow(clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
-    fn value(self, stored: &[u8]) -> f64 {
-        let (mut bytes, length) = ([0; 8], stored.len());
-        bytes[..length].copy_from_slice(stored);
-        if self.is_big_endian {
-            bytes[..length].reverse();
-        }
-        let (unsigned, beside) = (u64::from_le_bytes(bytes), 64 - 8 * u32::try_from(length).unwrap_or(8));
-        let [low, high, ..] = bytes;
-        match self.number {
-            NumberType::F32 if self.is_half => half(u16::from_le_bytes([low, high])),
-            NumberType::F32 => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]).into(),
-            NumberType::F64 => f64::from_bits(unsigned),
-            NumberType::U8 | NumberType::U16 | NumberType::U32 | NumberType::U64 => unsigned as f64,
-            _ => ((unsigned << beside).cast_signed() >> beside) as f64,
-        }
-    }
-}
-
-/// IEEE 754 binary16.
-fn half(bits: u16) -> f64 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023) / 1024.0);
-    let size = match exponent {
-        0 => fraction * 2_f64.powi(-14),
-        31 if fraction > 0.0 => f64::NAN,
-        31 => f64::INFINITY,
-        _ => (1.0 + fraction) * 2_f64.powi(exponent - 15),
-    };
-    if bits >> 15 == 0 { size } else { -size }
 }
 
 /// Numbers of one channel among the values of a dataset, all within them.

@@ -1,4 +1,4 @@
-//! What is asked about an HDF5 file to answers, whoever reads it: its groups are walked and links followed, and
+//! What is asked about an HDF5 file to answers, whoever reads it: its groups are walked, links followed, and
 //! what stands beside samples is taken along.
 
 use super::answer::{AttributeValue, Bytes, Object, Query, Reply, Slab, send};

@@ -5,7 +5,7 @@ pub(super) mod of_library;
 #[cfg(any(not(feature = "native"), test))]
 pub(super) mod of_message;
 
-use super::answer::{Bytes, NumberType, RecordField};
+use super::answer::{Bytes, Dataset, NumberType, RecordField, Storage};
 
 /// A type with more fields than this is no table of channels; nested types multiply.
 const MOST_FIELDS: usize = 4096;
@@ -15,8 +15,8 @@ const DEEPEST: usize = 8;
 
 /// The type of one value or record, as the file has it.
 #[derive(Debug)]
-pub(super) struct Type {
-    pub kind: Kind,
+pub(super) struct ValueType {
+    pub kind: ValueKind,
     pub bytes: usize,
     /// Of all numbers in it; not told of a field.
     pub order: Order,
@@ -24,29 +24,29 @@ pub(super) struct Type {
 
 /// What values of a type are.
 #[derive(Debug)]
-pub(super) enum Kind {
+pub(super) enum ValueKind {
     Number(NumberType),
     /// A number that has no name in Rust: half precision, odd widths.
     OddNumber,
     Text,
     VaryingText,
-    List(Box<Type>, usize),
+    List(Box<ValueType>, usize),
     VaryingList,
     /// Named values.
     Named,
     References,
     /// Names of fields, where they begin in a record (bytes), and what they are.
-    Record(Vec<Field>),
+    Record(Vec<TypeField>),
     Other,
 }
 
 /// A field of a record.
 #[derive(Debug)]
-pub(super) struct Field {
+pub(super) struct TypeField {
     pub name: Bytes,
     /// Where it begins in a record, bytes.
     pub from: usize,
-    pub held: Type,
+    pub held: ValueType,
 }
 
 /// Which byte of a number stands first.
@@ -59,43 +59,55 @@ pub(super) enum Order {
     Mixed,
 }
 
-impl Type {
+impl ValueType {
+    /// A dataset of which nothing else is known.
+    pub(super) fn dataset(&self) -> Dataset {
+        Dataset {
+            type_name: self.name(),
+            value_bytes: self.bytes as u64,
+            number: self.number(),
+            is_plain: self.is_plain(),
+            fields: self.fields(),
+            is_records: matches!(self.kind, ValueKind::Record(_)),
+            shape: None,
+            storage: Storage::Virtual,
+            filters: Vec::new(),
+            stored_bytes: 0,
+            attributes: Vec::new(),
+        }
+    }
+
     /// How numbers of this type are read; `None` where they are none.
     pub(super) fn number(&self) -> Option<NumberType> {
         match self.kind {
-            Kind::Number(number) => Some(number),
-            Kind::OddNumber if self.bytes <= 2 => Some(NumberType::F32),
-            Kind::OddNumber => Some(NumberType::F64),
+            ValueKind::Number(number) => Some(number),
+            ValueKind::OddNumber if self.bytes <= 2 => Some(NumberType::F32),
+            ValueKind::OddNumber => Some(NumberType::F64),
             _ => None,
         }
     }
 
     /// Whether values are stored as their [`Self::number`] is, the lowest byte first.
-    pub(super) fn is_plain(&self) -> bool {
-        matches!(self.kind, Kind::Number(_)) && (self.bytes == 1 || self.order == Order::Lowest)
-    }
-
-    /// Whether its values are records.
-    pub(super) fn is_record(&self) -> bool {
-        matches!(self.kind, Kind::Record(_))
+    fn is_plain(&self) -> bool {
+        matches!(self.kind, ValueKind::Number(_)) && (self.bytes == 1 || self.order == Order::Lowest)
     }
 
     /// A type for people: `int16`, big-endian where it is.
-    pub(super) fn name(&self) -> Bytes {
+    fn name(&self) -> Bytes {
         let name = match &self.kind {
-            Kind::Record(fields) => {
+            ValueKind::Record(fields) => {
                 let names: Vec<&[u8]> = fields.iter().map(|field| &field.name[..]).collect();
                 return [&b"records ("[..], &names.join(&b", "[..]), b")"].concat();
             }
-            Kind::Text | Kind::VaryingText => return b"text".to_vec(),
-            Kind::List(..) | Kind::VaryingList => return b"lists".to_vec(),
-            Kind::Named => return b"named values".to_vec(),
-            Kind::References => return b"references".to_vec(),
-            Kind::Number(number) => number_name(*number),
+            ValueKind::Text | ValueKind::VaryingText => return b"text".to_vec(),
+            ValueKind::List(..) | ValueKind::VaryingList => return b"lists".to_vec(),
+            ValueKind::Named => return b"named values".to_vec(),
+            ValueKind::References => return b"references".to_vec(),
+            ValueKind::Number(number) => number_name(*number),
             // IEEE 754 binary16 is the only one that loggers write and Rust has no type for.
-            Kind::OddNumber if self.bytes == 2 => "float16".into(),
-            Kind::OddNumber => format!("{}-byte number", self.bytes),
-            Kind::Other => return b"another type".to_vec(),
+            ValueKind::OddNumber if self.bytes == 2 => "float16".into(),
+            ValueKind::OddNumber => format!("{}-byte number", self.bytes),
+            ValueKind::Other => return b"another type".to_vec(),
         };
         match self.order {
             Order::Highest if self.bytes > 1 => format!("{name} big-endian"),
@@ -107,9 +119,9 @@ impl Type {
     /// The fields of numbers; none where the type is no record, or none whose layout in the file the library
     /// tells: fields that differ in byte order, and references, texts and lists of varying length, which take
     /// other room in the file than in memory.
-    pub(super) fn fields(&self) -> Vec<RecordField> {
+    fn fields(&self) -> Vec<RecordField> {
         let mut fields = Vec::new();
-        if let Kind::Record(inner) = &self.kind
+        if let ValueKind::Record(inner) = &self.kind
             && self.order != Order::Mixed
             && !self.varies()
         {
@@ -122,9 +134,9 @@ impl Type {
 
     fn varies(&self) -> bool {
         match &self.kind {
-            Kind::Record(fields) => fields.iter().any(|field| field.held.varies()),
-            Kind::List(base, _) => base.varies(),
-            Kind::VaryingList | Kind::VaryingText | Kind::References => true,
+            ValueKind::Record(fields) => fields.iter().any(|field| field.held.varies()),
+            ValueKind::List(base, _) => base.varies(),
+            ValueKind::VaryingList | ValueKind::VaryingText | ValueKind::References => true,
             _ => false,
         }
     }
@@ -149,22 +161,22 @@ struct Outer<'a> {
 }
 
 impl Outer<'_> {
-    fn add(&self, inner: &[Field], fields: &mut Vec<RecordField>) {
+    fn add(&self, inner: &[TypeField], fields: &mut Vec<RecordField>) {
         for field in inner {
             let name = [self.name, &field.name].concat();
             let from = self.from.saturating_add(field.from);
             let (base, count) = match &field.held.kind {
-                Kind::Record(inner) if self.depth < DEEPEST => {
+                ValueKind::Record(inner) if self.depth < DEEPEST => {
                     let name = &[&name, &b"."[..]].concat();
                     Outer { name, from, depth: self.depth + 1, ..*self }.add(inner, fields);
                     continue;
                 }
-                Kind::List(base, count) => (&**base, *count),
+                ValueKind::List(base, count) => (&**base, *count),
                 _ => (&field.held, 1),
             };
             // A damaged type may place a field outside its record.
             let end = count.checked_mul(base.bytes).and_then(|all| all.checked_add(from));
-            if let Kind::Number(number) = base.kind
+            if let ValueKind::Number(number) = base.kind
                 && end.is_some_and(|end| end <= self.record_bytes)
                 && count > 0
                 && fields.len() < MOST_FIELDS

@@ -3,8 +3,9 @@
 use super::super::answer::{AttributeValue, Bytes};
 use super::super::names;
 use super::super::tree::{MOST_BYTES, MOST_VALUES, TEXT_BYTES, joined};
-use super::super::types::Kind;
-use super::{NumberIn, type_of, words};
+use super::super::types::ValueKind;
+use super::number::{NumberIn, type_of};
+use super::words::words;
 use hdf5_reader::messages::dataspace::DataspaceType;
 use hdf5_reader::{Hdf5File, RawAttribute};
 
@@ -44,27 +45,27 @@ pub(super) fn value(
         return Ok(None);
     }
     // A text of varying length: its length, the address of a heap and its number in it.
-    let bytes = if matches!(dtype.kind, Kind::VaryingText) { 16 } else { dtype.bytes };
+    let bytes = if matches!(dtype.kind, ValueKind::VaryingText) { 16 } else { dtype.bytes };
     let short = || vec![b"an attribute has fewer values than it states".to_vec()];
     let each = || values.chunks_exact(bytes.max(1)).take(count);
     if each().len() < count {
         return Err(short());
     }
     Ok(Some(match dtype.kind {
-        Kind::VaryingText => {
+        ValueKind::VaryingText => {
             let root = file.root_group().map_err(words)?;
             let texts =
                 each().map(|place| root.resolve_vlen_reference_bytes(place, 1).map(|text| cut(&text)));
             AttributeValue::Texts(joined(texts.collect::<Result<_, _>>().map_err(words)?))
         }
-        Kind::Text => {
+        ValueKind::Text => {
             let is_padded = message.get(1).is_some_and(|flags| flags & 15 == 2);
             let texts = each().map(|text| if is_padded { cut(text.trim_ascii_end()) } else { cut(text) });
             AttributeValue::Texts(joined(texts.collect()))
         }
         _ => {
             // Named values are numbers, of the type that stands behind their size.
-            let named = matches!(dtype.kind, Kind::Named).then(|| &message[8..]);
+            let named = matches!(dtype.kind, ValueKind::Named).then(|| &message[8..]);
             let number = named.map_or(Ok(NumberIn::of(&dtype, message)), |base| {
                 type_of(base).map(|dtype| NumberIn::of(&dtype, base))
             })?;

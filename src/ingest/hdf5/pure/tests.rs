@@ -25,8 +25,8 @@ fn plain(object: &Object) -> Object {
             if told.is_records && told.fields.is_empty() {
                 told.value_bytes = 0;
             }
-            if let Storage::Chunked { chunks, .. } = &mut told.storage {
-                chunks.iter_mut().for_each(|chunks| chunks.sort_by_key(|chunk| (chunk.row, chunk.column)));
+            if let Storage::Chunked { chunks: Some(chunks), .. } = &mut told.storage {
+                chunks.sort_by_key(|chunk| (chunk.row, chunk.column));
             }
         }
         Object::Broken(_) => object = Object::Broken(Vec::new()),

@@ -1,6 +1,6 @@
 //! A type as it stands in the file (HDF5 file format specification, IV.A.2.d).
 
-use super::{Field, Kind, Order, Type};
+use super::{Order, TypeField, ValueKind, ValueType};
 use crate::ingest::hdf5::answer::NumberType;
 use hdf5_reader::io::Cursor;
 use hdf5_reader::messages::datatype::parse_datatype_description;
@@ -14,35 +14,37 @@ const IEEE: [[u8; 12]; 3] = [
 ];
 
 /// The type that a message states; `None` where it is damaged or unknown.
-pub(in super::super) fn of(message: &[u8]) -> Option<Type> {
+pub(in super::super) fn of(message: &[u8]) -> Option<ValueType> {
     let (&[class, flags, more, _, s0, s1, s2, s3], rest) = message.split_first_chunk::<8>()?;
     let bytes = usize::try_from(u32::from_le_bytes([s0, s1, s2, s3])).ok()?;
     let stated = if flags & 1 == 0 { Order::Lowest } else { Order::Highest };
-    let known = |kind, order| Some(Type { kind, bytes, order });
+    let known = |kind, order| Some(ValueType { kind, bytes, order });
     match class & 15 {
         0 => {
             let is_whole = rest.get(..2)? == [0, 0] && rest.get(2..4)? == [s0.checked_mul(8)?, 0];
-            known(whole(bytes, flags & 8 != 0).filter(|_| is_whole).unwrap_or(Kind::OddNumber), stated)
+            known(whole(bytes, flags & 8 != 0).filter(|_| is_whole).unwrap_or(ValueKind::OddNumber), stated)
         }
         1 => {
             // The highest bit of the mantissa is not stored, the sign is the last bit, no VAX order.
             let is_ieee = flags & 0x70 == 0x20 && usize::from(more) + 1 == bytes.checked_mul(8)?;
             let kind = match IEEE.iter().position(|parts| is_ieee && rest.get(..12) == Some(parts)) {
-                Some(1) => Kind::Number(NumberType::F32),
-                Some(2) => Kind::Number(NumberType::F64),
-                _ => Kind::OddNumber,
+                Some(1) => ValueKind::Number(NumberType::F32),
+                Some(2) => ValueKind::Number(NumberType::F64),
+                _ => ValueKind::OddNumber,
             };
             known(kind, stated)
         }
-        3 => known(Kind::Text, Order::None),
-        2 | 4 => known(Kind::Other, stated),
-        5 => known(Kind::Other, Order::None),
+        3 => known(ValueKind::Text, Order::None),
+        2 | 4 => known(ValueKind::Other, stated),
+        5 => known(ValueKind::Other, Order::None),
         6 => record(message, bytes, usize::from(u16::from_le_bytes([flags, more]))),
-        7 => known(Kind::References, Order::None),
-        8 => known(Kind::Named, of(rest)?.order),
+        7 => known(ValueKind::References, Order::None),
+        8 => known(ValueKind::Named, of(rest)?.order),
         // Of their room in memory.
-        9 if flags & 15 == 1 => Some(Type { kind: Kind::VaryingText, bytes: 8, order: of(rest)?.order }),
-        9 => Some(Type { kind: Kind::VaryingList, bytes: 16, order: of(rest)?.order }),
+        9 if flags & 15 == 1 => {
+            Some(ValueType { kind: ValueKind::VaryingText, bytes: 8, order: of(rest)?.order })
+        }
+        9 => Some(ValueType { kind: ValueKind::VaryingList, bytes: 16, order: of(rest)?.order }),
         10 => {
             let (&count, rest) = rest.split_first()?;
             let (dimensions, before) = (4 * usize::from(count), if class >> 4 < 3 { 3 } else { 0 });
@@ -52,8 +54,8 @@ pub(in super::super) fn of(message: &[u8]) -> Option<Type> {
             let permutation = if class >> 4 < 3 { dimensions } else { 0 };
             let base = of(rest.get(before + dimensions + permutation..)?)?;
             let order = base.order;
-            let is_told = !matches!(base.kind, Kind::OddNumber | Kind::Other);
-            known(if is_told { Kind::List(Box::new(base), count) } else { Kind::Other }, order)
+            let is_told = !matches!(base.kind, ValueKind::OddNumber | ValueKind::Other);
+            known(if is_told { ValueKind::List(Box::new(base), count) } else { ValueKind::Other }, order)
         }
         _ => None,
     }
@@ -67,8 +69,8 @@ pub(in super::super) fn is_half(message: &[u8]) -> bool {
         && message.get(8..20) == Some(&IEEE[0])
 }
 
-fn whole(bytes: usize, is_signed: bool) -> Option<Kind> {
-    Some(Kind::Number(match (bytes, is_signed) {
+fn whole(bytes: usize, is_signed: bool) -> Option<ValueKind> {
+    Some(ValueKind::Number(match (bytes, is_signed) {
         (1, true) => NumberType::I8,
         (2, true) => NumberType::I16,
         (4, true) => NumberType::I32,
@@ -82,7 +84,7 @@ fn whole(bytes: usize, is_signed: bool) -> Option<Kind> {
 }
 
 /// A record of `count` fields.
-fn record(message: &[u8], bytes: usize, count: usize) -> Option<Type> {
+fn record(message: &[u8], bytes: usize, count: usize) -> Option<ValueType> {
     let (version, mut at, mut fields, mut order) = (message[0] >> 4, 8, Vec::new(), Order::None);
     for _ in 0..count {
         let rest = message.get(at..)?;
@@ -110,9 +112,10 @@ fn record(message: &[u8], bytes: usize, count: usize) -> Option<Type> {
             (one, other) if one == other => one,
             _ => Order::Mixed,
         };
-        fields.push(Field { name: rest[..length].to_vec(), from, held });
+        fields.push(TypeField { name: rest[..length].to_vec(), from, held });
         at += from_bytes + end;
     }
-    let is_told = fields.iter().all(|field| !matches!(field.held.kind, Kind::OddNumber | Kind::Other));
-    Some(Type { kind: if is_told { Kind::Record(fields) } else { Kind::Other }, bytes, order })
+    let is_told =
+        fields.iter().all(|field| !matches!(field.held.kind, ValueKind::OddNumber | ValueKind::Other));
+    Some(ValueType { kind: if is_told { ValueKind::Record(fields) } else { ValueKind::Other }, bytes, order })
 }
