@@ -45,8 +45,8 @@ impl Wall {
     }
 }
 
-/// Holds this process to so much memory and processor time; a system that knows no such limit has the reader's
-/// own patience left.
+/// Holds this process to so much memory and processor time; a system that knows no such limit has the
+/// reader's own patience left.
 #[cfg(unix)]
 fn hold(memory_bytes: u64, seconds: u64) {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};

@@ -6,7 +6,7 @@ use hdf5_metno::Datatype;
 use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
 
-pub(in super::super) fn of(dtype: &Datatype) -> ValueType {
+pub(in crate::ingest) fn of(dtype: &Datatype) -> ValueType {
     let kind = match dtype.to_descriptor() {
         Ok(descriptor) => kind(descriptor),
         // Half precision and odd widths have no name in Rust; the library converts them.

@@ -14,7 +14,7 @@ const IEEE: [[u8; 12]; 3] = [
 ];
 
 /// The type that a message states; `None` where it is damaged or unknown.
-pub(in super::super) fn of(message: &[u8]) -> Option<ValueType> {
+pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
     let (&[class, flags, more, _, s0, s1, s2, s3], rest) = message.split_first_chunk::<8>()?;
     let bytes = usize::try_from(u32::from_le_bytes([s0, s1, s2, s3])).ok()?;
     let stated = if flags & 1 == 0 { Order::Lowest } else { Order::Highest };
@@ -62,7 +62,7 @@ pub(in super::super) fn of(message: &[u8]) -> Option<ValueType> {
 }
 
 /// Whether a message states a number of half precision.
-pub(in super::super) fn is_half(message: &[u8]) -> bool {
+pub(in crate::ingest) fn is_half(message: &[u8]) -> bool {
     message.first().is_some_and(|class| class & 15 == 1)
         && message.get(1).is_some_and(|flags| flags & 0x70 == 0x20)
         && message.get(2) == Some(&15)
