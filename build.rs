@@ -11,6 +11,10 @@ fn git(words: &[&str]) -> Option<String> {
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "windows") {
+        // The HDF5 library takes StrStrIA from it, and its crate does not say so.
+        println!("cargo::rustc-link-lib=shlwapi");
+    }
     println!("cargo::rerun-if-env-changed=DROPCHECK_COMMIT");
     if std::env::var("PROFILE").is_ok_and(|profile| profile == "release") {
         println!("cargo::rerun-if-changed=.git/logs/HEAD");

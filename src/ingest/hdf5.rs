@@ -8,6 +8,8 @@ mod clocks;
 mod column;
 mod fault;
 mod find;
+#[cfg(windows)]
+mod job;
 mod library;
 mod list;
 pub(super) mod names;

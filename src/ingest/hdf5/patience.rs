@@ -64,6 +64,8 @@ impl Watched {
 
 /// Ends the process when it was silent for too long, or the reader needs it no more.
 fn watch(mut child: Child, allowed: &Receiver<Option<Duration>>) -> ProcessEnd {
+    #[cfg(windows)]
+    let _job = super::job::that_ends(&child);
     let mut patience = Some(PATIENCE);
     let ended = loop {
         let heard = match patience {

@@ -279,6 +279,14 @@ impl Link {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         #[cfg(unix)]
         command.current_dir("/");
+        #[cfg(windows)]
+        {
+            /// No window of its own beside that of a program without a console (`winbase.h`).
+            const CREATE_NO_WINDOW: u32 = 0x0800_0000;
+            std::os::windows::process::CommandExt::creation_flags(&mut command, CREATE_NO_WINDOW);
+            // Libraries of the system look for others there.
+            command.envs(std::env::var_os("SystemRoot").map(|root| ("SystemRoot", root)));
+        }
         let mut child = command.spawn()?;
         let pipes = child.stdin.take().zip(child.stdout.take()).ok_or(io::ErrorKind::BrokenPipe)?;
         let (to, from) = (BufWriter::new(pipes.0), BufReader::with_capacity(1 << 16, pipes.1));

@@ -38,24 +38,28 @@ impl Wall {
         self.limit(held_bytes);
     }
 
-    #[cfg(unix)]
     fn limit(&self, held_bytes: u64) {
-        use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
         // The library has a chunk packed and unpacked, the reader what comes out of it.
         let memory_bytes = held_bytes.saturating_mul(4).saturating_add(LEAST_MEMORY_BYTES);
-        let seconds = LEAST_SECONDS.saturating_add(self.asked_bytes / BYTES_PER_S);
-        let limits = [(Resource::As, memory_bytes), (Resource::Cpu, seconds), (Resource::Core, 0)];
-        for (resource, limit) in limits {
-            let maximum = getrlimit(resource).maximum;
-            let current = maximum.map_or(limit, |maximum| limit.min(maximum));
-            // A system that knows no such limit has the reader's own patience left.
-            let _ = setrlimit(resource, Rlimit { current: Some(current), maximum });
-        }
+        hold(memory_bytes, LEAST_SECONDS.saturating_add(self.asked_bytes / BYTES_PER_S));
     }
+}
 
-    #[cfg(not(unix))]
-    #[allow(clippy::unused_self, reason = "such a system has no limits that a process sets itself")]
-    fn limit(&self, _: u64) {}
+/// Holds this process to so much memory and processor time; a system that knows no such limit has the
+/// reader's own patience left.
+#[cfg(unix)]
+fn hold(memory_bytes: u64, seconds: u64) {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    for (resource, limit) in [(Resource::As, memory_bytes), (Resource::Cpu, seconds), (Resource::Core, 0)] {
+        let maximum = getrlimit(resource).maximum;
+        let current = maximum.map_or(limit, |maximum| limit.min(maximum));
+        let _ = setrlimit(resource, Rlimit { current: Some(current), maximum });
+    }
+}
+
+#[cfg(windows)]
+fn hold(memory_bytes: u64, _: u64) {
+    super::job::hold_this_process(memory_bytes);
 }
 
 #[cfg(target_os = "linux")]
