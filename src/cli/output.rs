@@ -45,7 +45,9 @@ pub enum CannotWrite {
     #[diagnostic(help("choose another place, or remove it yourself"))]
     IsAFolder { path: String },
     #[error("{path} could not be written")]
-    #[diagnostic(help("see whether the disk is full; what was there before is unchanged"))]
+    #[diagnostic(help(
+        "see whether the disk is full or another program has it open; what was there before is unchanged"
+    ))]
     Failed { path: String, source: io::Error },
     #[error("standard output could not be written")]
     #[diagnostic(help("see whether the disk behind it is full"))]
@@ -91,6 +93,8 @@ impl Folder {
         while fs::symlink_metadata(standing).is_err() {
             standing = match standing.parent() {
                 Some(parent) if !parent.as_os_str().is_empty() => parent,
+                // A drive or a share of Windows that is not there.
+                _ if standing.has_root() => return Err(CannotWrite::NoFolder { path: shown(standing) }),
                 _ => Path::new("."),
             };
         }

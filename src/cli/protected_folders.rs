@@ -5,6 +5,8 @@ use std::path::Path;
 /// Where nothing but the system's own files belongs.
 const SYSTEM: &str =
     "/bin /boot /dev/block /etc /lib /lib32 /lib64 /proc /sbin /sys /usr /Applications /Library /System";
+/// Variables of Windows that name such places.
+const SYSTEM_OF_WINDOWS: [&str; 3] = ["SystemRoot", "ProgramFiles", "ProgramFiles(x86)"];
 /// What holds other folders: one of its own below is a place.
 const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
 
@@ -13,8 +15,15 @@ const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/
 pub fn is_protected(folder: &Path) -> bool {
     let Ok(real) = folder.canonicalize() else { return false };
     let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());
+    let is_in = |variable: &&str| {
+        let place = std::env::var_os(variable).filter(|_| cfg!(windows));
+        place
+            .and_then(|place| Path::new(&place).canonicalize().ok())
+            .is_some_and(|place| real.starts_with(place))
+    };
     real.parent().is_none()
-        || home.is_some_and(|home| home == real)
+        || home.is_some_and(|home| home == real || cfg!(windows) && home.parent() == Some(&real))
+        || SYSTEM_OF_WINDOWS.iter().any(is_in)
         || CROSSROADS.split(' ').any(|place| real == Path::new(place))
         || SYSTEM.split(' ').any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
 }

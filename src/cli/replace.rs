@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// What the program's own folders beside and in a report begin with; none outlives an undisturbed run.
 pub const OWN_PREFIX: &str = ".dropcheck-";
@@ -154,11 +155,24 @@ fn fill(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
     sync_folder(staging).map_err(at(folder))
 }
 
+/// Gives a file or folder another name. On Windows a virus scanner may hold what was just written.
+fn moved(from: &Path, to: &Path) -> io::Result<()> {
+    const AGAIN: Duration = Duration::from_millis(50);
+    let mut tries = if cfg!(windows) { 20 } else { 0 };
+    loop {
+        match fs::rename(from, to) {
+            Err(held) if tries > 0 && held.kind() != io::ErrorKind::NotFound => std::thread::sleep(AGAIN),
+            ended => return ended,
+        }
+        tries -= 1;
+    }
+}
+
 /// A folder that was not there, complete from its first moment.
 fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
     let staging = staging_in(parent).map_err(at(parent))?;
     fill(staging.path(), folder, files)?;
-    fs::rename(staging.path(), folder).map_err(at(folder))?;
+    moved(staging.path(), folder).map_err(at(folder))?;
     // The folder has its name; nothing is left to clear away.
     let _ = staging.keep();
     sync_folder(parent).map_err(at(parent))
@@ -167,6 +181,9 @@ fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(
 /// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false`
 /// where nothing was changed and another way must be found.
 fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<bool> {
+    if cfg!(not(target_os = "linux")) {
+        return Ok(false);
+    }
     let Some(others) = others(folder, files)? else { return Ok(false) };
     let Ok(staging) = staging_in(parent) else { return Ok(false) };
     if !take_over_rights(folder, staging.path()) {
@@ -249,8 +266,19 @@ fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Sto
     settle(folder, &unfinished, files)?;
     let staging = staging_in(folder).map_err(at(folder))?;
     fill(staging.path(), folder, files)?;
+    if cfg!(windows) {
+        // One that another program has open would stop the moves in their middle.
+        for (name, _) in files {
+            match fs::OpenOptions::new().append(true).open(folder.join(name)) {
+                Err(held) if held.kind() != io::ErrorKind::NotFound => {
+                    return Err(at(&folder.join(name))(held));
+                }
+                _ => {}
+            }
+        }
+    }
     // From here on every file is complete and a next run can end what this one began.
-    fs::rename(staging.path(), &unfinished).map_err(at(&unfinished))?;
+    moved(staging.path(), &unfinished).map_err(at(&unfinished))?;
     let _ = staging.keep();
     sync_folder(folder).map_err(at(folder))?;
     settle(folder, &unfinished, files)
@@ -269,7 +297,7 @@ fn settle(folder: &Path, unfinished: &Path, files: &[(String, Vec<u8>)]) -> Resu
         let target = folder.join(&name);
         // Of another set of files it is the newer one, unless somebody took the place in the meantime.
         if files.iter().any(|(own, _)| name == own.as_str()) || fs::symlink_metadata(&target).is_err() {
-            fs::rename(unfinished.join(&name), &target).map_err(at(&target))?;
+            moved(&unfinished.join(&name), &target).map_err(at(&target))?;
         }
     }
     fs::remove_dir(unfinished).map_err(at(unfinished))?;

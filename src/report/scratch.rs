@@ -27,9 +27,7 @@ pub(super) fn folder() -> std::io::Result<TempDir> {
 
 /// Removes the folders beside `own` that are of the same owner, no links, not touched for so long, and hold
 /// nothing but the file.
-#[cfg(unix)]
 fn clear(own: &Path, stale: Duration) {
-    use std::os::unix::fs::MetadataExt;
     let (Some(place), Ok(mine)) = (own.parent(), fs::symlink_metadata(own)) else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let name = entry.file_name().into_string().unwrap_or_default();
@@ -38,7 +36,7 @@ fn clear(own: &Path, stale: Duration) {
             .is_some_and(|rest| rest.len() == 6 && rest.bytes().all(|byte| byte.is_ascii_alphanumeric()));
         let is_stale = |there: &fs::Metadata| {
             let age = there.modified().ok().and_then(|modified| modified.elapsed().ok());
-            there.is_dir() && there.uid() == mine.uid() && age.is_some_and(|age| age >= stale)
+            there.is_dir() && has_owner_of(there, &mine) && age.is_some_and(|age| age >= stale)
         };
         if is_named_so && entry.path() != own && entry.metadata().is_ok_and(|there| is_stale(&there)) {
             // Of a file that is a link the link goes; a folder that holds more stays.
@@ -48,9 +46,17 @@ fn clear(own: &Path, stale: Duration) {
     }
 }
 
-/// Each user has a temporary folder of his own, which the system clears.
+#[cfg(unix)]
+fn has_owner_of(one: &fs::Metadata, other: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    one.uid() == other.uid()
+}
+
+/// Each user has a temporary folder of his own.
 #[cfg(not(unix))]
-fn clear(_: &Path, _: Duration) {}
+fn has_owner_of(_: &fs::Metadata, _: &fs::Metadata) -> bool {
+    true
+}
 
 #[cfg(test)]
 #[cfg(unix)]

@@ -6,8 +6,8 @@ use crate::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -90,7 +90,8 @@ impl LineFiles {
 #[derive(Debug)]
 pub struct LineRecord {
     path: PathBuf,
-    file: File,
+    /// None once it is put in order.
+    file: Option<File>,
     end: u64,
     /// What is in it.
     pub lines: LineFiles,
@@ -107,15 +108,15 @@ impl LineRecord {
         inputs: &[&Path],
         is_own: impl Fn(&Value) -> miette::Result<Option<usize>>,
     ) -> miette::Result<Self> {
-        let file = held(path, inputs)?;
-        let mut record =
-            Self { path: path.to_path_buf(), file, end: 0, lines: LineFiles::default(), is_in_order: true };
+        let mut file = held(path, inputs)?;
+        let (path, lines) = (path.to_path_buf(), LineFiles::default());
+        let mut record = Self { path, file: None, end: 0, lines, is_in_order: true };
         if resume {
             record.take_over(is_own)?;
         }
-        let kept = record.file.set_len(record.end).into_diagnostic();
-        kept.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
-        Ok(record)
+        let kept = file.set_len(record.end).and_then(|()| file.seek(SeekFrom::Start(record.end)));
+        kept.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", record.path.display()))?;
+        Ok(Self { file: Some(file), ..record })
     }
 
     fn take_over(&mut self, is_own: impl Fn(&Value) -> miette::Result<Option<usize>>) -> miette::Result<()> {
@@ -137,10 +138,9 @@ impl LineRecord {
 
     /// Writes one line at its end.
     pub fn put(&mut self, number: usize, line: &[u8]) -> miette::Result<()> {
-        self.file
-            .write_all(line)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{} could not be written", self.path.display()))?;
+        let file = self.file.as_mut().ok_or_else(|| io::Error::other("it was closed"));
+        let written = file.and_then(|file| file.write_all(line)).into_diagnostic();
+        written.wrap_err_with(|| format!("{} could not be written", self.path.display()))?;
         if self.lines.files.is_empty() {
             self.lines.files.push(self.path.clone());
         }
@@ -164,7 +164,10 @@ impl LineRecord {
                 }
                 from += line.len() as u64;
                 put(line)
-            })
+            })?;
+            // Windows replaces no file that is open.
+            self.file = None;
+            Ok(())
         })?;
         drop(numbers);
         self.lines = sorted;
@@ -192,23 +195,48 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     if path.is_symlink() || !is_own(path) {
         JsonTarget::checked(Some(path), inputs)?;
     }
-    let file = OpenOptions::new().read(true).append(true).create(true).open(path).into_diagnostic();
-    let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+    // What a killed run had begun to start may hold it for a moment longer.
+    let is_held = |file: &io::Result<File>| file.as_ref().is_err_and(|e| e.kind() == ErrorKind::WouldBlock);
+    let mut file = opened_alone(path);
+    for _ in 0..TRIES {
+        if is_held(&file) {
+            std::thread::sleep(AGAIN);
+            file = opened_alone(path);
+        }
+    }
+    if is_held(&file) {
+        let help = "wait for it, or end it";
+        return Err(miette!(help = help, "another run is writing {}", path.display()));
+    }
+    let file = file.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))?;
     if !file.metadata().is_ok_and(|there| there.is_file()) {
         let help = "name a file; --jsonl - writes to standard output";
         return Err(miette!(help = help, "{} is a pipe or a device", path.display()));
     }
-    // What a killed run had begun to start may hold it for a moment longer.
-    let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
-    let waits = || {
-        std::thread::sleep(AGAIN);
-        is_held()
-    };
-    if is_held() && (0..TRIES).all(|_| waits()) {
-        let help = "wait for it, or end it";
-        return Err(miette!(help = help, "another run is writing {}", path.display()));
-    }
     Ok(file)
+}
+
+/// The file for nobody else to write, as long as it is open; `WouldBlock` while another run has it.
+fn opened_alone(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    // Not to append, for Windows does not cut such a file.
+    options.read(true).write(true).create(true).truncate(false);
+    #[cfg(windows)]
+    {
+        // To read and to replace. A lock would keep this run from reading it by another handle, too.
+        const SHARED: u32 = 0x1 | 0x4;
+        const SHARING_VIOLATION: i32 = 32;
+        std::os::windows::fs::OpenOptionsExt::share_mode(&mut options, SHARED);
+        let is_held = |fault: &io::Error| fault.raw_os_error() == Some(SHARING_VIOLATION);
+        options.open(path).map_err(|e| if is_held(&e) { ErrorKind::WouldBlock.into() } else { e })
+    }
+    #[cfg(not(windows))]
+    {
+        let file = options.open(path)?;
+        // Where the file system knows locks.
+        let is_held = matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock));
+        if is_held { Err(ErrorKind::WouldBlock.into()) } else { Ok(file) }
+    }
 }
 
 /// A longer line is none of a result.
