@@ -12,6 +12,7 @@ mod texts;
 pub(super) mod tolerance;
 mod wording;
 
+use super::lines::in_utf8;
 use super::opened::bytes_of;
 use super::refusal::Refusal;
 use super::shown::bare;
@@ -94,9 +95,9 @@ pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileEr
     CaskFileError::Refused { path: path.display().to_string(), refusal: Refusal::new(problem, mend) }
 }
 
-/// The bytes of a file of this kind.
+/// The text of a file of this kind, not yet checked to be UTF-8.
 pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
-    bytes(path, LARGEST_MIB, kind.name)
+    bytes(path, LARGEST_MIB, kind.name).map(in_utf8)
 }
 
 fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, CaskFileError> {

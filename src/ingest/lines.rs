@@ -101,6 +101,15 @@ impl Text {
     }
 }
 
+/// The bytes of a text in UTF-8 where a mark at their beginning says that they are UTF-16: Windows PowerShell
+/// writes so what a command is made to print into a file.
+pub(crate) fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
+    match Encoding::for_bom(&bytes).filter(|(coding, _)| [UTF_16LE, UTF_16BE].contains(coding)) {
+        Some((coding, _)) => coding.decode(&bytes).0.into_owned().into_bytes(),
+        None => bytes,
+    }
+}
+
 /// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes
 /// between plain letters.
 pub(super) fn wide_text(head: &[u8]) -> Option<bool> {

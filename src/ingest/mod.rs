@@ -33,6 +33,7 @@ pub use error::IngestError;
 pub use foreign::{ForeignReader, foreign_format, read_foreign_by};
 pub use hdf5::{Hdf5Program, is_conversion, take_apart as take_hdf5_apart, use_program as read_hdf5_by};
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
+pub(crate) use lines::in_utf8;
 pub use listed::read_listed;
 pub use opened::{bytes_of, opened};
 pub use unchanged::hexadecimal;

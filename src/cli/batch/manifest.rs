@@ -3,7 +3,7 @@
 
 use super::paths::{in_folder, note, stem};
 use super::planned::{PlannedTest, cask_of};
-use crate::ingest::{bytes_of, cask_file::key_of_column};
+use crate::ingest::{bytes_of, cask_file::key_of_column, in_utf8};
 use miette::miette;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -20,6 +20,7 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
     let bytes =
         bytes_of(path, 64).map_err(|source| miette!("{name}: the manifest cannot be read: {source}"))?;
     let mend = "save it as CSV UTF-8, which every spreadsheet offers";
+    let bytes = in_utf8(bytes);
     let text = std::str::from_utf8(&bytes).map_err(|_| miette!(help = mend, "{name} is no text in UTF-8"))?;
     let text = text.trim_start_matches('\u{feff}');
     let mut reader =
@@ -161,6 +162,17 @@ mod tests {
         assert_eq!(tests[0].stated, [("drop.angle_deg".to_owned(), "12,5".to_owned())]);
         assert_eq!(tests[0].carried, [("Halle".to_owned(), "3".to_owned())]);
         assert_eq!((tests[1].id.as_str(), tests[1].stated.len()), ("b", 0));
+    }
+
+    #[test]
+    fn what_windows_powershell_writes_by_itself_is_read() {
+        let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), wide("\u{feff}recording,cask\r\nü.mcap,c.toml\r\n")).unwrap();
+        assert_eq!(read(file.path(), None).unwrap()[0].shown, "ü.mcap");
+        std::fs::write(file.path(), wide("\u{feff}[cask]\r\nmass = 1\r\n")).unwrap();
+        let refused = crate::ingest::cask_file(file.path()).unwrap_err().to_string();
+        assert!(refused.contains("line 2: [cask] knows no key mass"), "{refused}");
     }
 
     #[test]
