@@ -75,13 +75,24 @@ pub struct BatchRow {
     curves: Option<DropCurves>,
 }
 
+/// What Windows takes for a device, whatever ending follows.
+const DEVICES: &str = "CON PRN AUX NUL COM1 COM2 COM3 COM4 COM5 COM6 COM7 COM8 COM9 LPT1 LPT2 LPT3 LPT4 LPT5 \
+                       LPT6 LPT7 LPT8 LPT9";
+
 /// The name of a test as the name of a folder that leads nowhere else.
 pub fn folder_name(test: &str) -> String {
     let is_plain = |c: char| !c.is_control() && !"/\\:*?\"<>|".contains(c);
     let plain: String = test.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     // "..." is a way out of the folder and no name, and ".x" is hidden.
     let plain = plain.trim_matches(['.', ' ']);
-    if plain.is_empty() { "recording".to_owned() } else { plain.to_owned() }
+    let device = plain.split('.').next().unwrap_or_default().trim_end();
+    if plain.is_empty() {
+        "recording".to_owned()
+    } else if DEVICES.split(' ').any(|name| device.eq_ignore_ascii_case(name)) {
+        format!("_{plain}")
+    } else {
+        plain.to_owned()
+    }
 }
 
 /// The first number among a line's settings that no cask file may state, with its place: no run of this

@@ -177,7 +177,9 @@ mod tests {
 
     #[test]
     fn a_name_leads_nowhere_else() {
-        let found = folders(&["..", "...", "campaign.json", "a/../b", "SD/1:2"]);
-        assert_eq!(found, ["recording", "recording-2", "campaign.json-2", "a_.._b", "SD_1_2"]);
+        let found = folders(&["..", "...", "campaign.json", "a/../b", "SD/1:2", "nul.a", "com1", "com10"]);
+        let spared =
+            ["recording", "recording-2", "campaign.json-2", "a_.._b", "SD_1_2", "_nul.a", "_com1", "com10"];
+        assert_eq!(found, spared);
     }
 }
