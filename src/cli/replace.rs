@@ -155,8 +155,7 @@ fn fill(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
     sync_folder(staging).map_err(at(folder))
 }
 
-/// Gives a file or folder another name. On Windows a virus scanner may hold for a moment what was just
-/// written.
+/// Gives a file or folder another name. On Windows a virus scanner may hold what was just written.
 fn moved(from: &Path, to: &Path) -> io::Result<()> {
     const AGAIN: Duration = Duration::from_millis(50);
     let mut tries = if cfg!(windows) { 20 } else { 0 };

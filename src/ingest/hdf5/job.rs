@@ -1,5 +1,4 @@
-//! A process to one that Windows holds in a job: its memory, no process of its own, its end with its
-//! reader's.
+//! A process to one that Windows holds in a job: its memory, no other process, its end with its reader's.
 //!
 //! `win32job` 2 can set none of these limits; 1 has their fields open. A job does not limit processor time
 //! there, and keeps no file from the process.
