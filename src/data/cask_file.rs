@@ -44,6 +44,8 @@ pub struct CaskFile {
     pub limits: Vec<Limit>,
     /// `[report]`.
     pub letterhead: Letterhead,
+    /// Whether the rotation before the contact is that of an angular-rate sensor.
+    pub is_rotation_measured: bool,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
 }
@@ -87,6 +89,7 @@ impl CaskFile {
             observed: Vec::new(),
             limits: Vec::new(),
             letterhead: Letterhead::default(),
+            is_rotation_measured: false,
             defaults: Vec::new(),
         }
     }

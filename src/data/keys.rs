@@ -194,8 +194,10 @@ pub const CHANNEL: [Key; 21] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
     text("end", REQUIRED)
         .asked(r#""first""#, r#""first" (low, touches first), "second", or "none": no part in the motion"#),
-    text("axis", REQUIRED)
-        .asked(r#""transverse""#, r#""transverse" (across the cask, in the plane of the drop) or "axial""#),
+    text("axis", REQUIRED).asked(
+        r#""transverse""#,
+        r#""transverse" (across the cask, in the plane of the drop), "axial", or "rate" (its rotation)"#,
+    ),
     Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),
     text("unit", "the recording's").shown(r#""g""#, "left out: the recording says so itself"),
     number("position_m", REQUIRED).asked("0.15", "along the axis, from the first end"),

@@ -79,7 +79,7 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
     let problem = if cask_file.others.is_empty() {
         "the cask file has no [[channel]], so that no sensor can be found in the recording"
     } else {
-        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\""
+        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\" or axis = \"rate\""
     };
     let mend = format!(
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \

@@ -25,6 +25,7 @@ mod odd;
 mod other_channels;
 mod predict_command;
 mod properties;
+mod rate_sensor;
 mod record;
 mod reference;
 mod relations;
