@@ -46,6 +46,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     rayon::scope(|_| slips::name_slip(recording, cask_file, &mut found));
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
+    result.prototype = cask_file.scale.map(|scale| result.of_prototype(scale));
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));

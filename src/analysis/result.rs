@@ -138,6 +138,7 @@ fn result(
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),
         k: quantities.map(|q| q.k),
         amplification: None,
+        prototype: None,
         impacts: [End::First, End::Second].map(ImpactTable::unknown),
         reconstruction: None,
         model: None,

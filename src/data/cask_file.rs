@@ -18,6 +18,8 @@ pub struct CaskFile {
     pub text: String,
     /// `[cask]`.
     pub cask: Cask,
+    /// `[cask] scale`: length of the model over that of its prototype; `None` where it is no model.
+    pub scale: Option<f64>,
     /// `[drop]`.
     pub drop: Drop,
     /// `[contact] friction`.
@@ -76,6 +78,7 @@ impl CaskFile {
             sha256: String::new(),
             text: String::new(),
             cask,
+            scale: None,
             drop,
             contact,
             filter: FilterChoice::Auto,

@@ -24,6 +24,7 @@ mod onset;
 mod other;
 pub(crate) mod planar;
 mod prediction;
+mod prototype;
 mod quantities;
 mod reconstruction;
 mod recording;
@@ -69,6 +70,7 @@ pub use other::{
     SpectralLine,
 };
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
+pub use prototype::Prototype;
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,

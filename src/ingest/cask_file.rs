@@ -147,7 +147,9 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
 pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
-    let cask = cask(&root.required_table("cask")?, path)?;
+    let cask_table = root.required_table("cask")?;
+    let cask = cask(&cask_table, path)?;
+    let scale = cask_table.number("scale")?.map(|scale| scale.value);
     let contact_table = root.table("contact")?;
     let contact_duration_s = contact_table.number("duration_s")?.map_or(0.0, |lasts| lasts.value);
     let drop = Drop { contact_duration_s, ..drop(&root.required_table("drop")?, &cask)? };
@@ -170,6 +172,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     }
     Ok(CaskFile {
         path: path.to_owned(),
+        scale,
         filter,
         tolerances,
         corrections,

@@ -95,6 +95,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         path: path.to_owned(),
         channels: specs,
         others,
+        scale: given(&root.table("cask")?, "scale")?,
         ..drawn::cask_file(cask, stated_drop(&drop_table, free)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })

@@ -34,6 +34,7 @@ mod rigid;
 mod run;
 mod safety;
 mod same;
+mod scale_model;
 mod short_flights;
 mod slips;
 mod stages;

@@ -31,6 +31,7 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     given(text, "cog_m", stated("cask.cog_m", cask.cog_m));
     given(text, "inertia_kg_m2", stated("cask.inertia_kg_m2", cask.inertia_kg_m2));
     given(text, "width_m", cask.width_m);
+    given(text, "scale", file.scale);
     *text += "\n[drop]\n";
     line(text, "height_m", drop.height_m);
     // Free of the last digits of the conversion, so that 15° is written as 15.
