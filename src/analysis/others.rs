@@ -16,7 +16,7 @@ pub(super) fn add(recording: &Recording, file: &CaskFile, found: &mut Analysis) 
         let spec = file.others.iter().find(|spec| spec.read.name == channel.name);
         told.sensor = spec.map(|spec| spec.read.sensor.clone()).unwrap_or_default();
         let mut findings = judge::judge_other(channel, issues, &told, &events);
-        findings.extend(rotation::judged(channel, file, result));
+        findings.extend(rotation::judged(channel, recording, file, result));
         told.findings = findings.iter().map(|finding| finding.code).collect();
         told.findings.sort_unstable();
         told.findings.dedup();

@@ -1,7 +1,9 @@
 //! Angular-rate sensors beside the accelerometers to the rotation that the motion is held against.
 
 use super::impact::Impact;
-use crate::data::{CaskFile, Channel, DropResult, Events, Finding, FlightFit, MeasuredRotation};
+use crate::data::{
+    Axis, CaskFile, Channel, DropResult, Events, Finding, FlightFit, MeasuredRotation, Recording,
+};
 use crate::{condition, judge, motion};
 
 /// What the sensors read, without those that cannot be right.
@@ -23,9 +25,16 @@ fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit)
     condition::measured_rotation((channel, spec.rate?), usual_s, events, flight)
 }
 
-/// What is wrong with a channel by the rotation of the result, where it is an angular-rate sensor.
-pub(super) fn judged(channel: &Channel, file: &CaskFile, result: &DropResult) -> Option<Finding> {
-    let gained_rad_s = result.first_impact.angular_velocity?.value - file.drop.angular_velocity_rad_s;
-    let read = read(channel, file, &result.events, result.flight.as_ref()?)?;
+/// What is wrong with a channel beside the accelerometers, where it is an angular-rate sensor.
+pub(super) fn judged(
+    channel: &Channel,
+    recording: &Recording,
+    file: &CaskFile,
+    result: &DropResult,
+) -> Option<Finding> {
+    let flight = result.flight.as_ref()?;
+    let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    let gained_rad_s = motion::rotation_by(across.map(|c| (&c.name[..], c.position_m)), flight);
+    let read = read(channel, file, &result.events, flight)?;
     judge::judge_rotation(&read, gained_rad_s).map(|found| found.on(&channel.name))
 }

@@ -142,6 +142,9 @@ fn a_sensor_that_cannot_be_right_is_named_and_left_out() {
         assert!(own["code"] == code && said.contains(words), "{own}");
         // The rotation is stated as it is, so that the numbers stand without it.
         assert!(drop.off(&result).iter().all(|off| *off < 1.5), "{:?}", drop.off(&result));
+        // It is named, too, where nobody states the rotation and no number stands.
+        let unstated = findings(&drop.analysed(&[UNSTATED, [plain, to]])).replace('−', "-");
+        assert!(unstated.contains(words), "{unstated}");
     }
 }
 
