@@ -149,6 +149,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         inertia_m2: Some(2.58),
         rests: &[],
         fall_s: None,
+        rotations: &[],
         stood_in: None,
         second: None,
     };

@@ -1,9 +1,10 @@
 //! A recording at rest before the drop and the cask file to whether the set-up is ready.
 
+use super::rest::rate_weight;
 use crate::data::{
     At, AtRest, Axis, CaskFile, Channel, ChannelFinding, Check, CheckedChannel, CoarseEvent, Corrections,
     Coupling, Drop, Events, Finding, FindingKind, Prediction, Recording, STANDARD_GRAVITY_M_S2 as G,
-    Severity, Signal,
+    Severity, Signal, rate_unit_rad_s,
 };
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, error};
@@ -39,6 +40,10 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     let level = |channel| Some((channel, events::at_rest(channel, file.drop.gravity_m_s2)?));
     let levels: Vec<(&Channel, AtRest)> = rest.channels.iter().filter_map(level).collect();
     found.extend(judge::judge_levels(&levels, &file.drop));
+    found.extend(rest.others.channels.iter().filter_map(|channel| {
+        let level = events::at_rest(channel, rate_weight(channel, file)?)?;
+        Some(judge::judge_rate_level(channel, level, rate_unit_rad_s(&channel.unit)?))
+    }));
     found.extend(of_drop(rest, file, &signals));
     found.extend(judge::judge_places(&signals, file));
     found.extend(judge::judge_copies(&rest.channels));

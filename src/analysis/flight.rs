@@ -3,6 +3,7 @@
 use super::flight_search;
 use super::impact::Impact;
 use super::impacts::{self, Tabulated};
+use super::rotation;
 use super::second_impact::SecondImpact;
 use super::setup::{by_law, sticking};
 use crate::data::{
@@ -129,6 +130,7 @@ fn moved(
         // An end that the mass properties stand in for cannot test them.
         inertia_m2: (cask.is_body && impact.stand_in.is_none()).then_some(cask.inertia_kg_m2 / cask.mass_kg),
         rests: &impact.rests,
+        rotations: &rotation::measured(impact, file, &flight, events),
         stood_in: impact.stand_in.as_ref().and_then(|s| s.stood_in(signals)),
         fall_s: impact.fall_s.as_ref().map(|fall_s| fall_s.end - fall_s.start),
         second: None,

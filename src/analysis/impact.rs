@@ -5,11 +5,12 @@ use super::flight_search::{self, Patience};
 use super::{missing_end, rest};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
-    Finding, FindingKind, Recording, RestLevel, Severity, Signal,
+    Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
 };
 use crate::{condition, events, judge};
 use missing_end::StandIn;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The first impact, and what the analysis of it goes by.
 pub(super) struct Impact {
@@ -32,6 +33,8 @@ pub(super) struct Impact {
     pub goes_on: bool,
     /// How long the flight after it is sought.
     pub patience: Patience,
+    /// The channels beside the accelerometers.
+    pub others: Arc<OtherChannels>,
 }
 
 impl Impact {
@@ -104,6 +107,7 @@ impl Impact {
             is_record_end: record_end_s <= sought_to_s,
             goes_on,
             patience,
+            others: Arc::clone(&recording.others),
         };
         findings.extend(judge::judge_fall(drop, &impact.events()));
         Some(impact)

@@ -12,6 +12,7 @@ mod others;
 mod progress;
 mod rest;
 mod result;
+mod rotation;
 mod second_impact;
 mod second_look;
 mod setup;
@@ -22,7 +23,7 @@ pub use first_look::look_at_each;
 pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 
-use crate::data::{Analysis, CaskFile, Events, Finding, Recording};
+use crate::data::{Analysis, CaskFile, Drop, Events, Finding, Recording};
 use crate::{ingest, judge};
 use comparison::Measured;
 use flight::Flown;
@@ -30,6 +31,7 @@ use flight_search::Patience;
 use impact::Impact;
 use impacts::Tabulated;
 use progress::Reached;
+use std::borrow::Cow;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
@@ -40,9 +42,11 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that
     // two threads share.
     let mut found = measure(recording, cask_file);
+    let cask_file = &found.cask_file.clone();
     rayon::scope(|_| slips::name_slip(recording, cask_file, &mut found));
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
+    result.prototype = cask_file.scale.map(|scale| result.of_prototype(scale));
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
@@ -56,9 +60,15 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 #[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    let whole = || analyzed(recording, cask_file, Patience::EachBeginning);
-    rayon::scope(|_| second_look::leave_one_out(recording, cask_file, whole()))
+    rayon::scope(|_| {
+        let cask_file = &with_rotation(recording, cask_file);
+        let whole = analyzed(recording, cask_file, Patience::EachBeginning);
+        second_look::leave_one_out(recording, cask_file, whole)
+    })
 }
+
+/// The keys that say how the cask turns before the contact.
+const OF_ROTATION: [&str; 2] = ["drop.angular_velocity_deg_s", "tolerance.angular_velocity_deg_s"];
 
 /// A first impact with the events and the flight that follow it.
 struct AfterImpact {
@@ -81,6 +91,28 @@ fn flown(
         AfterImpact { impact, events, flown }
     });
     (findings, struck)
+}
+
+/// The file with the rotation before the contact that a sensor measured, where it says nothing of it.
+fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskFile> {
+    let is_left_out = OF_ROTATION.iter().all(|key| file.defaults.iter().any(|default| default == key));
+    let has_sensor = file.others.iter().any(|spec| spec.rate.is_some());
+    let before = (is_left_out && has_sensor).then(|| {
+        let (_, found) = flown(recording, file, false, Patience::EachBeginning);
+        let AfterImpact { impact, events, flown } = found?;
+        let read = rotation::measured(&impact, file, &flown?.flight, &events);
+        let known = read.iter().filter_map(|rotation| rotation.before);
+        known.min_by(|a, b| a.u_rad_s.total_cmp(&b.u_rad_s))
+    });
+    let Some(before) = before.flatten() else { return Cow::Borrowed(file) };
+    let mut file = file.clone();
+    file.drop = if file.drop.impact_velocity_given {
+        Drop { angular_velocity_rad_s: before.rad_s, ..file.drop }
+    } else {
+        file.drop.turned(&file.cask, before.rad_s)
+    };
+    file.is_rotation_measured = true;
+    Cow::Owned(file)
 }
 
 fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {

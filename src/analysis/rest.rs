@@ -2,11 +2,14 @@
 //! read at rest.
 
 use crate::data::shown;
-use crate::data::{CaskFile, Channel, Coupling, Drop, Recording, RestFile, RestLevel, RestReading, Signal};
+use crate::data::{
+    CaskFile, Channel, Coupling, Recording, RestFile, RestLevel, RestReading, Signal, rate_unit_rad_s,
+};
 use crate::events;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{self, IngestError, Limits, Progress, RecordingFile, error};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Rates that recordings of one recorder tell of themselves differ by less than this share.
 const SAME_RATE: f64 = 0.01;
@@ -42,24 +45,39 @@ pub fn read_within<'a>(
 pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
     let Some(path) = &file.rest else { return Ok(()) };
     let rest = ingest::read_within(path, file, limits, &|_| ())?;
+    let refused = |channel: &Channel, (problem, mend): (String, &str)| {
+        error::of_channel(path, &channel.name, Refusal::new(problem, mend))
+    };
     for channel in &mut recording.channels {
         let Some(at_rest) = rest.channels.iter().find(|at_rest| at_rest.name == channel.name) else {
             continue;
         };
-        let level = reading(channel, at_rest, &file.drop);
-        let refused = |(problem, mend)| error::of_channel(path, &channel.name, Refusal::new(problem, mend));
-        channel.rest = level.map_err(refused)?;
+        let weight = events::feels_gravity(channel, &file.drop).then_some(file.drop.gravity_m_s2);
+        channel.rest = reading(channel, at_rest, weight).map_err(|why| refused(channel, why))?;
+    }
+    // Nobody else has the recording yet.
+    let others = Arc::get_mut(&mut recording.others).map_or(&mut [][..], |others| &mut others.channels);
+    for (channel, at_rest) in others.iter_mut().zip(&rest.others.channels) {
+        let Some(weight) = rate_weight(channel, file) else { continue };
+        channel.rest = reading(channel, at_rest, Some(weight)).map_err(|why| refused(channel, why))?;
     }
     recording.rest = Some(RestFile { path: path.clone(), sha256: rest.sha256 });
     Ok(())
 }
 
-/// What the channel of a drop reads in the file with its rest; `None` where it does not feel gravity. Else
-/// what is wrong with that file, and what mends it.
+/// What stands for gravity in the level at rest of an angular-rate sensor, in its unit: it rests within 2 %
+/// of it, 1°/s. `None` of another channel.
+pub(super) fn rate_weight(channel: &Channel, file: &CaskFile) -> Option<f64> {
+    let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
+    spec.rate.and_then(|_| Some(50.0_f64.to_radians() / rate_unit_rad_s(&channel.unit)?))
+}
+
+/// What the channel of a drop reads in the file with its rest; `None` where it feels no `weight`. Else what
+/// is wrong with that file, and what mends it.
 fn reading(
     channel: &Channel,
     at_rest: &Channel,
-    drop: &Drop,
+    weight: Option<f64>,
 ) -> Result<Option<RestReading>, (String, &'static str)> {
     let rates = [at_rest, channel].map(|channel| channel.sample_rate_hz);
     let [there, here] = if (rates[1] / rates[0] - 1.0).abs() > SAME_RATE {
@@ -71,17 +89,15 @@ fn reading(
         let problem = format!("{there} in this file of the rest, {here} in the recording of the drop");
         return Err((problem, "record the rest as the drop, take `rest` out, or state what is right"));
     }
-    if channel.coupling != Coupling::Dc || !events::feels_gravity(channel, drop) {
-        return Ok(None);
-    }
-    let Some(rest) = events::at_rest(at_rest, drop.gravity_m_s2) else {
+    let Some(weight) = weight.filter(|_| channel.coupling == Coupling::Dc) else { return Ok(None) };
+    let Some(rest) = events::at_rest(at_rest, weight) else {
         return Err((
             "its rest is shorter than 0.1 s".into(),
             "record the cask at rest for a second or more",
         ));
     };
     let (level, u) = (rest.level_m_s2 / channel.scale_m_s2, rest.u_m_s2 / channel.scale_m_s2.abs());
-    let moves = "it does not rest in this file: its level changes by more than 2 % of g";
+    let moves = "it does not rest in this file: its level changes by more than 2 % of g, or 1°/s";
     let mend = "cut the file to where the cask hangs still; `dropcheck check` says what else is wrong";
     if rest.is_still { Ok(Some(RestReading { level, u })) } else { Err((moves.into(), mend)) }
 }

@@ -138,6 +138,7 @@ fn result(
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),
         k: quantities.map(|q| q.k),
         amplification: None,
+        prototype: None,
         impacts: [End::First, End::Second].map(ImpactTable::unknown),
         reconstruction: None,
         model: None,
@@ -259,6 +260,10 @@ fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
         setting("gravity", format!("{} m/s²", drop.gravity_m_s2), origin("drop.gravity_m_s2")),
         setting("contact law of the first end", file.contact.to_string(), origin("contact.friction")),
     ];
+    settings.extend(file.is_rotation_measured.then(|| {
+        let turns = format!("{:.2}°/s, by an angular-rate sensor", drop.angular_velocity_rad_s.to_degrees());
+        setting("rotation at first contact", turns, "from the data")
+    }));
     settings.extend(events.release_s.zip(events.fall_end_s).map(|(release_s, end_s)| {
         let stated = if is_given { "impact velocity over g" } else { "√(2 h / g)" };
         let stated_s = drop.impact_velocity_m_s / drop.gravity_m_s2;

@@ -5,8 +5,10 @@ mod disturbed;
 mod hum;
 mod offset;
 mod other;
+mod rotation;
 
 pub use other::read_other;
+pub use rotation::measured_rotation;
 
 use crate::data::{
     Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,

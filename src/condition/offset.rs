@@ -49,14 +49,10 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     }
     let (quiet, spread_m_s2) = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
-    let (first, second) = quiet.split_at(quiet.len() / 2);
-    let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
     let noise_m_s2 = spread_m_s2.max(1e-3 * rms);
     let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
-    // White noise averages out; what differs between the two halves does not.
-    let u_offset_m_s2 =
-        (rms / as_f64(quiet.len()).sqrt()).max(wander / 2.0).hypot(rounding_m_s2(signal, spread_m_s2));
+    let u_offset_m_s2 = robust::mean_and_u(&quiet).1.hypot(rounding_m_s2(signal, spread_m_s2));
     let mut findings = Vec::new();
     findings.extend(offset(&signal.name, mean, take_off));
     findings.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));

@@ -11,6 +11,7 @@ use super::impacts::ImpactTable;
 use super::ladder::Rung;
 use super::other::OtherSummary;
 use super::prediction::{BodyModel, Prediction};
+use super::prototype::Prototype;
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
@@ -256,6 +257,9 @@ pub struct DropResult {
     pub amplification: Option<Estimate>,
     /// The first impact and the second, as test reports tabulate them.
     pub impacts: [ImpactTable; 2],
+    /// All that as of the prototype, where the cask is a scale model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prototype: Option<Prototype>,
     /// How the motion was had.
     pub reconstruction: Option<ReconstructionChoice>,
     /// Which analytical model explains the measurement.
@@ -295,6 +299,21 @@ pub struct DropResult {
     pub keys: serde_json::Value,
     /// The cask file's text.
     pub cask_text: String,
+}
+
+impl DropResult {
+    /// What holds of the prototype, where the cask is a model of this scale   (46)
+    #[must_use]
+    pub fn of_prototype(&self, scale: f64) -> Prototype {
+        Prototype {
+            scale,
+            first_impact: self.first_impact.of_prototype(scale),
+            slap_down: self.slap_down.of_prototype(scale),
+            k: self.k,
+            amplification: self.amplification,
+            impacts: self.impacts.each_ref().map(|impact| impact.of_prototype(scale)),
+        }
+    }
 }
 
 /// Everything one analysis found: the result, the cask file it was made with and the curves.

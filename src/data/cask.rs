@@ -1,5 +1,6 @@
 //! The cask file, checked: the cask, the drop, the contact, the filter and the channels.
 
+use super::planar::first_arm_m;
 use super::test_record::SensorRecord;
 use serde::Serialize;
 
@@ -254,6 +255,17 @@ impl Drop {
             angular_velocity_rad_s: 0.0,
             horizontal_velocity_m_s: 0.0,
             contact_duration_s: 0.0,
+        }
+    }
+
+    /// The same fall of the centre of gravity, with so much more rotation, rad/s: v0 = √(2 g h) − ω a   (3)
+    #[must_use]
+    pub fn turned(self, cask: &Cask, more_rad_s: f64) -> Self {
+        let a_m = first_arm_m(cask.cog_m, cask.height_m, self.angle_rad);
+        Self {
+            angular_velocity_rad_s: self.angular_velocity_rad_s + more_rad_s,
+            impact_velocity_m_s: self.impact_velocity_m_s - more_rad_s * a_m,
+            ..self
         }
     }
 

@@ -18,6 +18,8 @@ pub struct CaskFile {
     pub text: String,
     /// `[cask]`.
     pub cask: Cask,
+    /// `[cask] scale`: length of the model over that of its prototype; `None` where it is no model.
+    pub scale: Option<f64>,
     /// `[drop]`.
     pub drop: Drop,
     /// `[contact] friction`.
@@ -44,6 +46,8 @@ pub struct CaskFile {
     pub limits: Vec<Limit>,
     /// `[report]`.
     pub letterhead: Letterhead,
+    /// Whether the rotation before the contact is that of an angular-rate sensor.
+    pub is_rotation_measured: bool,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
 }
@@ -74,6 +78,7 @@ impl CaskFile {
             sha256: String::new(),
             text: String::new(),
             cask,
+            scale: None,
             drop,
             contact,
             filter: FilterChoice::Auto,
@@ -87,6 +92,7 @@ impl CaskFile {
             observed: Vec::new(),
             limits: Vec::new(),
             letterhead: Letterhead::default(),
+            is_rotation_measured: false,
             defaults: Vec::new(),
         }
     }

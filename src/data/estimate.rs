@@ -22,6 +22,14 @@ impl Estimate {
     pub fn new(value: f64, u95: f64, unit: &'static str) -> Self {
         Self { value, u95, unit }
     }
+
+    /// That of the prototype where this is of a model of this scale: each unit by its law   (46)
+    #[must_use]
+    pub fn of_prototype(self, scale: f64) -> Self {
+        let power = UNITS.iter().find(|(unit, _)| *unit == self.unit).map_or(0, |(_, power)| *power);
+        let factor = scale.powi(power);
+        Self { value: self.value * factor, u95: self.u95 * factor, ..self }
+    }
 }
 
 /// One that is not finite is null as a whole: half a quantity is none.
@@ -38,8 +46,19 @@ impl Serialize for Estimate {
     }
 }
 
-/// Units of the quantities of a result.
-const UNITS: [&str; 10] = ["s", "m/s", "rad/s", "deg", "1", "m", "m/s^2", "N", "N s", "J"];
+/// Units of the quantities of a result, each with the power of a model's scale that leads to its prototype.
+const UNITS: [(&str, i32); 10] = [
+    ("s", -1),
+    ("m/s", 0),
+    ("rad/s", 1),
+    ("deg", 0),
+    ("1", 0),
+    ("m", -1),
+    ("m/s^2", 1),
+    ("N", -2),
+    ("N s", -3),
+    ("J", -3),
+];
 
 impl<'de> Deserialize<'de> for Estimate {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
@@ -50,7 +69,7 @@ impl<'de> Deserialize<'de> for Estimate {
             unit: String,
         }
         let EstimateParts { value, u95, unit } = EstimateParts::deserialize(from)?;
-        let known = UNITS.into_iter().find(|known| *known == unit);
+        let known = UNITS.into_iter().map(|(known, _)| known).find(|known| *known == unit);
         Ok(Self::new(value, u95, known.ok_or_else(|| D::Error::custom("no unit of a result"))?))
     }
 }

@@ -14,6 +14,22 @@ pub struct Mode {
     pub amplitude_m_s: f64,
 }
 
+/// Error of a plateau from a mode of which the flight shows one period, as a share of the mode's amplitude;
+/// twice the periods leave half of it. On simulated drops a window of one period leaves half a percent, one
+/// of half a period two percent (docs/uncertainty.md).
+const RINGING_SHARE: f64 = 0.005;
+
+impl Mode {
+    /// Standard uncertainty of a plateau on which the mode rings with this amplitude for so long, in the unit
+    /// of the amplitude.
+    #[must_use]
+    pub fn u_plateau(&self, amplitude: f64, flight_s: f64) -> f64 {
+        let periods = self.frequency_hz * flight_s;
+        // A mode of which the flight shows less than a period looks like a bend of the plateau.
+        RINGING_SHARE * amplitude / periods.min(periods * periods)
+    }
+}
+
 /// The velocity step of one channel from before the impact to the flight, free of ringing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plateau {

@@ -104,7 +104,7 @@ pub const REPORT: [Key; 3] = [
 ///
 /// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it
 /// `predict` ends in a second, and no product of two keys leaves the numbers that a double holds.
-pub const CASK: [Key; 7] = [
+pub const CASK: [Key; 8] = [
     text("name", "the file's name").shown(r#""CASK""#, "the cask's name; left out: the file's"),
     number("mass_kg", REQUIRED)
         .within(1e-3, 1e6, "a model of a gram to more than any cask, in kg")
@@ -122,6 +122,14 @@ pub const CASK: [Key; 7] = [
     number("inertia_kg_m2", "m (l² + h²)/12")
         .above_zero()
         .shown("2100.0", "about the centre of gravity; left out: m (l² + h²) / 12"),
+    number("scale", "–")
+        .within(
+            0.01,
+            1.0,
+            "length of the model over that of its prototype: 0.5 of a half-scale model; all other keys are \
+             the model's own",
+        )
+        .shown("0.5", "of a scale model, over its prototype"),
 ];
 
 /// Keys of `[drop]`.
@@ -194,8 +202,10 @@ pub const CHANNEL: [Key; 21] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
     text("end", REQUIRED)
         .asked(r#""first""#, r#""first" (low, touches first), "second", or "none": no part in the motion"#),
-    text("axis", REQUIRED)
-        .asked(r#""transverse""#, r#""transverse" (across the cask, in the plane of the drop) or "axial""#),
+    text("axis", REQUIRED).asked(
+        r#""transverse""#,
+        r#""transverse" (across the cask, in the plane of the drop), "axial", or "rate" (its rotation)"#,
+    ),
     Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),
     text("unit", "the recording's").shown(r#""g""#, "left out: the recording says so itself"),
     number("position_m", REQUIRED).asked("0.15", "along the axis, from the first end"),

@@ -24,6 +24,7 @@ mod onset;
 mod other;
 pub(crate) mod planar;
 mod prediction;
+mod prototype;
 mod quantities;
 mod reconstruction;
 mod recording;
@@ -52,8 +53,8 @@ pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
     AttributeFinding, CODES, ChannelFinding, ClockFinding, Cure, DropFinding, During, FileEnd, Finding,
-    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, RestCause, RestFinding, Severity,
-    Slip, TableFinding, TimesApart, TimesFinding, shortened,
+    FindingKind, HowApart, IssueCode, Jitter, McapFinding, RatesApart, RestCause, RestFinding, RotationCause,
+    Severity, Slip, TableFinding, TimesApart, TimesFinding, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;
@@ -64,8 +65,12 @@ pub use listing::{ListedChannel, Listing};
 pub use look::ChannelLook;
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
-pub use other::{OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};
+pub use other::{
+    MeasuredRotation, OtherChannels, OtherCurve, OtherSpec, OtherSummary, RateSpec, RotationRate,
+    SpectralLine,
+};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
+pub use prototype::Prototype;
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
@@ -81,4 +86,4 @@ pub use test_record::{
     Letterhead, Limit, LimitState, Observed, ObservedBeside, Photo, SensorRecord, TestRecord,
 };
 pub use tolerances::{Corrections, TOLERANCES, Tolerance, Tolerances};
-pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};
+pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn, rate_unit_rad_s};

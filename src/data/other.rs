@@ -6,13 +6,46 @@ use super::finding::{Finding, IssueCode};
 use super::test_record::SensorRecord;
 use serde::Serialize;
 
-/// A `[[channel]]` table with `end = "none"`.
+/// A `[[channel]]` table with `end = "none"` or `axis = "rate"`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherSpec {
     /// What a reader of recordings takes, which reads all channels alike; end, axis and place say nothing.
     pub read: ChannelSpec,
     /// Declared unit, any text; `None`: what the recording says.
     pub unit: Option<String>,
+    /// What makes it an angular-rate sensor, `axis = "rate"`: its rotation is held against the motion.
+    pub rate: Option<RateSpec>,
+}
+
+/// What a cask file says of an angular-rate sensor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RateSpec {
+    /// 1.0, or −1.0 where a positive reading brings R up.
+    pub polarity: f64,
+    /// 95 % half-width of its scale, as a share, where the file gives it its own.
+    pub calibration: Option<f64>,
+}
+
+/// The rotation of the cask by an angular-rate sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredRotation {
+    /// The sensor's name.
+    pub channel: String,
+    /// 95 % half-width of its scale, as a share, where the file gives it its own.
+    pub calibration: Option<f64>,
+    /// ω in the fall, where its zero is known from the rest before.
+    pub before: Option<RotationRate>,
+    /// How much faster the cask turns in the flight than in the fall.
+    pub gained: RotationRate,
+}
+
+/// A rate of turn, positive brings R down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotationRate {
+    /// rad/s.
+    pub rad_s: f64,
+    /// Standard uncertainty of it, without that of the sensor's scale, rad/s.
+    pub u_rad_s: f64,
 }
 
 /// Such channels as read, apart from those of the motion.

@@ -158,6 +158,13 @@ macro_rules! quantities {
                 Self { time, $($field: by(measured, $of),)* $($beside: None,)* }
             }
 
+            /// Those of the prototype, of a model of this scale; the time of the recording is none of it.
+            #[must_use]
+            pub fn of_prototype(&self, scale: f64) -> Self {
+                let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.of_prototype(scale));
+                Self { time: None, $($field: scaled(self.$field),)* $($beside: scaled(self.$beside),)* }
+            }
+
             /// Its quantities, but for the time.
             #[must_use]
             pub fn rows(&self) -> Vec<QuantityRow> {

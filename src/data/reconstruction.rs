@@ -51,6 +51,10 @@ pub enum ClosureKind {
     Rest,
     /// The fall lasts as long as the impact velocity needs: height and clock.
     Fall,
+    /// The cask turns before the first contact as an angular-rate sensor says.
+    RateBefore,
+    /// The first impact turns the cask as an angular-rate sensor says: that sensor's scale, and the others'.
+    RateGained,
 }
 
 /// Rest before the release, as one DC-coupled channel shows it.

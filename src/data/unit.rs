@@ -20,27 +20,48 @@ const ACCELERATIONS: [(&str, f64); 7] = [
 /// Case matters only where it could mislead: "Mg" would be a megagram.
 #[must_use]
 pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
-    let plain: String = text
-        .trim()
-        .trim_matches(['[', ']'])
-        .replace('²', "2")
-        .replace(['⁻', '−'], "-")
-        .replace(|c: char| c.is_whitespace() || "^*·{}()".contains(c), "");
+    let plain = plain(text);
     match plain.as_str() {
         "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
         "Mg" | "MG" => return None,
         _ => {}
     }
+    named(&ACCELERATIONS, &plain)
+}
+
+/// The ways in which units of a rate of turn are written, likewise, with rad/s per unit.
+const RATES_OF_TURN: [(&str, f64); 5] = [
+    ("rad/s rad/sec rads-1 rad.s-1", 1.0),
+    ("mrad/s", 1e-3),
+    ("deg/s deg/sec degree/s degrees/s degs-1 °/s °s-1 dps", DEGREE),
+    ("mdeg/s", 1e-3 * DEGREE),
+    ("rpm", 6.0 * DEGREE),
+];
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// rad/s per unit, for the ways in which a unit of a rate of turn is written; `None` where it is none of
+/// them.
+#[must_use]
+pub fn rate_unit_rad_s(text: &str) -> Option<f64> {
+    named(&RATES_OF_TURN, &plain(text))
+}
+
+/// Without blanks, brackets and powers.
+fn plain(text: &str) -> String {
+    let text = text.trim().trim_matches(['[', ']']).replace('²', "2").replace(['⁻', '−'], "-");
+    text.replace(|c: char| c.is_whitespace() || "^*·{}()".contains(c), "")
+}
+
+/// What a table has for a plain name, in whatever case.
+fn named(table: &[(&str, f64)], plain: &str) -> Option<f64> {
     let plain = plain.to_lowercase().replace('¹', "1");
     let is_it = |(names, _): &&(&str, f64)| names.split(' ').any(|name| name == plain);
-    ACCELERATIONS.iter().find(is_it).map(|(_, m_s2)| *m_s2)
+    table.iter().find(is_it).map(|(_, size)| *size)
 }
 
 /// Whether a unit is one of a rate of turn, such as "deg/s" or "rad/s", or of its change: no acceleration.
 #[must_use]
 pub fn is_rate_of_turn(text: &str) -> bool {
     let plain = text.trim_matches(['[', '(', ' ']).to_lowercase();
-    ["deg/s", "mdeg/s", "degree/s", "degrees/s", "°/s", "dps", "rad/s", "mrad/s", "rpm"]
-        .iter()
-        .any(|unit| plain.starts_with(unit))
+    RATES_OF_TURN.iter().flat_map(|(names, _)| names.split(' ')).any(|unit| plain.starts_with(unit))
 }

@@ -2,7 +2,7 @@
 
 use super::FitData;
 use super::inputs::Inputs;
-use crate::data::{Axis, ClosureKind, Motion, RestLevel, U_RELEASE_S};
+use crate::data::{Axis, ClosureKind, Motion, RestLevel, RotationRate, U_RELEASE_S};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
@@ -23,6 +23,8 @@ pub(super) enum Observable {
     Rest { channel: usize, name: String, is_axial: bool, rest_m_s2: f64, u_m_s2: f64 },
     /// The fall lasts v0 / g.
     Fall { fall_s: f64 },
+    /// The cask turns before the first contact as an angular-rate sensor says, or gains as much by it.
+    Rate { sensor: usize, name: String, is_before: bool, rate: RotationRate },
 }
 
 impl Observable {
@@ -33,12 +35,14 @@ impl Observable {
             Self::SecondTurning { .. } => ClosureKind::SecondTurning,
             Self::Rest { .. } => ClosureKind::Rest,
             Self::Fall { .. } => ClosureKind::Fall,
+            Self::Rate { is_before: true, .. } => ClosureKind::RateBefore,
+            Self::Rate { .. } => ClosureKind::RateGained,
         }
     }
 
     pub fn channel(&self) -> Option<&str> {
         match self {
-            Self::Rest { name, .. } => Some(name),
+            Self::Rest { name, .. } | Self::Rate { name, .. } => Some(name),
             _ => None,
         }
     }
@@ -51,6 +55,8 @@ impl Observable {
             Self::SecondTurning { .. } => "rotation against the impulse of the second impact".into(),
             Self::Rest { name, .. } => format!("rest level of {name}"),
             Self::Fall { .. } => "time of the free fall".into(),
+            Self::Rate { name, is_before: true, .. } => format!("rotation before the contact by {name}"),
+            Self::Rate { name, .. } => format!("rotation by the first impact by {name}"),
         }
     }
 
@@ -80,6 +86,12 @@ impl Observable {
             }
             // g t = −ż_S   (35)
             Self::Fall { fall_s } => Some(g * fall_s * setup.second_s + motion.contact.vertical_velocity_m_s),
+            // (1 + e) f = ω0 in the fall, and ω2 − ω0 beyond it in the flight   (45)
+            Self::Rate { sensor, is_before, rate, .. } => {
+                let [before, after] = [&motion.contact, &motion.separation].map(|s| s.angular_velocity_rad_s);
+                let turns_rad_s = if *is_before { before } else { after - before };
+                Some((1.0 + inputs.rate_scales.get(*sensor)?) * rate.rad_s - turns_rad_s)
+            }
         }
     }
 
@@ -90,6 +102,7 @@ impl Observable {
             Self::Turning { u_rad_s } | Self::SecondTurning { u_rad_s } => *u_rad_s,
             Self::Rest { u_m_s2, .. } => *u_m_s2,
             Self::Fall { .. } => measured.setup.gravity_m_s2 * U_RELEASE_S,
+            Self::Rate { rate, .. } => rate.u_rad_s,
         }
     }
 
@@ -117,6 +130,7 @@ impl Observable {
             Self::Fall { fall_s } => {
                 format!("{:+.1} % of v0", 100.0 * miss / (measured.setup.gravity_m_s2 * fall_s - miss))
             }
+            Self::Rate { .. } => format!("{:+.2}°/s", miss.to_degrees()),
         }
     }
 }
@@ -144,6 +158,13 @@ pub(super) fn observables(measured: &FitData, motion: &Motion) -> Vec<Observable
     }
     if let Some(fall_s) = measured.fall_s {
         all.push(Observable::Fall { fall_s });
+    }
+    for (sensor, rotation) in measured.rotations.iter().enumerate() {
+        let both = [(true, rotation.before), (false, Some(rotation.gained))];
+        all.extend(both.into_iter().filter_map(|(is_before, rate)| {
+            let name = rotation.channel.clone();
+            Some(Observable::Rate { sensor, name, is_before, rate: rate? })
+        }));
     }
     all
 }

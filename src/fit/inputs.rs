@@ -5,7 +5,8 @@ use super::FitData;
 use super::steps::u_step_m_s;
 use crate::data::planar::first_arm_m;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, Motion, MotionState, Setup, StoodIn,
+    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MeasuredRotation, Motion, MotionState, Setup,
+    StoodIn,
 };
 
 /// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
@@ -15,8 +16,10 @@ const ROLL_RAD_S: f64 = 1.0;
 pub(super) const REST: &str = "record the cask at rest before the release";
 pub(super) const RELEASE: &str = "begin the recording before the release";
 pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
+const SECOND_RATE_SENSOR: &str = "a second angular-rate sensor";
 const MEASURE: &str = "measure between the edges that strike";
 const FILM: &str = "high-speed video of the fall";
+const GYRO: &str = "an angular-rate sensor and the rest before the release";
 
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
@@ -32,6 +35,8 @@ pub struct Inputs {
     pub setup: Setup,
     /// By which share each channel's reading is corrected.
     pub scales: Vec<f64>,
+    /// Likewise of each angular-rate sensor.
+    pub rate_scales: Vec<f64>,
     /// What share of the other body axis is taken off each channel.
     pub crosses: Vec<f64>,
     /// How much farther from L each channel is, m.
@@ -92,6 +97,7 @@ impl Event {
 pub(super) enum InputShift {
     Step { channel: usize, add_m_s: f64 },
     Scale { channel: usize, share: f64 },
+    RateScale { sensor: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },
     Place { channel: usize, by_m: f64, gained_rad_s: f64 },
     Angle { by_rad: f64 },
@@ -134,6 +140,9 @@ impl InputShift {
             Self::Scale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
             }
+            Self::RateScale { share, .. } => {
+                row("calibration_percent", "calibration_percent", "1 %", 0.01, share, SECOND_RATE_SENSOR)
+            }
             Self::Place { by_m, .. } => row("position_m", "position_m", "10 mm", 0.01, by_m, SECOND_SENSOR),
             Self::Cross { share, .. } => {
                 row("cross_axis_percent", "axis", "1°", DEGREE, share, "check how the sensor sits")
@@ -170,7 +179,7 @@ impl InputShift {
                 row("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m, by_m, MEASURE)
             }
             Self::AngularVelocity { by_rad_s } => {
-                row("angular_velocity_deg_s", "drop.angular_velocity_deg_s", "1°/s", DEGREE, by_rad_s, FILM)
+                row("angular_velocity_deg_s", "drop.angular_velocity_deg_s", "1°/s", DEGREE, by_rad_s, GYRO)
             }
             Self::HorizontalVelocity { by_m_s } => {
                 row("horizontal_velocity_m_s", "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1, by_m_s, FILM)
@@ -187,6 +196,7 @@ impl Inputs {
             events: *measured.events,
             setup: *measured.setup,
             scales: vec![0.0; channels],
+            rate_scales: vec![0.0; measured.rotations.len()],
             crosses: vec![0.0; channels],
             places_m: vec![0.0; channels],
             inertia_m2: measured.inertia_m2,
@@ -228,6 +238,7 @@ impl Inputs {
                 step(channel, by * share * value);
                 self.scales[channel] += by * share;
             }
+            InputShift::RateScale { sensor, share } => self.rate_scales[sensor] += by * share,
             InputShift::Cross { channel, share, other_m_s } => {
                 step(channel, -by * share * other_m_s);
                 self.crosses[channel] += by * share;
@@ -280,6 +291,7 @@ pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput>
     }
     all.extend(shared_calibrations(measured));
     all.extend(roll(measured));
+    all.extend(measured.rotations.iter().enumerate().map(|rotation| rate_calibration(measured, rotation)));
     // Half of a 95 % half-width is a standard uncertainty.
     let known = &measured.tolerances;
     let mut add = |name: &str, size: String, change: InputShift| {
@@ -354,6 +366,16 @@ fn shared_calibrations(measured: &FitData) -> Vec<UncertainInput> {
         }
     }
     shared
+}
+
+/// The scale of an angular-rate sensor.
+fn rate_calibration(measured: &FitData, (sensor, rotation): (usize, &MeasuredRotation)) -> UncertainInput {
+    let share = rotation.calibration.unwrap_or(measured.tolerances.calibration) / 2.0;
+    UncertainInput {
+        name: format!("calibration of {}", rotation.channel),
+        size: percent(share),
+        changes: vec![InputShift::RateScale { sensor, share }],
+    }
 }
 
 /// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads roll

@@ -9,7 +9,8 @@ mod steps;
 mod untested;
 
 use crate::data::{
-    AssumedFriction, ChannelSpec, Events, FlightFit, Motion, RestLevel, Setup, Signal, StoodIn, Tolerances,
+    AssumedFriction, ChannelSpec, Events, FlightFit, MeasuredRotation, Motion, RestLevel, Setup, Signal,
+    StoodIn, Tolerances,
 };
 
 pub use inputs::Inputs;
@@ -58,6 +59,8 @@ pub struct FitData<'a> {
     pub rests: &'a [RestLevel],
     /// Free fall from release to the first touch, s, where the record shows it.
     pub fall_s: Option<f64>,
+    /// The rotation by angular-rate sensors.
+    pub rotations: &'a [MeasuredRotation],
     /// The channel that stands in for an end without one.
     pub stood_in: Option<StoodIn>,
     /// The second impact, where the record tells it.

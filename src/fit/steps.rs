@@ -4,11 +4,6 @@ use super::FitData;
 use crate::data::{MOST_LOST_M_S, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's
-/// amplitude; twice the periods leave half of it. On simulated drops a window of one period leaves half a
-/// percent, one of half a period two percent (docs/uncertainty.md).
-const RINGING_SHARE: f64 = 0.005;
-
 /// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
 /// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
 /// the middle of such a half sine takes 0.1 π v0, one at its end next to none.
@@ -42,9 +37,7 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
             if measured.flight.is_bend(i, measured.signals) {
                 return a.hypot(*b);
             }
-            let periods = mode.frequency_hz * flight_s;
-            // A mode of which the flight shows less than a period looks like a bend of the plateau.
-            RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
+            mode.u_plateau(a.hypot(*b), flight_s)
         })
         .sum();
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))

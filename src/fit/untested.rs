@@ -93,6 +93,9 @@ fn of_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)>
             }
             format!("channel.{}.{}", measured.spec(channel)?.name, own.key)
         }
+        InputShift::RateScale { sensor, .. } => {
+            format!("channel.{}.{}", measured.rotations[sensor].channel, own.key)
+        }
         _ => {
             if own.remedy == REST && !measured.rests.is_empty() && measured.fall_s.is_none() {
                 own.remedy = RELEASE;

@@ -6,7 +6,7 @@ use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
     CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, OtherChannels, OtherSpec, Recording,
-    RecordingFormat, SAMPLE_RATES_HZ, STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2,
+    RecordingFormat, SAMPLE_RATES_HZ, STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2, rate_unit_rad_s,
 };
 use crate::numerics::as_f64;
 use std::path::Path;
@@ -203,14 +203,27 @@ fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusa
 /// The unit of a channel that takes no part in the motion, any text; its samples stay as they are.
 fn own_unit(spec: &OtherSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
     let stated = spec.unit.as_deref().map(|unit| (unit.trim(), "cask file"));
+    let source = &spec.read.source;
+    let of_rate = "write `unit = \"rad/s\"` or \"deg/s\" in this channel of the cask file";
     let Some((unit, origin)) = stated.or(recorded.map(|unit| (unit, "recording"))) else {
+        let any = "write it in this channel of the cask file, such as `unit = \"µm/m\"` or \"°C\"; any text \
+                   will do, and \"1\" stands for none";
         return Err(Refusal::new(
-            format!("neither the recording nor the cask file says the unit of {}", spec.read.source),
-            "write it in this channel of the cask file, such as `unit = \"µm/m\"` or \"°C\"; any text will \
-             do, and \"1\" stands for none",
+            format!("neither the recording nor the cask file says the unit of {source}"),
+            if spec.rate.is_some() { of_rate } else { any },
         ));
     };
-    let other = recorded.filter(|recorded| *recorded != unit).map(str::to_owned);
+    if spec.rate.is_some() && rate_unit_rad_s(unit).is_none() {
+        return Err(Refusal::new(
+            format!("the recording gives {source} in {unit:?}, which is no unit of a rate of turn"),
+            format!("check that this is the angular-rate sensor; if so, {of_rate}"),
+        ));
+    }
+    let is_same = |recorded: &&str| {
+        let rates = [*recorded, unit].map(rate_unit_rad_s);
+        *recorded == unit || (spec.rate.is_some() && rates[0] == rates[1])
+    };
+    let other = recorded.filter(|recorded| !is_same(recorded)).map(str::to_owned);
     let contradiction = other.map(|recorded| ChannelFinding::OtherUnit { stated: unit.to_owned(), recorded });
     Ok(UnitScale { m_s2: 1.0, unit: unit.to_owned(), origin, contradiction })
 }
@@ -333,7 +346,7 @@ mod tests {
     #[test]
     fn any_text_is_the_unit_of_a_channel_outside_the_motion() {
         let own = |unit: Option<&str>, recorded| {
-            let spec = OtherSpec { read: spec(None), unit: unit.map(str::to_owned) };
+            let spec = OtherSpec { read: spec(None), unit: unit.map(str::to_owned), rate: None };
             own_unit(&spec, recorded)
         };
         let recorded = own(None, Some("µm/m")).unwrap();

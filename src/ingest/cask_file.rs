@@ -80,7 +80,7 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
     let problem = if cask_file.others.is_empty() {
         "the cask file has no [[channel]], so that no sensor can be found in the recording"
     } else {
-        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\""
+        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\" or axis = \"rate\""
     };
     let mend = format!(
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \
@@ -148,7 +148,9 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
 pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
-    let cask = cask(&root.required_table("cask")?, path)?;
+    let cask_table = root.required_table("cask")?;
+    let cask = cask(&cask_table, path)?;
+    let scale = cask_table.number("scale")?.map(|scale| scale.value);
     let contact_table = root.table("contact")?;
     let contact_duration_s = contact_table.number("duration_s")?.map_or(0.0, |lasts| lasts.value);
     let drop = Drop { contact_duration_s, ..drop(&root.required_table("drop")?, &cask)? };
@@ -171,6 +173,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     }
     Ok(CaskFile {
         path: path.to_owned(),
+        scale,
         filter,
         tolerances,
         corrections,

@@ -18,7 +18,9 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
     let path = Path::new(NAME);
     let mut channels = Vec::with_capacity(recording.channels.len());
     let recording = recording.mounted(cask_file);
-    for (spec, channel) in recording.channels.iter().enumerate().take(cask_file.channels.len()) {
+    for (spec, channel) in
+        recording.channels.iter().enumerate().take(cask_file.channels.len() + cask_file.others.len())
+    {
         let block = |(from, run): (usize, &[f32])| Block { start_s: channel.time_s(from), count: run.len() };
         let blocks: Vec<Block> = channel.runs().map(block).collect();
         let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();

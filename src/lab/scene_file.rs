@@ -53,8 +53,11 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let (first, second) = (root.table("first_end")?, root.table("second_end")?);
     let impacts = [impact(&first, FIRST_IMPACT)?, impact(&second, SECOND_IMPACT)?];
     let by_pulses = drawn::scene(cask.clone(), drop, contact, impacts);
-    let tables = root.tables("channel")?;
+    let (of_rate, tables): (Vec<Section>, _) =
+        root.tables("channel")?.into_iter().partition(cask_file::channel::is_rate);
     let (channels, specs) = channels(&tables, &cask)?.into_iter().unzip();
+    let rates = of_rate.iter().map(|table| channel::rate(table, &cask)).collect::<Result<Vec<_>, _>>()?;
+    let (rates, others) = rates.into_iter().unzip();
     let recording = root.table("recording")?;
     let loose = root.tables("contents")?;
     if let Some(table) = loose.get(synth::MOST_LOOSE) {
@@ -68,6 +71,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         returning_friction: given(&contact_table, "returning_friction")?,
         guided,
         roll_rad_s: value(&drop_table, "roll_deg_s")?.to_radians(),
+        rates,
     };
     let mut scene = Scene {
         name: root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value),
@@ -90,6 +94,8 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let stated = CaskFile {
         path: path.to_owned(),
         channels: specs,
+        others,
+        scale: given(&root.table("cask")?, "scale")?,
         ..drawn::cask_file(cask, stated_drop(&drop_table, free)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })

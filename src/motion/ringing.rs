@@ -115,10 +115,15 @@ pub fn mirrored(
 /// (16); 0 where there is none.
 #[must_use]
 pub fn rotation_rad_s(signals: &[Signal], fit: &FlightFit) -> f64 {
-    let points: Vec<(f64, f64)> = signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse)
-        .filter_map(|s| fit.plateau(&s.name).map(|p| (s.position_m, p.velocity_step_m_s)))
+    let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
+    rotation_by(across.map(|s| (&s.name[..], s.position_m)), fit)
+}
+
+/// The same from the names of the transverse channels and their positions, m.
+#[must_use]
+pub fn rotation_by<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &FlightFit) -> f64 {
+    let points: Vec<(f64, f64)> = across
+        .filter_map(|(name, position_m)| Some((position_m, fit.plateau(name)?.velocity_step_m_s)))
         .collect();
     #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
     let n = points.len().max(1) as f64;

@@ -57,6 +57,15 @@ pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
     (centre, 1.482_602_218_505_602 * median(&mut work))
 }
 
+/// Mean and its standard uncertainty: white noise averages out; what differs between the two halves does not.
+#[must_use]
+pub fn mean_and_u(values: &[f64]) -> (f64, f64) {
+    let (mean, rms) = mean_and_rms(values);
+    let (first, second) = values.split_at(values.len() / 2);
+    let wander = (mean_and_rms(first).0 - mean_and_rms(second).0).abs();
+    (mean, (rms / as_f64(values.len()).sqrt()).max(wander / 2.0))
+}
+
 /// Mean and root mean square about it; NaN of an empty slice.
 pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
     let n = as_f64(values.len());

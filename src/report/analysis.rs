@@ -8,6 +8,7 @@ use super::first_screen::{agreement, cause, untested};
 use super::impacts::impacts;
 use super::others::others;
 use super::prediction::prediction_columns;
+use super::prototype::prototype;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, TOLD, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
@@ -80,6 +81,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
                 .with(record::sensors(file)),
             quantities(result),
             impacts(result).with_all(pictures(&["impacts", "crush"])),
+            prototype(result, file),
             comparison(result),
             record::observed(&result.observed),
             record::limits(&result.limits),

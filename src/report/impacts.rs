@@ -59,6 +59,11 @@ fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String
     estimate.map_or_else(|| MISSING.to_owned(), |e| pair(factor * e.value, factor * e.u95, unit))
 }
 
+/// What a terminal shows of one impact: names and words.
+pub(super) fn in_short(impact: &ImpactTable) -> Vec<(&'static str, String)> {
+    ROWS.iter().filter(|row| row.is_short).map(|row| (row.name, row.words(impact))).collect()
+}
+
 /// The chapter; nothing where neither impact is told.
 pub(super) fn impacts(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Both impacts, ± 95 %");

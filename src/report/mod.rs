@@ -28,6 +28,7 @@ pub(crate) mod medium;
 mod others;
 pub(crate) mod pictures;
 mod prediction;
+mod prototype;
 mod reconstruction;
 pub(crate) mod record;
 pub(crate) mod records;

@@ -7,10 +7,11 @@ use super::table::ReportTable;
 use super::text::json_word;
 use crate::data::{DropResult, Extreme, OtherSummary, SpectralLine};
 
-const CAPTION: &str = "As recorded, each in its unit: they take no part in the motion, and findings on them \
-                       change no number of it. Rest: the median before the release, or before the first \
-                       contact where the release is not seen; noise: RMS about it; smallest and largest of \
-                       the whole recording. The strongest line is that of the curve's spectrum.";
+const CAPTION: &str = "As recorded, each in its unit: but for angular-rate sensors they take no part in the \
+                       motion, and findings on them change no number of it. Rest: the median before the \
+                       release, or before the first contact where the release is not seen; noise: RMS about \
+                       it; smallest and largest of the whole recording. The strongest line is that of the \
+                       curve's spectrum.";
 
 /// What each of them reads, and their curves; empty where there are none.
 pub(super) fn others(result: &DropResult) -> Chapter {

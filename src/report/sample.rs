@@ -106,6 +106,7 @@ fn result() -> DropResult {
         test: crate::data::TestRecord::default(),
         observed: Vec::new(),
         limits: Vec::new(),
+        prototype: None,
         keys: serde_json::Value::Null,
         cask_text: "[cask]".into(),
         input: Input {

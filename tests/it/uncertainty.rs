@@ -33,6 +33,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
         rests: &[],
         fall_s: None,
+        rotations: &[],
         stood_in: None,
         second: None,
     };

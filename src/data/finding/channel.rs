@@ -29,6 +29,20 @@ pub enum During {
 /// A slap-down speed and a k, where they could be had.
 type Numbers = (Option<Estimate>, Option<Estimate>);
 
+/// What makes an angular-rate sensor disagree with the accelerometers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum RotationCause {
+    /// Its sign.
+    #[error("turn its `polarity` round")]
+    Sign,
+    /// Its unit.
+    #[error("the factor between rad/s and deg/s: correct its `unit`")]
+    Unit,
+    /// It reads nothing.
+    #[error("unplugged, broken, or the wrong `source`")]
+    Nothing,
+}
+
 /// A finding about one channel; its words follow the name of the channel.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
@@ -223,6 +237,10 @@ pub enum ChannelFinding {
              uncertain by about twice as much: use a more sensitive range, or look for a loose \
              cable", digits(*.noise, 3), 100.0 * .noise / .farthest)]
     OtherNoise { noise: f64, farthest: f64, unit: String },
+    /// An angular-rate sensor reads this share of the rotation by the accelerometers, and is left out.
+    #[error("reads {} times the rotation that the accelerometers have the first impact give: {cause}; \
+             until then it is left out", digits(*.share, 3))]
+    OtherRotation { share: f64, cause: RotationCause },
     /// The recording states another unit than the cask file.
     #[error("the cask file gives the unit {stated:?}, the recording {recorded:?}; the cask file is followed")]
     OtherUnit { stated: String, recorded: String },
@@ -242,12 +260,16 @@ impl ChannelFinding {
             Self::OffCask { .. } | Self::NotNearer { .. } | Self::NearerOtherEnd { .. } => {
                 (Code::SensorPosition, Warning)
             }
-            Self::UnitFactor { .. } => (Code::Scale, Warning),
+            Self::UnitFactor { .. } | Self::OtherRotation { cause: RotationCause::Unit, .. } => {
+                (Code::Scale, Warning)
+            }
             Self::LowRate { .. } => (Code::LowRate, Warning),
             Self::Aliasing { .. } => (Code::Aliasing, Warning),
             Self::Dead { .. } => (Code::DeadChannel, Error),
             Self::OtherStill { .. } => (Code::DeadChannel, Note),
             Self::OtherNoise { .. } => (Code::Noise, Note),
+            Self::OtherRotation { cause: RotationCause::Sign, .. } => (Code::Polarity, Warning),
+            Self::OtherRotation { .. } => (Code::DeadChannel, Warning),
             Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),
             Self::Copied { .. } => (Code::CopiedChannel, Warning),
             Self::Hum { severity, .. } => (Code::Hum, severity),

@@ -204,9 +204,12 @@ impl DropFinding {
             Self::ObservedApart { severity, .. } => (Code::Observed, *severity),
             Self::Missed { closure, is_gross, .. } => {
                 let code = match closure.kind {
-                    ClosureKind::Height | ClosureKind::Fall | ClosureKind::SecondTurning => Code::Geometry,
+                    ClosureKind::Height
+                    | ClosureKind::Fall
+                    | ClosureKind::SecondTurning
+                    | ClosureKind::RateBefore => Code::Geometry,
                     ClosureKind::Turning => Code::NotRigid,
-                    ClosureKind::Rest => Code::Scale,
+                    ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
                 };
                 (code, if *is_gross { Error } else { Warning })
             }
@@ -291,6 +294,16 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
             closure.channel.as_deref().unwrap_or("a channel")
         ),
         ClosureKind::Fall => fall(drop, fall_s),
+        ClosureKind::RateBefore => format!(
+            "{} has the cask turn by {how_far} more before the first contact than is stated: correct \
+             `angular_velocity_deg_s` under `[drop]`, or leave it out",
+            closure.channel.as_deref().unwrap_or("a channel")
+        ),
+        ClosureKind::RateGained => format!(
+            "{} differs by {how_far} from the rotation that the accelerometers have the first impact give: \
+             check the scale of each, and their positions",
+            closure.channel.as_deref().unwrap_or("a channel")
+        ),
     }
 }
 

@@ -2,6 +2,9 @@
 
 use super::{Finding, FindingKind, IssueCode as Code, Severity};
 
+/// No angular-rate sensor that has warmed up is off by more, °/s.
+const LARGE_DEG_S: f64 = 5.0;
+
 /// What makes a channel read at rest what it should not.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the words say it; the number is a factor, the text a channel's name")]
@@ -45,6 +48,18 @@ pub enum RestFinding {
              steady"
     )]
     Unsteady,
+    /// The level of an angular-rate sensor.
+    #[error("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}", if reads_deg_s.abs() > LARGE_DEG_S {
+        ": balance it, or correct its `unit`"
+    } else {
+        "; the rest before the release takes it off"
+    })]
+    Rate { reads_deg_s: f64 },
+    /// The level of an angular-rate sensor changes.
+    #[error(
+        "does not rest: its level changes by more than 1°/s; wait until the cask and the sensor are steady"
+    )]
+    Turning,
     /// Noise or the steps of the converter leave the offset open.
     #[error(
         "has an offset that is open by ± {u95_g:.2} g: slow noise, or coarse steps of the converter; \
@@ -107,7 +122,9 @@ impl RestFinding {
             Self::Reads { cause: RestCause::Nothing, .. } => (Code::AcCoupled, Error),
             Self::Reads { .. } => (Code::Scale, Error),
             Self::OneValue => (Code::DeadChannel, Error),
-            Self::Unsteady => (Code::Offset, Warning),
+            Self::Unsteady | Self::Turning => (Code::Offset, Warning),
+            Self::Rate { reads_deg_s } if reads_deg_s.abs() > LARGE_DEG_S => (Code::Offset, Warning),
+            Self::Rate { .. } => (Code::Offset, Note),
             Self::OpenOffset { .. } => (Code::Noise, Warning),
             Self::Range { is_sure, .. } => (Code::Clipped, if *is_sure { Warning } else { Note }),
             Self::ShortPretrigger { .. } => (Code::BeginsLate, Warning),

@@ -3,7 +3,8 @@
 use super::CaskFileError;
 use super::section::Section;
 use crate::data::{
-    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RowsOf, SensorRecord, Source, Unit,
+    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RateSpec, RowsOf, SensorRecord, Source,
+    Unit, rate_unit_rad_s,
 };
 use std::ops::Range;
 use toml::de::DeValue;
@@ -11,19 +12,26 @@ use toml::de::DeValue;
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: \
                      what the recording says";
 
-/// Keys that say something of the motion.
+/// Keys that say something of the motion, and how many of them of an acceleration alone.
 const OF_MOTION: [&str; 10] = [
+    "sensitivity",
+    "coupling",
+    "time_constant_s",
+    "reference",
     "axis",
     "position_m",
     "offset_m",
     "polarity",
-    "sensitivity",
-    "coupling",
-    "time_constant_s",
     "calibration_percent",
-    "reference",
     "lateral_m",
 ];
+const OF_ACCELERATION: usize = 4;
+
+/// What a channel with `end = "none"` and an angular-rate sensor are, for keys without a meaning there.
+const NO_PART: &str = "a channel with end = \"none\" takes no part in the motion and is shown as recorded; \
+                       an accelerometer on the cask has end = \"first\" or \"second\"";
+const NO_ACCELERATION: &str = "an angular-rate sensor is DC-coupled, in rad/s or deg/s, with a calibration \
+                               of its own; an accelerometer has axis = \"transverse\" or \"axial\"";
 
 /// The channels of the motion and the others, each in the file's order, with names of their own.
 pub(super) fn channels(
@@ -65,9 +73,10 @@ pub(super) fn channels(
             ));
         }
         lines.push(table.line(name_span.start));
-        if end_or_none(&table)?.is_none() {
+        let rate = rate(&table)?;
+        if rate.is_some() || end_or_none(&table)?.is_none() {
             let unit = table.text("unit")?.map(|unit| unit.value);
-            others.push(OtherSpec { read: channel.clone(), unit });
+            others.push(OtherSpec { read: channel.clone(), unit, rate });
         }
         channels.push(channel);
     }
@@ -77,7 +86,14 @@ pub(super) fn channels(
 
 fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
     let name = table.required_text("name")?;
-    let Some(end) = end_or_none(table)? else { return Ok((other(table, &name.value)?, name.span)) };
+    let Some(end) = end_or_none(table)? else {
+        let words = ["beside end = \"none\"", "only with \"first\" or \"second\"", NO_PART];
+        without_meaning(table, &OF_MOTION, words)?;
+        return Ok((other(table, &name.value)?, name.span));
+    };
+    if rate(table)?.is_some() {
+        return Ok((ChannelSpec { end, ..other(table, &name.value)? }, name.span));
+    }
     let axis = axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?;
     let source = source(table)?;
     let unit = unit(table)?;
@@ -104,19 +120,46 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
     Ok((spec, name.span))
 }
 
-/// A channel of this name that takes no part in the motion.
-fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
-    if let Some(key) = OF_MOTION.into_iter().find(|key| table.value(key).is_some()) {
-        return Err(table.wrong(
-            table.place(key),
-            format!("{key} has no meaning beside end = \"none\""),
-            "only with \"first\" or \"second\"".into(),
-            &format!(
-                "delete {key}: a channel with end = \"none\" takes no part in the motion and is shown as \
-                 recorded; an accelerometer on the cask has end = \"first\" or \"second\""
-            ),
-        ));
+/// Refuses the first of these keys that stands in the table; the words say beside what, what it goes with,
+/// and why.
+fn without_meaning(
+    table: &Section,
+    keys: &[&str],
+    [beside, goes_with, why]: [&str; 3],
+) -> Result<(), CaskFileError> {
+    keys.iter().find(|key| table.value(key).is_some()).map_or(Ok(()), |key| {
+        let problem = format!("{key} has no meaning {beside}");
+        Err(table.wrong(table.place(key), problem, goes_with.into(), &format!("delete {key}: {why}")))
+    })
+}
+
+/// Whether the table is that of an angular-rate sensor.
+pub(crate) fn is_rate(table: &Section) -> bool {
+    table.value("axis").and_then(|axis| axis.get_ref().as_str()) == Some("rate")
+}
+
+/// What the table says of an angular-rate sensor; `None` where it is none.
+fn rate(table: &Section) -> Result<Option<RateSpec>, CaskFileError> {
+    if !is_rate(table) || end_or_none(table)?.is_none() {
+        return Ok(None);
     }
+    let words = ["beside axis = \"rate\"", "only with \"transverse\" or \"axial\"", NO_ACCELERATION];
+    without_meaning(table, &OF_MOTION[..OF_ACCELERATION], words)?;
+    if let Some(unit) = table.text("unit")?.filter(|unit| rate_unit_rad_s(&unit.value).is_none()) {
+        let problem = format!("\"{}\" is no unit of a rate of turn", unit.value);
+        let mend = "unit = \"rad/s\" or \"deg/s\"; left out: what the recording says";
+        return Err(table.wrong(unit.span, problem, "\"rad/s\" or \"deg/s\"".into(), mend));
+    }
+    // A rigid body turns alike everywhere, so that its place says nothing.
+    for key in ["position_m", "offset_m", "lateral_m"] {
+        table.number(key)?;
+    }
+    let calibration = table.number("calibration_percent")?.map(|percent| percent.value / 100.0);
+    Ok(Some(RateSpec { polarity: polarity(table)?, calibration }))
+}
+
+/// A channel of this name that is no accelerometer.
+fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
     Ok(ChannelSpec {
         source: source(table)?,
         full_scale: table.number("full_scale")?.map(|limit| limit.value),
@@ -144,11 +187,13 @@ fn end_or_none(table: &Section) -> Result<Option<End>, CaskFileError> {
 
 const END: &str = "end = \"first\" (low, touches first) or \"second\" (slaps down); \"none\" for a channel \
                    that takes no part in the motion, such as strain or temperature";
-const AXIS: &str =
-    "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
+const AXIS: &str = "axis = \"transverse\" (across the cask, in the plane of the drop), \"axial\" (along it), \
+                    or \"rate\" of an angular-rate sensor";
 
+/// The axis of an accelerometer; `None` where the table has none, or an angular-rate sensor.
 pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, CaskFileError> {
-    table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)
+    let words = [("transverse", Some(Axis::Transverse)), ("axial", Some(Axis::Axial)), ("rate", None)];
+    Ok(table.word("axis", &words, AXIS)?.flatten())
 }
 
 fn source(table: &Section) -> Result<Source, CaskFileError> {

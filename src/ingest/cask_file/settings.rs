@@ -2,7 +2,7 @@
 //! that is from.
 
 use crate::data::keys::{self, Key, TABLES};
-use crate::data::{CaskFile, Contact, Recording, TOLERANCES};
+use crate::data::{CaskFile, Contact, OtherSpec, Recording, TOLERANCES};
 use serde_json::{Map, Value, json};
 
 /// Every key of every table, each `{"value", "from"}`; `from` is "stated", "default", "recording", or
@@ -16,7 +16,11 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
         TABLES.iter().filter(|table| table.name != "channel" && !keys::INNER_TABLES.contains(&table.name));
     let mut all: Map<String, Value> = single
         .map(|table| {
-            let default = |key: &Key| (default(file, table.name, key.name), "default");
+            let from = |key: &str| match key {
+                "angular_velocity_deg_s" if file.is_rotation_measured && table.name == "drop" => "recording",
+                _ => "default",
+            };
+            let default = |key: &Key| (default(file, table.name, key.name), from(key.name));
             (table.name.to_owned(), entries(stated_table(table.name), table.keys, &default))
         })
         .collect();
@@ -33,7 +37,8 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
         let name = table.get("name").and_then(toml::Value::as_str);
         let mut all = recording.channels.iter().chain(&recording.others.channels);
         let read = all.find(|c| Some(c.name.as_str()) == name);
-        let is_other = recording.others.channels.iter().any(|c| Some(c.name.as_str()) == name);
+        let is_other = |other: &OtherSpec| other.rate.is_none() && Some(&*other.read.name) == name;
+        let is_other = file.others.iter().any(is_other);
         let default = |key: &Key| match key.name {
             "unit" => (json!(read.map(|c| &c.unit)), "recording"),
             "sample_rate_hz" => (json!(read.map(|c| c.sample_rate_hz)), "recording"),
@@ -87,7 +92,8 @@ fn default(file: &CaskFile, table: &str, key: &str) -> Value {
         ("drop", "height_m") => json!(drop.height_m),
         ("drop", "impact_velocity_m_s") => json!(drop.impact_velocity_m_s),
         ("drop", "gravity_m_s2") => json!(drop.gravity_m_s2),
-        ("drop", "angular_velocity_deg_s" | "horizontal_velocity_m_s") => json!(0.0),
+        ("drop", "angular_velocity_deg_s") => json!(drop.angular_velocity_rad_s.to_degrees()),
+        ("drop", "horizontal_velocity_m_s") => json!(0.0),
         ("contact", "friction") => json!(Contact::Unknown.to_string()),
         ("corrections", _) => json!(true),
         _ => Value::Null,

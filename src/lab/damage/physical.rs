@@ -6,8 +6,7 @@ use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
 use super::super::drawn::{LEAST_FRICTION, cask_file};
 use super::super::synth;
 use super::Wish;
-use crate::data::planar::first_arm_m;
-use crate::data::{Axis, Cask, CaskFile, Contact, Drop};
+use crate::data::{Axis, Cask, CaskFile, Contact};
 
 impl Wish {
     /// A sound drop as the damage needs it.
@@ -38,9 +37,9 @@ impl Wish {
         match kind {
             "turning" | "turning_unstated" => {
                 let more_rad_s = chance.sign() * size.to_radians();
-                turn(&mut scene.drop, &scene.cask, more_rad_s);
+                scene.drop = scene.drop.turned(&scene.cask, more_rad_s);
                 if kind == "turning" {
-                    turn(&mut stated.drop, &stated.cask, more_rad_s);
+                    stated.drop = stated.drop.turned(&stated.cask, more_rad_s);
                 }
             }
             "swinging" | "swinging_unstated" => {
@@ -69,14 +68,6 @@ impl Wish {
             _ => {}
         }
     }
-}
-
-/// The same fall of the centre of gravity, with so much more rotation.
-fn turn(drop: &mut Drop, cask: &Cask, more_rad_s: f64) {
-    // v0 = √(2 g h) − ω a.
-    let a_m = first_arm_m(cask.cog_m, cask.height_m, drop.angle_rad);
-    drop.angular_velocity_rad_s += more_rad_s;
-    drop.impact_velocity_m_s -= more_rad_s * a_m;
 }
 
 /// A body of `size` percent of the cask's mass, which rattles at both its ends with a play of 2 to 60 mm.

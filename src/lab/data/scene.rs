@@ -56,6 +56,28 @@ pub struct SceneExtras {
     pub guided: f64,
     /// Roll that a tilted edge leaves, built up with the force of the first contact, rad/s.
     pub roll_rad_s: f64,
+    /// Angular-rate sensors; their channels come behind the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rates: Vec<RateSensor>,
+}
+
+/// An angular-rate sensor and its chain.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RateSensor {
+    /// Name.
+    pub name: String,
+    /// Along the axis from the first end, m.
+    pub position_m: f64,
+    /// Unit in the recording, "rad/s" or "deg/s".
+    pub unit: String,
+    /// Samples a second.
+    pub sample_rate_hz: f64,
+    /// True scale over stated scale.
+    pub scale: f64,
+    /// Constant offset, rad/s.
+    pub offset_rad_s: f64,
+    /// Standard deviation of the white noise, rad/s.
+    pub white_noise_rad_s: f64,
 }
 
 /// A bending mode of the free uniform beam.

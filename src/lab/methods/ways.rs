@@ -149,6 +149,7 @@ fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFil
                 inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
                 rests: &[],
                 fall_s: None,
+                rotations: &[],
                 stood_in: None,
                 second: None,
             };

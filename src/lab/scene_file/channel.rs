@@ -2,11 +2,13 @@
 //! it.
 
 use super::values::{flag, given, needs, spans_s, value, whole};
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
+use crate::data::{
+    Axis, Cask, ChannelSpec, Coupling, End, OtherSpec, RateSpec, STANDARD_GRAVITY_M_S2, Source, Unit,
+};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{axis, coupling, polarity};
 use crate::ingest::cask_file::section::Section;
-use crate::lab::data::{Chain, SceneChannel};
+use crate::lab::data::{Chain, RateSensor, SceneChannel};
 use crate::lab::drawn::{spec, unit_m_s2};
 
 /// Sensors sit this far from their end unless the file says otherwise, m; at most a tenth of the cask.
@@ -77,6 +79,25 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         ..stated(&channel)
     };
     Ok((channel, stated))
+}
+
+/// The angular-rate sensor of one table, as it is, and as stated.
+pub(super) fn rate(table: &Section, cask: &Cask) -> Result<(RateSensor, OtherSpec), CaskFileError> {
+    let units = [("deg/s", "deg/s"), ("rad/s", "rad/s")];
+    let unit = table.word("unit", &units, "\"deg/s\" (the default) or \"rad/s\"")?.unwrap_or("deg/s");
+    let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
+    let sensor = RateSensor {
+        name: table.required_text("name")?.value,
+        position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
+        unit: unit.to_owned(),
+        sample_rate_hz: value(table, "sample_rate_hz")?,
+        scale: value(table, "scale")?,
+        offset_rad_s: value(table, "offset_deg_s")?.to_radians(),
+        white_noise_rad_s: value(table, "white_noise_deg_s")?.to_radians(),
+    };
+    let read = ChannelSpec::plain(&sensor.name, end, "", sensor.position_m);
+    let rate = Some(RateSpec { polarity: 1.0, calibration: None });
+    Ok((sensor, OtherSpec { read, unit: Some(unit.to_owned()), rate }))
 }
 
 fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {

@@ -89,7 +89,7 @@ const RECORDING: [Key; 5] = [
 const FASTEST_HZ: f64 = 5e6;
 
 /// A usual recorder and a usual piezoresistive sensor where the file is silent.
-const CHANNEL: [Key; 36] = [
+const CHANNEL: [Key; 38] = [
     text("name", keys::REQUIRED),
     text("end", keys::REQUIRED),
     text("axis", ""),
@@ -109,8 +109,10 @@ const CHANNEL: [Key; 36] = [
     number("anti_alias_hz", "").within(1.0, FASTEST_HZ, "in Hz"),
     number("scale", "1").above_zero(),
     number("offset_g", "0"),
+    number("offset_deg_s", "0"),
     number("zero_shift_g", "0"),
     number("white_noise_g", "0.1").zero_or_more(),
+    number("white_noise_deg_s", "0.1").zero_or_more(),
     number("pink_noise_g", "0").zero_or_more(),
     number("hum_g", "").above_zero(),
     number("hum_hz", "50").within(1.0, FASTEST_HZ, "in Hz"),

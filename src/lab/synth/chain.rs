@@ -7,11 +7,11 @@ mod analog;
 mod disturbance;
 mod recorder;
 
-use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2};
+use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2, rate_unit_rad_s};
 use crate::lab::data::{
-    MotionStep, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
+    Chain, MotionStep, RateSensor, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
 };
-use crate::numerics::single;
+use crate::numerics::{as_f64, single};
 
 /// What a perfect sensor at a channel's place and axis reads at given times, m/s².
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
@@ -37,6 +37,8 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     };
     let mut channels: Vec<SyntheticChannel> =
         seated(scene).iter().enumerate().map(|(i, seat)| channel(scene, seat, i, &drive)).collect();
+    let rates = scene.extras.rates.iter().zip(channels.len()..);
+    channels.extend(rates.map(|(sensor, index)| rate(scene, (motion, drive.end_s), sensor, index)));
     let earliest_s = channels.iter().map(|c| c.start_s).reduce(f64::min).unwrap_or(0.0);
     for channel in &mut channels {
         channel.start_s -= earliest_s;
@@ -99,6 +101,35 @@ fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop)
         start_s: seat.chain.skew_s,
         sample_rate_hz: seat.sample_rate_hz,
         samples,
+    }
+}
+
+/// What the recorder writes of an angular-rate sensor, until so long after first contact.
+fn rate(
+    scene: &Scene,
+    (motion, end_s): (&SimulatedMotion, f64),
+    sensor: &RateSensor,
+    index: usize,
+) -> SyntheticChannel {
+    let rate_hz = sensor.sample_rate_hz * (1.0 + scene.clock_error);
+    let count = recorder::count((scene.before_s + end_s) * rate_hz);
+    let times_s: Vec<f64> = (0..count).map(|i| as_f64(i) / rate_hz - scene.before_s).collect();
+    let chain = Chain {
+        offset_m_s2: sensor.offset_rad_s,
+        white_noise_m_s2: sensor.white_noise_rad_s,
+        ..Chain::perfect()
+    };
+    let mut samples = super::rotation_rad_s(scene, motion, sensor.position_m, &times_s);
+    let times = disturbance::SampleTimes { from_s: -scene.before_s, rate_hz };
+    disturbance::add(&mut samples, (scene.seed, index), &chain, &times, &[]);
+    let unit_rad_s = rate_unit_rad_s(&sensor.unit).unwrap_or(1.0);
+    let written = |sample: f64| single(sample * sensor.scale / unit_rad_s);
+    SyntheticChannel {
+        name: sensor.name.clone(),
+        unit: sensor.unit.clone(),
+        start_s: 0.0,
+        sample_rate_hz: sensor.sample_rate_hz,
+        samples: samples.into_iter().map(written).collect(),
     }
 }
 

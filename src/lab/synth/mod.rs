@@ -18,7 +18,7 @@ pub use body::MOST_LOOSE;
 pub use chain::record;
 pub use crush::crushable_end;
 pub use motion::{simulate, simulate_one_flight};
-pub use sensor::specific_force_m_s2;
+pub use sensor::{rotation_rad_s, specific_force_m_s2};
 
 #[cfg(test)]
 mod example;

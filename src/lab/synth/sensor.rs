@@ -2,7 +2,7 @@
 
 use super::beam::{self, MOST_MODES};
 use crate::data::Axis;
-use crate::lab::data::{MotionStep, Scene, SceneChannel, SimulatedMotion};
+use crate::lab::data::{BendingMode, MotionStep, Scene, SceneChannel, SimulatedMotion};
 
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
@@ -52,6 +52,29 @@ pub fn specific_force_m_s2(
         at.rigid_m_s2(scene, channel) + bending_m_s2 + roll_m_s2_n * pressing_n
     };
     times_s.iter().map(|&t| if t < 0.0 || motion.steps.is_empty() { before(t) } else { during(t) }).collect()
+}
+
+/// What a perfect angular-rate sensor at this place reads, rad/s, positive brings R down, at `times_s`: the
+/// rotation of the cask, and of its section there as it bends.
+pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, times_s: &[f64]) -> Vec<f64> {
+    const STEP: f64 = 1e-4;
+    let share = position_m / scene.cask.length_m;
+    let tilt_1_m = |mode: &BendingMode| {
+        let [above, below] = [share + STEP, share - STEP].map(|at| beam::shape(mode.order, at));
+        mode.strength * (above - below) / (2.0 * STEP * scene.cask.length_m)
+    };
+    let tilts_1_m: Vec<f64> = scene.modes.iter().take(MOST_MODES).map(tilt_1_m).collect();
+    let released_s = if scene.rest { -scene.fall_s() } else { f64::NEG_INFINITY };
+    let reads = |time_s: f64| {
+        if time_s < 0.0 || motion.steps.is_empty() {
+            let turns = ((time_s - released_s) / RELEASE_S + 0.5).clamp(0.0, 1.0);
+            return turns * scene.drop.angular_velocity_rad_s;
+        }
+        let at = Between::new(&motion.steps, time_s);
+        let bending = tilts_1_m.iter().enumerate().map(|(i, tilt)| tilt * at.value(7 + 2 * i));
+        -at.value(5) - bending.sum::<f64>()
+    };
+    times_s.iter().map(|&time_s| reads(time_s)).collect()
 }
 
 /// A time between two of the motion's.

@@ -1,7 +1,7 @@
 //! The scene as stated to a cask file that `analyze` reads with the recording.
 
 use super::place::SyntheticPlace;
-use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, End, Unit};
+use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, End, OtherSpec, Unit};
 use crate::lab::chance::round;
 use std::fmt::{Display, Write};
 
@@ -31,6 +31,7 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     given(text, "cog_m", stated("cask.cog_m", cask.cog_m));
     given(text, "inertia_kg_m2", stated("cask.inertia_kg_m2", cask.inertia_kg_m2));
     given(text, "width_m", cask.width_m);
+    given(text, "scale", file.scale);
     *text += "\n[drop]\n";
     line(text, "height_m", drop.height_m);
     // Free of the last digits of the conversion, so that 15° is written as 15.
@@ -50,7 +51,23 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     for (spec, place) in file.channels.iter().zip(places) {
         channel(text, spec, place);
     }
+    for (spec, place) in file.others.iter().zip(places.iter().skip(file.channels.len())) {
+        rate(text, spec, place);
+    }
     whole
+}
+
+/// An angular-rate sensor.
+fn rate(text: &mut String, spec: &OtherSpec, place: &SyntheticPlace) {
+    *text += "\n[[channel]]\n";
+    line(text, "name", quoted(&spec.read.name));
+    line(text, "end", quoted(&spec.read.end.to_string()));
+    line(text, "axis", quoted("rate"));
+    line(text, "source", quoted(&place.source));
+    line(text, "unit", quoted(spec.unit.as_deref().unwrap_or_default()));
+    if let Some(time) = &place.time {
+        line(text, "time", quoted(time));
+    }
 }
 
 fn channel(text: &mut String, spec: &ChannelSpec, place: &SyntheticPlace) {

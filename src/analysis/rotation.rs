@@ -1,0 +1,40 @@
+//! Angular-rate sensors beside the accelerometers to the rotation that the motion is held against.
+
+use super::impact::Impact;
+use crate::data::{
+    Axis, CaskFile, Channel, DropResult, Events, Finding, FlightFit, MeasuredRotation, Recording,
+};
+use crate::{condition, judge, motion};
+
+/// What the sensors read, without those that cannot be right.
+pub(super) fn measured(
+    impact: &Impact,
+    file: &CaskFile,
+    flight: &FlightFit,
+    events: &Events,
+) -> Vec<MeasuredRotation> {
+    let gained_rad_s = motion::rotation_rad_s(&impact.signals, flight);
+    let read = impact.others.channels.iter().filter_map(|channel| read(channel, file, events, flight));
+    read.filter(|rotation| judge::judge_rotation(rotation, gained_rad_s).is_none()).collect()
+}
+
+/// What one channel reads, where it is an angular-rate sensor.
+fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit) -> Option<MeasuredRotation> {
+    let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
+    let usual_s = condition::Reach::of(&file.cask, &file.drop).before_s;
+    condition::measured_rotation((channel, spec.rate?), usual_s, events, flight)
+}
+
+/// What is wrong with a channel beside the accelerometers, where it is an angular-rate sensor.
+pub(super) fn judged(
+    channel: &Channel,
+    recording: &Recording,
+    file: &CaskFile,
+    result: &DropResult,
+) -> Option<Finding> {
+    let flight = result.flight.as_ref()?;
+    let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    let gained_rad_s = motion::rotation_by(across.map(|c| (&c.name[..], c.position_m)), flight);
+    let read = read(channel, file, &result.events, flight)?;
+    judge::judge_rotation(&read, gained_rad_s).map(|found| found.on(&channel.name))
+}
