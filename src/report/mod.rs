@@ -47,7 +47,7 @@ pub use campaign::{
     Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
     folder_name, impossible,
 };
-pub use check::table as check_table;
+pub use check::{CHECK_NAMES, CheckedSetup, check_files, table as check_table};
 pub use curves_csv::in_german;
 pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};
