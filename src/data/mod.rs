@@ -22,6 +22,7 @@ mod look;
 mod motion;
 mod onset;
 mod other;
+mod plan;
 pub(crate) mod planar;
 mod prediction;
 mod quantities;
@@ -65,6 +66,7 @@ pub use look::ChannelLook;
 pub use motion::{AssumedFriction, AxialClosure, CONTACT_STEPS, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
 pub use other::{OtherChannels, OtherCurve, OtherSpec, OtherSummary, SpectralLine};
+pub use plan::{ChannelNeeds, ExpectedIntervals, ExpectedPeak, MeasuringPlan, RecordingNeeds};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};
 pub use reconstruction::{
