@@ -122,7 +122,7 @@ impl Candidate {
     /// The intervals by the budget of the fit of the predicted impact, a half sine in each channel, without
     /// noise and ringing   (46)
     fn intervals(&self, file: &CaskFile, k: f64) -> Option<ExpectedIntervals> {
-        let expected = Expected::of(file, &self.specs, k)?;
+        let expected = ExpectedDrop::of(file, &self.specs, k)?;
         let quantities = expected.quantities(file, self)?;
         let slap_down_speed_u95_m_s = quantities.speed?.u95;
         Some(ExpectedIntervals { with: self.with, slap_down_speed_u95_m_s, k_u95: quantities.k.u95 })
@@ -130,13 +130,13 @@ impl Candidate {
 }
 
 /// The predicted impact as an analysis would have it.
-struct Expected {
+struct ExpectedDrop {
     integrated: Integrated<'static>,
     flight: FlightFit,
     events: Events,
 }
 
-impl Expected {
+impl ExpectedDrop {
     fn of(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
         let body = predict::bodies(&file.cask).pop()?;
         let at_once = Drop { contact_duration_s: 0.0, ..file.drop };

@@ -74,19 +74,19 @@ fn rig(count: usize, angle_deg: f64) -> Rig {
     }
 }
 
-/// One of the sound rigs: another cask, angle, number of channels, rate, noise and record each. At these angles
+/// One of the sound rigs: another cask, angle, number of channels, rate, noise, record each. At these angles
 /// 0.4 g tells both axes and an axial sign.
 fn variant(i: usize) -> Rig {
-    let of = |values: &[f64], step: usize| values[i / step % values.len()];
+    let one = |values: &[f64], step: usize| values[i / step % values.len()];
     Rig {
-        length_m: of(&[5.512, 2.4, 4.0, 7.5], 1),
-        lasts_s: of(&[0.02, 0.03, 0.012], 2),
-        noise_g: of(&[0.05, 0.01, 0.2], 1),
-        rate_hz: of(&[10_000.0, 5_000.0, 8_000.0], 3),
-        seconds: of(&[1.5, 1.2, 2.0], 2),
-        from_s: of(&[0.0, -0.3], 5),
-        full_scale: of(&[500.0, 1000.0], 4),
-        ..rig(3 + i % 6, of(&[15.0, 18.0, 20.0, 22.0], 2))
+        length_m: one(&[5.512, 2.4, 4.0, 7.5], 1),
+        lasts_s: one(&[0.02, 0.03, 0.012], 2),
+        noise_g: one(&[0.05, 0.01, 0.2], 1),
+        rate_hz: one(&[10_000.0, 5_000.0, 8_000.0], 3),
+        seconds: one(&[1.5, 1.2, 2.0], 2),
+        from_s: one(&[0.0, -0.3], 5),
+        full_scale: one(&[500.0, 1000.0], 4),
+        ..rig(3 + i % 6, one(&[15.0, 18.0, 20.0, 22.0], 2))
     }
 }
 
