@@ -50,11 +50,11 @@ pub mod predict;
 #[allow(clippy::must_use_candidate, clippy::return_self_not_must_use, reason = "for this program alone")]
 pub mod report;
 
-pub use analysis::{analyze, read};
+pub use analysis::{analyze, read, study};
 pub use ingest::{IngestError, cask_file};
 #[cfg(feature = "native")]
 pub use ingest::{read_hdf5_with, serve_hdf5};
-pub use predict::{predict, study};
+pub use predict::predict;
 pub use report::{ReportError, files};
 
 /// The command line, for the program and for another that takes its words; it changes without notice.

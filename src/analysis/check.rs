@@ -1,22 +1,21 @@
 //! A recording at rest before the drop and the cask file to whether the set-up is ready.
 
+use super::plan;
 use super::rest::rate_weight;
 use crate::data::{
     At, AtRest, Axis, CaskFile, Channel, ChannelFinding, Check, CheckedChannel, CoarseEvent, Corrections,
-    Coupling, Drop, Events, Finding, FindingKind, Prediction, Recording, STANDARD_GRAVITY_M_S2 as G,
-    Severity, Signal, rate_unit_rad_s,
+    Coupling, Drop, Events, Finding, FindingKind, Recording, STANDARD_GRAVITY_M_S2 as G, Severity, Signal,
+    rate_unit_rad_s,
 };
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, error};
-use crate::{condition, events, judge, predict};
+use crate::{condition, events, judge};
 use std::cmp::Reverse;
 
 /// A shorter recording does not tell the rest, s.
 const LEAST_S: f64 = 0.99;
 /// The quiet ends so long before the first blow, s.
 const BEFORE_BLOW_S: f64 = 0.02;
-/// The largest coefficient of restitution that range and record must do for.
-const LARGEST_K: f64 = 1.0;
 
 /// Holds a recording at rest against the cask file; with `has_blows` one on each end too, the first end
 /// first.
@@ -79,37 +78,20 @@ fn quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Find
 
 /// Noise, range, rate and record against the drop that is predicted.
 fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding> {
-    let bodies = predict::bodies(&file.cask);
-    let predicted = bodies.last().map(|body| predict::predict(body, &file.drop, file.contact, LARGEST_K));
-    let flight_s = predicted.as_ref().and_then(|p| p.flight_time_s).unwrap_or(0.0);
-    let stated_s = Some(file.drop.contact_duration_s).filter(|stated_s| *stated_s > 0.0);
+    let needs = plan::needs(file);
     let mut found = Vec::new();
     for (channel, signal) in rest.channels.iter().zip(signals) {
         let end_s = signal.end_s();
-        let (first_contact, slap_down) = (Some(At::exactly(end_s)), Some(At::exactly(end_s + flight_s)));
+        let (first_contact, slap_down) =
+            (Some(At::exactly(end_s)), Some(At::exactly(end_s + needs.flight_s)));
         let events = Events { first_contact, slap_down, ..Events::default() };
         found.extend(judge::judge_noise(signal, &events, file.drop.impact_velocity_m_s));
-        let step_m_s = predicted.as_ref().map_or(0.0, |predicted| step_m_s(channel, file, predicted));
-        found.extend(judge::judge_chain(channel, signal, step_m_s, stated_s));
+        let own = needs.channels.iter().find(|needs| needs.name == channel.name);
+        found.extend(own.into_iter().flat_map(|own| judge::judge_chain(channel, signal, &own.peaks)));
     }
     let lasts_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).fold(f64::INFINITY, f64::min);
-    found.extend(judge::judge_record(
-        rest.before_trigger_s,
-        lasts_s,
-        flight_s + 2.0 * stated_s.unwrap_or(0.02),
-    ));
+    found.extend(judge::judge_record(rest.before_trigger_s, lasts_s, needs.after_s));
     found
-}
-
-/// By how much the first impact changes the velocity that a channel reads, m/s: all of the vertical
-/// velocity of the first end, turned round, less what the rotation takes.
-fn step_m_s(channel: &Channel, file: &CaskFile, predicted: &Prediction) -> f64 {
-    let (sin, cos) = file.drop.angle_rad.sin_cos();
-    let turned_m_s = (1.0 + LARGEST_K) * file.drop.impact_velocity_m_s;
-    match channel.axis {
-        Axis::Transverse => (turned_m_s * cos - predicted.angular_velocity_rad_s * channel.position_m).abs(),
-        Axis::Axial => turned_m_s * sin,
-    }
 }
 
 /// The findings by their channels, and whether any of them speaks against the drop.

@@ -186,7 +186,7 @@ fn of_corner(motion: &Motion, rigid: Estimate, ringing: CornerRinging) -> Option
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.
-fn contact(
+pub(super) fn contact(
     file: &CaskFile,
     integrated: &Integrated,
     flight: &FlightFit,

@@ -9,6 +9,7 @@ mod impact;
 mod impacts;
 pub mod missing_end;
 mod others;
+mod plan;
 mod progress;
 mod rest;
 mod result;
@@ -20,6 +21,7 @@ mod slips;
 
 pub use check::check;
 pub use first_look::look_at_each;
+pub use plan::study;
 pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 

@@ -1,8 +1,8 @@
-//! `check`: a recording at rest before the drop to whether the set-up is ready, as a table or JSON.
+//! `check`: a recording at rest before the drop to whether the set-up is ready, as a table, JSON or a page.
 
 use super::Ending;
 use super::limits::Bounds;
-use super::output::{JsonTarget, columns, print};
+use super::output::{Folder, JsonTarget, columns, print};
 use super::progress::with_progress;
 use crate::{analysis, ingest, report};
 use clap::Args;
@@ -14,6 +14,7 @@ For --taps strike each end once from below, the first end first, a second apart,
 
 Examples:
   dropcheck check rest.csv --cask cask.toml
+  dropcheck check rest.csv --cask cask.toml --out ready
   dropcheck check taps.csv --cask cask.toml --taps --json -
 
 Exit status: 0 ready; 1 not ready; 2 could not be told.";
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// The recording holds one blow on each end, the first end first: they tell ends, clocks and signs
     #[arg(long)]
     taps: bool,
+    /// Folder for check.html, a page to print and sign, and check.json, the findings
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Write the findings as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -38,15 +42,27 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let Arguments { rest, cask, taps, .. } = arguments;
-    let json = JsonTarget::checked(arguments.json.as_deref(), &[rest, cask])?;
-    let cask_file = ingest::cask_file::parse(cask)?;
+    let (inputs, names) = ([rest.as_path(), cask], &report::CHECK_NAMES);
+    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, names, &inputs)).transpose()?;
+    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+    let mut file = ingest::cask_file::parse(cask)?;
+    if folder.is_some() {
+        file = ingest::cask_file::with_photos(file)?;
+    }
     let recording = with_progress("reading", |progress| {
-        ingest::read_within(rest, &cask_file, arguments.bounds.limits(), progress)
+        ingest::read_within(rest, &file, arguments.bounds.limits(), progress)
     })?;
-    let check = analysis::check(&recording, &cask_file, *taps)?;
+    let check = analysis::check(&recording, &file, *taps)?;
+    let setup = report::CheckedSetup { check: &check, rest: &recording, file: &file, has_blows: *taps };
+    if let Some(folder) = &folder {
+        folder.write(&report::check_files(&setup)?)?;
+    }
     json.write(|| report::pretty_json(&check))?;
     if !json.is_standard_output() {
-        print(&report::check_table(&check, *taps, columns()))?;
+        print(&report::check_table(&setup, columns()))?;
+        if let Some(folder) = &folder {
+            print(&format!("\nPage: {}\n", report::printable(&folder.file(names[0]))))?;
+        }
     }
     Ok(if check.ready { Ending::Clear } else { Ending::NeedsALook })
 }

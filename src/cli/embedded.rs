@@ -47,7 +47,7 @@ pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Res
 pub fn prediction(words: &[OsString]) -> miette::Result<Vec<u8>> {
     let Command::Predict(arguments) = command(words)? else { return Err(not("predict")) };
     let (file, request) = predict::asked(&arguments)?;
-    Ok(report::study_json(&crate::predict::study(&file, &request))?)
+    Ok(report::study_json(&crate::analysis::study(&file, &request))?)
 }
 
 /// The JSON of `inspect`.

@@ -195,6 +195,12 @@ impl Channel {
         self.start_s + index as f64 / self.sample_rate_hz
     }
 
+    /// Where it clips, m/s², as far as it is stated.
+    #[must_use]
+    pub fn range_m_s2(&self) -> Option<f64> {
+        Some(self.full_scale? * self.scale_m_s2.abs())
+    }
+
     /// The samples `from..to` as specific force on the body axis, m/s²; the range is cut to what there is.
     #[must_use]
     pub fn force_m_s2(&self, from: usize, to: usize) -> Vec<f64> {

@@ -22,6 +22,7 @@ mod look;
 mod motion;
 mod onset;
 mod other;
+mod plan;
 pub(crate) mod planar;
 mod prediction;
 mod prototype;
@@ -69,6 +70,7 @@ pub use other::{
     MeasuredRotation, OtherChannels, OtherCurve, OtherSpec, OtherSummary, RateSpec, RotationRate,
     SpectralLine,
 };
+pub use plan::{ChannelNeeds, ExpectedIntervals, ExpectedPeak, MeasuringPlan, RecordingNeeds};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use prototype::Prototype;
 pub use quantities::{Contribution, FirstImpact, Quantities, QuantityRow, SlapDown, Untested, UntestedMoves};

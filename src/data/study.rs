@@ -3,6 +3,7 @@
 use super::cask::Contact;
 use super::cask_file::CaskFile;
 use super::ladder::Ladder;
+use super::plan::MeasuringPlan;
 use super::prediction::{Body, BodyModel, Prediction};
 use serde::Serialize;
 
@@ -256,4 +257,6 @@ pub struct Study {
     pub critical: Vec<CriticalAngle>,
     /// What the uncertain inputs make of it.
     pub monte_carlo: MonteCarlo,
+    /// How to measure the drop at the angle of the request; of the prediction alone `None`.
+    pub plan: Option<MeasuringPlan>,
 }

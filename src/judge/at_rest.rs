@@ -2,8 +2,8 @@
 
 use super::sampling::low_rate;
 use crate::data::{
-    AtRest, Axis, Channel, Coupling, Drop, Finding, RestCause, RestFinding, STANDARD_GRAVITY_M_S2 as G,
-    Signal,
+    AtRest, Axis, Channel, Coupling, Drop, ExpectedPeak, Finding, RestCause, RestFinding,
+    STANDARD_GRAVITY_M_S2 as G, Signal,
 };
 use std::f64::consts::PI;
 
@@ -27,7 +27,7 @@ const BARE_S: f64 = 0.005;
 const MOST_U_OFFSET_M_S2: f64 = 0.83;
 
 /// Free fall that a recording must hold before the impact, s.
-const LEAST_BEFORE_S: f64 = 0.1;
+pub const LEAST_BEFORE_S: f64 = 0.1;
 
 /// Holds the levels at rest against gravity on each axis; an AC-coupled channel has none.
 #[must_use]
@@ -81,21 +81,33 @@ fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> R
     likeliest.filter(|(off, _)| *off < WITHIN).map_or(RestCause::Open, |(_, cause)| cause)
 }
 
-/// Holds offset, range and rate of a channel against a first impact that changes its velocity by up to
-/// `step_m_s`, and lasts `stated_s` where that is stated   (half sine: π/2 of the mean)
+/// The longest and the shortest that a first impact may last, s: as stated, else with a limiter and of bare
+/// contact.
 #[must_use]
-pub fn judge_chain(channel: &Channel, quiet: &Signal, step_m_s: f64, stated_s: Option<f64>) -> Vec<Finding> {
-    let range_g = channel.full_scale.map(|full_scale| full_scale * channel.scale_m_s2.abs() / G);
-    let too_small = |pulse_s: f64, is_sure: bool| {
-        let (range_g, peak_g) = (range_g?, PI / 2.0 * step_m_s / pulse_s / G);
-        let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure };
+pub fn pulse_lengths_s(drop: &Drop) -> (f64, f64) {
+    let stated_s = drop.contact_duration_s;
+    if stated_s > 0.0 { (stated_s, stated_s) } else { (LIMITER_S, BARE_S) }
+}
+
+/// The peaks of half sines that change the velocity by `step_m_s`, π/2 of the mean, the longest first   (47)
+#[must_use]
+pub fn expected_peaks(step_m_s: f64, drop: &Drop) -> Vec<ExpectedPeak> {
+    let (longest_s, shortest_s) = pulse_lengths_s(drop);
+    let peak = |lasts_s| ExpectedPeak { lasts_s, peak_g: PI / 2.0 * step_m_s / lasts_s / G };
+    [longest_s].into_iter().chain((shortest_s < longest_s).then_some(shortest_s)).map(peak).collect()
+}
+
+/// Holds offset, range and rate of a channel against the peaks of a first impact, the last one the shortest.
+#[must_use]
+pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) -> Vec<Finding> {
+    let range_g = channel.range_m_s2().map(|range_m_s2| range_m_s2 / G);
+    let too_small = |(i, peak): (usize, &ExpectedPeak)| {
+        let (range_g, ExpectedPeak { lasts_s: pulse_s, peak_g }) = (range_g?, *peak);
+        let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
         (range_g < peak_g).then(|| found.on(&channel.name))
     };
-    let range = match stated_s {
-        Some(pulse_s) => too_small(pulse_s, true),
-        None => too_small(LIMITER_S, true).or_else(|| too_small(BARE_S, false)),
-    };
-    let rate = low_rate(&channel.name, channel.sample_rate_hz, stated_s.unwrap_or(BARE_S));
+    let range = peaks.iter().enumerate().find_map(too_small);
+    let rate = peaks.last().and_then(|peak| low_rate(&channel.name, channel.sample_rate_hz, peak.lasts_s));
     let u_offset_m_s2 = quiet.u_offset_m_s2;
     let offset = RestFinding::OpenOffset { u95_g: 2.0 * u_offset_m_s2 / G };
     let offset = (u_offset_m_s2 > MOST_U_OFFSET_M_S2).then(|| offset.on(&channel.name));

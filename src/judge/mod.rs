@@ -20,7 +20,7 @@ mod silent;
 mod skew;
 mod taps;
 
-pub use at_rest::{judge_chain, judge_levels, judge_record};
+pub use at_rest::{LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, pulse_lengths_s};
 pub use blows::judge_blows;
 pub use channel_checks::{judge_noise, judge_places};
 pub use channels::{is_cut_off, judge_channels};
@@ -35,6 +35,7 @@ pub use others::{behind_the_motion, judge_other};
 pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch};
 pub use rigid::{TransversePlace, judge_rigid, places};
 pub use rotation::{judge_rate_level, judge_rotation};
+pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use silent::judge_silent;
 pub use skew::judge_skew;
 pub use taps::judge_taps;

@@ -75,13 +75,25 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), samples / signal.sample_rate_hz))
 }
 
+/// A sample rate that a pulse of this length asks for, Hz: twice the least, which leaves 0.2 % of its area.
+#[must_use]
+pub fn fit_rate_hz(length_s: f64) -> f64 {
+    2.0 * LEAST_SAMPLES / length_s
+}
+
+/// From which frequency on a filter before the sampling leaves nothing, Hz.
+#[must_use]
+pub fn nothing_from_hz(sample_rate_hz: f64) -> f64 {
+    BAND * sample_rate_hz
+}
+
 /// Too few samples over a pulse of this length.
 pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64) -> Option<Finding> {
     let samples = length_s * sample_rate_hz;
     (samples < LEAST_SAMPLES).then(|| {
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
         let off_percent = 100.0 * PI * PI / 12.0 / (samples * samples);
-        let least_hz = 2.0 * LEAST_SAMPLES / length_s;
+        let least_hz = fit_rate_hz(length_s);
         let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
         found.on(name)
     })

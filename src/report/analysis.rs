@@ -52,6 +52,8 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let heading = record::heading(&result.test, name);
     let pictures =
         |names: &[&str]| names.iter().map(|name| ChapterPart::picture(name, "")).collect::<Vec<_>>();
+    let photographs: Vec<_> = record::photographs(&result.test).collect();
+    let photographs = (!photographs.is_empty()).then(|| PartContent::Photographs(photographs).into());
     let hash = input.recording_sha256.get(..16).unwrap_or_default();
     ReportDocument {
         page: Frame {
@@ -94,7 +96,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             others(result),
             quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
-            record::photographs(&result.test),
+            Chapter::new("Photographs").only(Medium::Page).with_all(photographs),
             signed(&result.test),
         ],
     }

@@ -1,11 +1,21 @@
 //! A set-up at rest to the document that `check` shows.
 
 use super::analysis::quality;
-use super::document::{Chapter, ChapterPart, ReportDocument};
+use super::document::{
+    Chapter, ChapterPart, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell, Tone, Words,
+};
 use super::rounding::{fixed, optional_fixed};
-use super::table::{ReportTable, TableCell};
-use super::text::{Style, counted};
-use crate::data::{Check, Finding};
+use super::text::{Style, capital, counted, dropped};
+use super::{ReportError, as_html, json, pictures, record};
+use crate::data::{
+    CaskFile, Channel, Check, CheckedChannel, Finding, Program, Recording, STANDARD_GRAVITY_M_S2 as G,
+};
+
+/// Drawing and photographs leave room on the sheet for eight channels and the signatures.
+const STYLE: &str = ".drawing > svg { max-height: 62mm; } .tag.ready { color: var(--good); } \
+                     .tag.not { color: var(--bad); } .signatures tbody tr { height: 9mm; } \
+                     @media print { img { max-height: 42mm; } p { margin: 3px 0; } \
+                     h2 { margin-top: 12px; } }";
 
 /// What no recording at rest tells, and what does.
 const UNTOLD: [&str; 3] = [
@@ -18,34 +28,120 @@ const UNTOLD: [&str; 3] = [
 const BY_TAPS: &str = "Ends, clocks, and the sign of channels that are AC-coupled: strike each end once from \
                        below, the first end first, and add --taps.";
 
+/// The page to sign; and the findings, by which the folder is known to be of this program.
+pub const CHECK_NAMES: [&str; 2] = ["check.html", "check.json"];
+
+/// A set-up that was checked, and by what.
+#[derive(Clone, Copy)]
+pub struct CheckedSetup<'a> {
+    /// What was found.
+    pub check: &'a Check,
+    /// The recording at rest.
+    pub rest: &'a Recording,
+    /// The cask file.
+    pub file: &'a CaskFile,
+    /// Whether the recording holds a blow on each end.
+    pub has_blows: bool,
+}
+
 /// The table, with SGR colours that the caller strips where no terminal shows it.
 #[must_use]
-pub fn table(check: &Check, has_blows: bool, width: usize) -> String {
-    let document = ReportDocument { chapters: chapters(check, has_blows), ..ReportDocument::default() };
+pub fn table(setup: &CheckedSetup, width: usize) -> String {
+    let document = ReportDocument { chapters: chapters(setup), ..ReportDocument::default() };
     super::as_text::text(&document, width)
 }
 
-fn chapters(check: &Check, has_blows: bool) -> Vec<Chapter> {
-    let channels = ReportTable::of(&check.channels)
-        .head("channel", |c| c.name.clone())
-        .number("reads, g", |c| fixed(c.reads_g, 2))
-        .number("expected, g", |c| optional_fixed(c.expected_g, 2))
-        .number("noise, g", |c| fixed(c.noise_g, 3))
-        .tag("", |c| ready(c.ready));
-    let not_ready = check.channels.iter().filter(|channel| !channel.ready).count();
-    let title = match (check.ready, not_ready) {
-        (true, _) => "Ready: at rest nothing speaks against the drop".to_owned(),
-        (false, 0) => "Not ready".to_owned(),
-        (false, count) => format!("Not ready: {} of {}", count, counted(check.channels.len(), "channel")),
+/// The files of `--out`.
+///
+/// # Errors
+/// [`ReportError::Json`] where the writer fails.
+pub fn check_files(setup: &CheckedSetup) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let page = as_html::page(&document(setup), &[pictures::of_setup(setup.file)]).into_bytes();
+    let bytes = [page, json::pretty(setup.check)?];
+    Ok(CHECK_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
+}
+
+fn document(setup: &CheckedSetup) -> ReportDocument {
+    let CheckedSetup { check, rest, file, .. } = *setup;
+    let (name, test) = (&file.cask.name, &file.test);
+    let hash = rest.sha256.get(..16).unwrap_or_default();
+    let who =
+        if test.signatures.is_empty() { vec!["Checked by".to_owned()] } else { test.signatures.clone() };
+    let drawing = ChapterPart::picture("setup", "drawing");
+    let photos: Vec<_> = record::photographs(test).collect();
+    let seen = if photos.is_empty() {
+        drawing
+    } else {
+        PartContent::Beside([vec![drawing], vec![PartContent::Photographs(photos).into()]]).into()
     };
+    let mut chapters = chapters(setup);
+    chapters.push(Chapter::new("Set-up").with(seen));
+    chapters.push(Chapter::new("Signatures").with(record::signatures(&who)));
+    ReportDocument {
+        page: Frame {
+            title: format!("{name} – {}", if check.ready { "ready" } else { "not ready" }),
+            product: "Check before the drop",
+            version: Program::this().version.to_owned(),
+            heading: test.id.as_ref().map_or_else(|| name.clone(), |id| format!("{id}: {name}")),
+            about: format!("{} · {} · {}", dropped(&file.drop), rest.path.display(), file.path.display()),
+            foot: format!("{} · rest {hash}", test.id.as_deref().unwrap_or(name)),
+            letterhead: file.letterhead.clone(),
+            style: STYLE,
+            ..Frame::default()
+        },
+        chapters,
+    }
+}
+
+fn chapters(setup: &CheckedSetup) -> Vec<Chapter> {
+    let check = setup.check;
+    let range = |c: &CheckedChannel| setup.channel(c).and_then(Channel::range_m_s2).map(|range| range / G);
+    let head = |words: &str| Words::or(capital(words), words);
+    let channels = ReportTable::of(&check.channels)
+        .head(head("channel"), |c| c.name.clone())
+        .tag("", |c| ready(c.ready))
+        .number(head("reads, g"), |c| fixed(c.reads_g, 2))
+        .number(head("expected, g"), |c| optional_fixed(c.expected_g, 2))
+        .number(head("noise, g"), |c| fixed(c.noise_g, 3))
+        .number(head("range, g"), |c| optional_fixed(range(c), 0))
+        .number(head("rate, Hz"), |c| optional_fixed(setup.channel(c).map(|c| c.sample_rate_hz), 0));
+    let not_ready = check.channels.iter().filter(|channel| !channel.ready).count();
+    let (word, sentence) = match (check.ready, not_ready) {
+        (true, _) => ("Ready", "at rest nothing speaks against the drop".to_owned()),
+        (false, 0) => ("Not ready", "see what was found".to_owned()),
+        (false, count) => ("Not ready", format!("{} of {}", count, counted(check.channels.len(), "channel"))),
+    };
+    let tone = Tone(if check.ready { Style::Green } else { Style::Red }, word.to_owned());
+    let banner = ChapterPart::from(PartContent::Banner(tone, sentence.clone())).only(Medium::Page);
+    let title = ChapterPart::title(format!("{word}: {sentence}")).only(Medium::Terminal);
     let mut found: Vec<Finding> = check.channels.iter().flat_map(|c| c.findings.clone()).collect();
     found.extend(check.findings.iter().cloned());
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     let found = (!found.is_empty()).then(|| quality(&found));
-    let untold = UNTOLD.into_iter().chain((!has_blows).then_some(BY_TAPS));
-    let head = Chapter::new("").with(ChapterPart::title(title)).with(channels);
+    let untold = UNTOLD.map(str::to_owned).into_iter();
+    let untold = untold.chain(open_ranges(setup)).chain((!setup.has_blows).then(|| BY_TAPS.to_owned()));
+    let head = Chapter::new("").with(banner).with(title).with(channels);
     let foot = Chapter::new("Not told by rest").with_all(untold.map(ChapterPart::text));
     [head].into_iter().chain(found).chain([foot]).collect()
+}
+
+impl CheckedSetup<'_> {
+    fn channel(&self, checked: &CheckedChannel) -> Option<&Channel> {
+        self.rest.channels.iter().find(|channel| channel.name == checked.name)
+    }
+}
+
+/// The channels whose range nobody states, and how much each needs.
+fn open_ranges(setup: &CheckedSetup) -> Option<String> {
+    let open = setup.rest.channels.iter().filter(|channel| channel.full_scale.is_none());
+    let names: Vec<&str> = open.map(|channel| &channel.name[..]).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "Range of {}: not stated. Read it off the amplifier and state `full_scale`; `dropcheck predict` \
+             says which range the drop needs.",
+            names.join(", ")
+        )
+    })
 }
 
 fn ready(is_ready: bool) -> TableCell {

@@ -52,7 +52,7 @@ pub use campaign::{
     Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
     folder_name, impossible,
 };
-pub use check::table as check_table;
+pub use check::{CHECK_NAMES, CheckedSetup, check_files, table as check_table};
 #[cfg(feature = "native")]
 pub(crate) use complaint::{in_lines, told};
 pub use complaint::{message, sentence};

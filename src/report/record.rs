@@ -6,7 +6,7 @@ use super::rounding::{MISSING, interval, optional_fixed, plain};
 use super::text::{Style, json_word};
 use super::words::contact_words;
 use crate::data::keys::{LIMITS, OBSERVED};
-use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, TestRecord};
+use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, Photo, TestRecord};
 
 /// The heading of the report: the test's number and title, and of the cask what is not stated.
 pub(super) fn heading(test: &TestRecord, cask: &str) -> String {
@@ -179,11 +179,9 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
         .into()
 }
 
-/// The photographs that the cask file names.
-pub(super) fn photographs(test: &TestRecord) -> Chapter {
-    let chapter = Chapter::new("Photographs").only(Medium::Page);
-    let shown: Vec<_> = test.photos.iter().filter(|photo| !photo.bytes.is_empty()).cloned().collect();
-    if shown.is_empty() { chapter } else { chapter.with(PartContent::Photographs(shown)) }
+/// The photographs that the cask file names, as far as they were read.
+pub(super) fn photographs(test: &TestRecord) -> impl Iterator<Item = Photo> {
+    test.photos.iter().filter(|photo| !photo.bytes.is_empty()).cloned()
 }
 
 /// Lines for a pen.

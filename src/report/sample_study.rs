@@ -125,6 +125,7 @@ fn of(request: StudyRequest) -> Study {
         sections: [0.0, 0.01, 0.5, 0.6, 0.792].map(section).into(),
         critical: cases.iter().flat_map(|case| Criterion::ALL.map(|c| critical(*case, c))).collect(),
         monte_carlo: monte_carlo(&request),
+        plan: None,
         request,
     }
 }

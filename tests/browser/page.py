@@ -40,14 +40,19 @@ def scale(driver, chart):
     return driver.execute_script("const {min, max} = arguments[0].chart.scales.x; return [min, max]", chart)
 
 
-def printed(driver):
-    """The page on A4: so many sheets, none that ends with a heading or a caption whose rows stand on the next."""
-    heads = driver.execute_script("return [...document.querySelectorAll('h2, caption')].map((e) => e.textContent)")
+def sheets_of(driver):
+    """The page on A4: the lines of each sheet that has some."""
     pdf = driver.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})["data"]
     command = ["pdftotext", "-layout", "-", "-"]
     text = subprocess.run(command, input=base64.b64decode(pdf), capture_output=True, check=True).stdout.decode()
     sheets = [[line.strip() for line in sheet.splitlines() if line.strip()] for sheet in text.split("\f")]
-    sheets = [sheet for sheet in sheets if sheet]
+    return [sheet for sheet in sheets if sheet]
+
+
+def printed(driver):
+    """The page on A4: so many sheets, none that ends with a heading or a caption whose rows stand on the next."""
+    heads = driver.execute_script("return [...document.querySelectorAll('h2, caption')].map((e) => e.textContent)")
+    sheets = sheets_of(driver)
     feet = [sheet.pop() for sheet in sheets]
     held("every sheet has its number", all(f.endswith(f" {i} / {len(feet)}") for i, f in enumerate(feet, 1)), feet[0])
     held("so many sheets of A4", 4 <= len(sheets) <= 14, len(sheets))

@@ -1,7 +1,7 @@
 //! From what a person asks of `predict` to rows, files, limits and messages.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{Answer, dropcheck, number, words};
+use crate::run::{Answer, analyze, dropcheck, fixture, number, words};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -334,6 +334,30 @@ fn neither_a_shoulder_nor_a_somersault_is_a_critical_angle() {
         bands.filter_map(|band| band[1].as_f64()).fold(of(c, "angle_deg"), f64::max)
     };
     assert!(critical.len() == 24 && critical.iter().all(|c| highest(c) < 60.0), "{critical:?}");
+}
+
+#[test]
+fn the_plan_expects_the_intervals_that_the_drop_then_has() {
+    for name in ["anf18-json", "anf10-protobuf", "esbb-imu"] {
+        let [cask, recording] = [format!("{name}.toml"), format!("{name}.mcap")];
+        let [cask, recording] = [cask.as_str(), recording.as_str()];
+        let found = analyze(&fixture(recording), &fixture(cask)).json();
+        let k = number(&found, "/k/value").expect("k").to_string();
+        let plan = dropcheck(words!["predict", "-c", fixture(cask), "--k", k, "--draws", "0", "--json", "-"]);
+        let plan = &plan.json()["plan"];
+        let expected = plan["intervals"].as_array().expect("intervals");
+        for (key, path) in [("slap_down_speed_u95_m_s", "/slap_down/speed/u95"), ("k_u95", "/k/u95")] {
+            let ratios: Vec<f64> =
+                expected.iter().map(|e| of(e, key) / number(&found, path).expect("an interval")).collect();
+            // Noise, ringing and what the recording tests are its own.
+            assert!((0.6..1.6).contains(&ratios[0]), "{cask}, {key}: {ratios:?}");
+            assert!(ratios[1..].iter().all(|more| *more <= ratios[0] + 1e-9), "{cask}, {key}: {ratios:?}");
+        }
+        for channel in plan["channels"].as_array().expect("channels") {
+            let peaks = channel["peaks"].as_array().expect("peaks");
+            assert!(peaks.iter().all(|peak| (5.0..1500.0).contains(&of(peak, "peak_g"))), "{channel}");
+        }
+    }
 }
 
 #[test]

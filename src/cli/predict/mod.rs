@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
-    let study = crate::predict::study(&file, &request);
+    let study = crate::analysis::study(&file, &request);
 
     if let Some(folder) = &folder {
         folder.write(&report::study_files(&study)?)?;

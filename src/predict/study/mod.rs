@@ -45,6 +45,7 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         sections: curves::sections(cask_file, &request.angles_deg),
         critical: critical.into_iter().flatten().collect(),
         monte_carlo: monte_carlo::monte_carlo(cask_file, request, &drawn_deg),
+        plan: None,
         cask_file: cask_file.clone(),
         request: request.clone(),
     }

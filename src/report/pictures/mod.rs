@@ -22,6 +22,7 @@ mod svg;
 mod sweep;
 
 pub(super) use recorded::recorded;
+pub(super) use setup::picture as of_setup;
 pub(super) use study::{draw_study, names as study_names};
 
 use crate::data::{Analysis, CaskFile};

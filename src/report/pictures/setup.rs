@@ -38,7 +38,7 @@ impl OnCask {
 }
 
 /// Cask, target, ends and sensors, each with the direction in which it reads positive.
-pub(super) fn picture(file: &CaskFile) -> Picture {
+pub(in super::super) fn picture(file: &CaskFile) -> Picture {
     let (cask, drop) = (&file.cask, &file.drop);
     let section_m = if cask.height_m > 0.0 { cask.height_m } else { ROD * cask.length_m };
     let (sin, cos) = drop.angle_rad.sin_cos();

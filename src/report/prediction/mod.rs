@@ -4,6 +4,7 @@ mod critical;
 mod csv;
 mod json;
 mod models;
+mod plan;
 mod rows;
 mod study;
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::super::rounding::{MISSING, plain};
 use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
 use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
+use super::plan::plan;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
 
@@ -58,6 +59,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             critical(study),
             over_the_angle(&study.request),
             ladders(study),
+            study.plan.as_ref().map_or_else(|| Chapter::new(""), plan),
             of_the_paper(),
             Chapter::new("Limits").with(PartContent::List(LIMITS.lines().collect())),
             Chapter::new("All predictions").with_all(at_end),

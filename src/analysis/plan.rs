@@ -1,0 +1,259 @@
+//! A cask file before its drop to the plan of the measurement: range, rate and record that it needs, and what
+//! would narrow its intervals.
+
+use super::flight;
+use crate::data::{
+    At, Axis, CaskFile, ChannelNeeds, ChannelSpec, Drop, End, Events, ExpectedIntervals, FlightFit,
+    FlightRegime, MeasuringPlan, Plateau, Prediction, Quantities, RecordingNeeds, Signal, Study,
+    StudyRequest, planar,
+};
+use crate::motion::{self, Integrated};
+use crate::{fit, judge, predict};
+use std::f64::consts::PI;
+
+/// The largest coefficient of restitution that range and record must do for.
+const LARGEST_K: f64 = 1.0;
+/// First contact of the expected recording, s, and its samples over the contact.
+const CONTACT_S: f64 = 0.1;
+const SAMPLES: f64 = 200.0;
+/// Rounds of the search for the slap-down: each leaves a hundredth of the height at most.
+const ROUNDS: usize = 4;
+
+/// All that a study of the drop angle holds, and the plan of the measurement at its angle.
+#[must_use]
+pub fn study(file: &CaskFile, request: &StudyRequest) -> Study {
+    let angle_rad = request.angle_deg.to_radians();
+    let at_angle = CaskFile { drop: Drop { angle_rad, ..file.drop }, ..file.clone() };
+    let ks = request.ks.iter().copied();
+    let k = f64::midpoint(ks.clone().fold(f64::INFINITY, f64::min), ks.fold(0.0, f64::max));
+    Study { plan: Some(plan(&at_angle, k)), ..predict::study(file, request) }
+}
+
+fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
+    let mut plan = MeasuringPlan { needs: needs(file), k, intervals: Vec::new(), why_no_intervals: None };
+    let shows = |end| file.channels.iter().any(|spec| spec.end == end && spec.axis == Axis::Transverse);
+    if !shows(End::First) || !shows(End::Second) {
+        plan.why_no_intervals = Some("the cask file has no transverse channel on each end");
+        return plan;
+    }
+    let intervals = candidates(file).into_iter().map(|candidate| candidate.intervals(file, k));
+    match intervals.collect() {
+        Some(intervals) => plan.intervals = intervals,
+        None => plan.why_no_intervals = Some("no single flight to a slap-down is predicted"),
+    }
+    plan
+}
+
+/// Ranges, rate and record that the predicted drop needs; of a cask file without channels for sensors at both
+/// ends.
+pub(super) fn needs(file: &CaskFile) -> RecordingNeeds {
+    let body = predict::bodies(&file.cask).pop();
+    let predicted = body.map(|body| predict::predict(&body, &file.drop, file.contact, LARGEST_K));
+    let ends = [("first end", End::First, 0.0), ("second end", End::Second, file.cask.length_m)];
+    let ends = ends.map(|(name, end, position_m)| ChannelSpec::plain(name, end, "", position_m));
+    let specs = if file.channels.is_empty() { &ends[..] } else { &file.channels };
+    let channel = |spec: &ChannelSpec| {
+        let step_m_s = predicted.as_ref().map_or(0.0, |predicted| largest_step_m_s(spec, file, predicted));
+        ChannelNeeds { name: spec.name.clone(), peaks: judge::expected_peaks(step_m_s, &file.drop) }
+    };
+    let flight_s = predicted.as_ref().and_then(|p| p.flight_time_s).unwrap_or(0.0);
+    let (longest_s, shortest_s) = judge::pulse_lengths_s(&file.drop);
+    let sample_rate_hz = judge::fit_rate_hz(shortest_s);
+    RecordingNeeds {
+        channels: specs.iter().map(channel).collect(),
+        sample_rate_hz,
+        nothing_from_hz: judge::nothing_from_hz(sample_rate_hz),
+        before_s: judge::LEAST_BEFORE_S,
+        fall_s: file.drop.impact_velocity_m_s / file.drop.gravity_m_s2,
+        flight_s,
+        after_s: flight_s + 2.0 * longest_s,
+    }
+}
+
+/// By how much the first impact changes the velocity that a channel reads, m/s: all of the vertical
+/// velocity of the first end, turned round, less what the rotation takes   (47)
+fn largest_step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction) -> f64 {
+    let (sin, cos) = file.drop.angle_rad.sin_cos();
+    let turned_m_s = (1.0 + LARGEST_K) * file.drop.impact_velocity_m_s;
+    match spec.axis {
+        Axis::Transverse => (turned_m_s * cos - predicted.angular_velocity_rad_s * spec.position_m).abs(),
+        Axis::Axial => turned_m_s * sin,
+    }
+}
+
+/// Channels whose intervals are expected.
+struct Candidate {
+    with: &'static str,
+    specs: Vec<ChannelSpec>,
+}
+
+/// The channels as they are, and with one thing more each.
+fn candidates(file: &CaskFile) -> Vec<Candidate> {
+    let candidate = |with, added: Vec<ChannelSpec>| Candidate {
+        with,
+        specs: file.channels.iter().cloned().chain(added).collect(),
+    };
+    let like = |end: End, axis: Axis| {
+        let of_end = |spec: &&ChannelSpec| spec.end == end && spec.axis == Axis::Transverse;
+        let name = format!("another at the {end:?} end, {axis:?}");
+        file.channels.iter().find(of_end).map(|spec| ChannelSpec {
+            axis,
+            name,
+            calibration: None,
+            reference: None,
+            ..spec.clone()
+        })
+    };
+    let each = |axis| [End::First, End::Second].into_iter().filter_map(|end| like(end, axis)).collect();
+    vec![
+        candidate("", Vec::new()),
+        candidate("an axial channel on each end", each(Axis::Axial)),
+        candidate("another transverse channel on each end", each(Axis::Transverse)),
+    ]
+}
+
+impl Candidate {
+    /// The intervals by the budget of the fit of the predicted impact, a half sine in each channel, without
+    /// noise and ringing   (48)
+    fn intervals(&self, file: &CaskFile, k: f64) -> Option<ExpectedIntervals> {
+        let expected = ExpectedDrop::of(file, &self.specs, k)?;
+        let quantities = expected.quantities(file, self)?;
+        let slap_down_speed_u95_m_s = quantities.speed?.u95;
+        Some(ExpectedIntervals { with: self.with, slap_down_speed_u95_m_s, k_u95: quantities.k.u95 })
+    }
+}
+
+/// The predicted impact as an analysis would have it.
+struct ExpectedDrop {
+    integrated: Integrated<'static>,
+    flight: FlightFit,
+    events: Events,
+}
+
+impl ExpectedDrop {
+    fn of(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
+        let body = predict::bodies(&file.cask).pop()?;
+        let at_once = Drop { contact_duration_s: 0.0, ..file.drop };
+        let predicted = predict::predict(&body, &at_once, file.contact, k);
+        let flies = predicted.first_end_impacts == 1 && predicted.regime == FlightRegime::Free;
+        let flight_s = predicted.flight_time_s.filter(|_| flies && !predicted.turns_over())?;
+        let lasts_s = judge::pulse_lengths_s(&file.drop).0;
+        let u_s = 1.0 / (judge::fit_rate_hz(lasts_s) * 12.0_f64.sqrt());
+        let at = |time_s| Some(At { time_s, u_s });
+        let (left_s, struck_s) = (CONTACT_S + lasts_s, CONTACT_S + lasts_s / 2.0 + flight_s);
+        if struck_s <= left_s {
+            return None;
+        }
+        let events = Events {
+            first_contact: at(CONTACT_S),
+            separation: at(left_s),
+            slap_down: at(struck_s),
+            ..Events::default()
+        };
+        let mut specs: Vec<&ChannelSpec> = specs.iter().collect();
+        specs.sort_by_key(|spec| spec.axis == Axis::Axial);
+        let steps_m_s = specs.iter().map(|spec| step_m_s(spec, file, &predicted));
+        let read: Vec<(Signal, Plateau)> = specs
+            .iter()
+            .zip(steps_m_s)
+            .map(|(spec, step_m_s)| half_sine(spec, step_m_s, lasts_s, flight_s))
+            .collect();
+        let (signals, plateaus): (Vec<_>, Vec<_>) = read.into_iter().unzip();
+        let flight = FlightFit {
+            from_s: left_s,
+            to_s: struck_s,
+            plateaus,
+            modes: Vec::new(),
+            drift: false,
+            candidates: Vec::new(),
+            strike: None,
+        };
+        let integrated = Integrated::over(&signals, CONTACT_S).into_owned();
+        Some(Self { integrated, flight, events })
+    }
+
+    fn quantities(mut self, file: &CaskFile, candidate: &Candidate) -> Option<Quantities> {
+        let (setup, friction) = flight::contact(file, &self.integrated, &self.flight, &self.events);
+        let moved = |flight: &FlightFit, events: &Events, setup: &_| {
+            motion::outcome(&self.integrated, flight, events, setup)
+        };
+        let mut motion = moved(&self.flight, &self.events, &setup)?;
+        for _ in 0..ROUNDS {
+            let by_s = motion.second_end_height_m? / motion.second_end_m_s?.1;
+            self.events.slap_down.as_mut()?.time_s -= by_s;
+            motion = moved(&self.flight, &self.events, &setup)?;
+        }
+        let turned_rad_s = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
+        let measured = fit::FitData {
+            signals: &self.integrated.signals,
+            flight: &self.flight,
+            events: &self.events,
+            setup: &setup,
+            friction,
+            specs: &candidate.specs,
+            tolerances: file.tolerances,
+            // That of the half sine, by which its closure is met: the stated one but for what turning adds.
+            inertia_m2: file.cask.is_body.then_some(motion.angular_impulse_m2_s / turned_rad_s),
+            rests: &[],
+            fall_s: None,
+            rotations: &[],
+            stood_in: None,
+            second: None,
+        };
+        Some(fit::ladder(&measured, None, &moved)?.quantities)
+    }
+}
+
+/// What the predicted impact changes the velocity of a channel by, m/s: the impulse that gives the rotation,
+/// I (a − b r) = Θ ω with r = I_x / I_z, on the body axes   (48)
+fn step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction) -> f64 {
+    let (cask, drop) = (&file.cask, &file.drop);
+    let (sin, cos) = drop.angle_rad.sin_cos();
+    let (a_m, b_m) = planar::arms_m((sin, cos), cask.cog_m, cask.height_m);
+    let turned_rad_s = predicted.angular_velocity_rad_s - drop.angular_velocity_rad_s;
+    let ratio = predicted.impulse_ratio;
+    let up_m_s = cask.inertia_kg_m2 / cask.mass_kg * turned_rad_s / (a_m - b_m * ratio);
+    match spec.axis {
+        Axis::Transverse => up_m_s * (cos - ratio * sin) - turned_rad_s * (spec.position_m - cask.cog_m),
+        Axis::Axial => up_m_s * (sin + ratio * cos),
+    }
+}
+
+/// A channel that reads a half sine of this area, and its plateau.
+fn half_sine(spec: &ChannelSpec, step_m_s: f64, lasts_s: f64, flight_s: f64) -> (Signal, Plateau) {
+    let sample_rate_hz = SAMPLES / lasts_s;
+    let force = |since_s: f64| {
+        let share = (since_s - CONTACT_S) / lasts_s;
+        if (0.0..1.0).contains(&share) { PI / 2.0 * step_m_s / lasts_s * (PI * share).sin() } else { 0.0 }
+    };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a second at the most")]
+    let count = ((CONTACT_S + 2.0 * lasts_s + flight_s) * sample_rate_hz) as u32;
+    let signal = Signal {
+        name: spec.name.clone(),
+        end: spec.end,
+        axis: spec.axis,
+        position_m: spec.position_m,
+        offset_m: spec.offset_m,
+        start_s: 0.0,
+        sample_rate_hz,
+        force_m_s2: (0..count).map(|i| force(f64::from(i) / sample_rate_hz)).collect(),
+        removed_offset_m_s2: 0.0,
+        u_offset_m_s2: 0.0,
+        noise_m_s2: 0.0,
+        noise_spectrum: Vec::new(),
+        free_fall_s: CONTACT_S,
+        clipped: Vec::new(),
+        gaps: Vec::new(),
+    };
+    let plateau = Plateau {
+        channel: spec.name.clone(),
+        velocity_step_m_s: step_m_s,
+        u_m_s: 0.0,
+        zero_shift_m_s2: 0.0,
+        u_zero_shift_m_s2: 0.0,
+        residual_m_s: 0.0,
+        ringing_m_s: Vec::new(),
+        late_mismatch_m_s: None,
+    };
+    (signal, plateau)
+}
