@@ -34,9 +34,13 @@ class Drawing {
     this.length = cask.length_m;
     const focused = document.activeElement?.dataset?.channel;
     const waiting = channels.filter((channel) => channel.end !== "none" && !isStated(channel.position_m));
-    const handles = channels.map((channel, i) =>
-      (channel.end === "none" ? "" : this.handle(channel, i, waiting.indexOf(channel))));
-    const words = waiting.length ? [drawn("text", { x: 60, y: 32, "font-size": 24 }, "Drag to its place:")] : [];
+    const isHere = (one, other) => Math.abs(one.position_m - other.position_m) < this.length / 40;
+    const handles = channels.map((channel, i) => {
+      // Sensors at one place stand below each other.
+      const beside = channels.slice(0, i).filter((other) => isStated(channel.position_m) && isHere(channel, other));
+      return channel.end === "none" ? "" : this.handle(channel, i, waiting.indexOf(channel), beside.length);
+    });
+    const words = waiting.length ? [drawn("text", { x: 60, y: 42, "font-size": 24 }, "Drag to its place:")] : [];
     this.above.replaceChildren(...words, ...handles);
     if (focused !== undefined) this.above.querySelector(`[data-channel="${focused}"]`)?.focus();
   }
@@ -66,18 +70,19 @@ class Drawing {
     return Number(Math.min(Math.max(position_m, 0), this.length).toFixed(digits));
   }
 
-  handle(channel, i, turn) {
+  handle(channel, i, turn, below) {
     const isPlaced = turn < 0;
     const name = isStated(channel.name) ? channel.name : `channel ${i + 1}`;
-    const [x, y] = isPlaced ? this.at(channel.position_m) : [310 + 110 * (turn % 12), 24 + 60 * Math.floor(turn / 12)];
+    const [x, y] = isPlaced ? this.at(channel.position_m)
+      : [350 + 190 * (turn % 8), 34 + 76 * Math.floor(turn / 8)];
     const handle = drawn("g", { class: "handle", tabindex: 0, role: "slider", "data-channel": i,
       "aria-label": `Place of ${name} along the axis`, "aria-valuemin": 0, "aria-valuemax": this.length,
-      "aria-valuenow": isPlaced ? channel.position_m : 0, transform: `translate(${x} ${y})`,
+      "aria-valuenow": isPlaced ? channel.position_m : 0, transform: `translate(${x} ${y + 68 * below})`,
       "aria-valuetext": isPlaced ? `${channel.position_m} m from the first end` : "no place yet" },
     drawn("circle", { r: 34 }));
     // The program draws the name of a channel that is stated in full.
     const word = { y: 10, "text-anchor": "middle", "font-size": 26 };
-    if (!this.isDrawn(channel)) handle.append(drawn("text", word, name));
+    if (!this.isDrawn(channel)) handle.append(drawn("text", word, name.slice(0, 14)));
     handle.onpointerdown = (event) => this.drag(handle, i, event);
     handle.onkeydown = (event) => this.key(event, i, isPlaced ? channel.position_m : 0);
     return handle;

@@ -87,7 +87,7 @@ async function recorded(recording) {
     byId("listing").replaceChildren(...listed(listing));
     form.sources = listing.channels.map((channel) => channel.source);
     byId("anew").hidden = !state.isOwn;
-    if (state.isOwn && form.channels().length) await inTurn(shown_anew);
+    if (state.isOwn && form.channels().length) await inTurn(shownAnew);
     else await inTurn(() => begun({ keep: true }));
     const look = await forLook.text({ op: "look", name }, recording);
     if (turn !== state.asked) return;
@@ -128,16 +128,23 @@ async function begun({ keep }) {
   }
   state.isOwn = keep && state.isOwn;
   state.text = text;
-  await shown_anew();
+  await shownAnew();
 }
 
 // The cask file.
 
 async function opened(file) {
-  state.text = await file.text();
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const coding = { "255,254": "utf-16le", "254,255": "utf-16be" }[bytes.slice(0, 2)] ?? "utf-8";
+  try {
+    state.text = new TextDecoder(coding, { fatal: true }).decode(bytes);
+  } catch {
+    refuse("form-refusal", { problem: `${file.name}: not text in UTF-8`, mend: "save it as UTF-8 in an editor" });
+    return;
+  }
   state.isOwn = true;
   byId("anew").hidden = !state.recording;
-  await inTurn(shown_anew);
+  await inTurn(shownAnew);
 }
 
 /** A change that a field, a handle or a button asks for. */
@@ -154,18 +161,20 @@ const changed = (path, value) => inTurn(async () => {
   if (/^channel\.\d+\.end$/.test(path) && value === '"none"') {
     for (const key of ["axis", "position_m", "offset_m", "polarity"]) await edit(path.replace("end", key), null);
   }
-  await shown_anew();
+  await shownAnew();
 });
 
 const moved = (i, position_m) => {
   const { end } = form.channels()[i];
   changed(`channel.${i}.position_m`, String(position_m));
-  const nearer = position_m < drawing.length / 2 ? "first" : "second";
-  if (!isStated(end)) changed(`channel.${i}.end`, toml(nearer));
+  // What is laid on an end belongs to it; in the middle third it is asked for.
+  const share = position_m / drawing.length;
+  if (isStated(end) || Math.abs(share - 0.5) < 1 / 6) return;
+  changed(`channel.${i}.end`, toml(share < 0.5 ? "first" : "second"));
 };
 
 /** Shows the text in form, drawing and prediction, and what is wrong in it. */
-async function shown_anew() {
+async function shownAnew() {
   if (document.activeElement !== byId("text")) byId("text").value = state.text;
   refuse("form-refusal");
   form.forgive();
@@ -246,14 +255,16 @@ function foretold() {
 }
 
 function predicted({ predictions }) {
-  const body = predictions.filter(({ model, slap_down_speed_m_s: speed }) => model === "body" && speed !== null);
-  if (!body.length) return "The model predicts no slap-down of this drop.";
-  const among = (key) => [Math.min(...body.map((one) => one[key])), Math.max(...body.map((one) => one[key]))];
-  const [least, most] = among("slap_down_speed_m_s").map((speed) => speed.toFixed(1));
-  const contacts = new Set(body.map(({ contact }) => contact));
-  const friction = contacts.size > 1 ? ", and friction from none to sticking" : "";
-  return `Predicted slap-down speed at ${shown(body[0].angle_deg)}°: ${least} to ${most} m/s, `
-    + `for a restitution k from ${among("k").join(" to ")}${friction}.`;
+  const model = predictions.some((one) => one.model === "body") ? "body" : "rod";
+  const all = predictions.filter((one) => one.model === model);
+  const slapping = all.filter((one) => one.slap_down_speed_m_s !== null);
+  if (!slapping.length) return "The model predicts no slap-down of this drop.";
+  const span = (many, key) => [Math.min, Math.max].map((end) => end(...many.map((one) => one[key])));
+  const [least, most] = span(slapping, "slap_down_speed_m_s").map((speed) => speed.toFixed(1));
+  const friction = new Set(all.map((one) => one.contact)).size > 1 ? " and friction from none to sticking" : "";
+  return `Predicted slap-down speed at ${shown(all[0].angle_deg)}°: ${least} to ${most} m/s, `
+    + `for a restitution k from ${span(all, "k").join(" to ")}${friction}`
+    + `${slapping.length < all.length ? "; in a part of this range the cask does not slap down." : "."}`;
 }
 
 // The result.
@@ -320,7 +331,7 @@ async function started() {
   const tables = await forForm.json({ op: "keys" });
   form = new Form(byId("form"), tables, changed);
   drawing = new Drawing(byId("drawing"), moved, (i) => form.focus(`channel.${i}.position_m`));
-  await inTurn(shown_anew);
+  await inTurn(shownAnew);
 
   const [drop, file] = [byId("drop"), byId("file")];
   file.onchange = () => taken([...file.files]);
@@ -340,7 +351,7 @@ async function started() {
   byId("form").onsubmit = (event) => event.preventDefault();
   byId("text").oninput = () => inTurn(() => {
     Object.assign(state, { text: byId("text").value, isOwn: true });
-    return shown_anew();
+    return shownAnew();
   });
   byId("save-cask").onclick = () => queue.then(() => save(CASK_NAME, state.text));
   byId("analyse").onclick = analysed;

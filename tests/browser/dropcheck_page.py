@@ -33,6 +33,13 @@ const refused = (refusal) => done({refusal: refusal.message});
 window.dropcheck[method](plain, name, cask).then((json) => done({json}), refused);
 """
 
+DROPPED = """
+const plain = Uint8Array.from(atob(arguments[0]), (c) => c.charCodeAt(0));
+const dataTransfer = new DataTransfer();
+dataTransfer.items.add(new File([plain], arguments[1]));
+document.getElementById("drop").dispatchEvent(new DragEvent("drop", { bubbles: true, dataTransfer }));
+"""
+
 
 def asked(driver, method, recording, cask=None):
     """What the page answers to a program: its JSON, or the words of its refusal."""
@@ -205,6 +212,21 @@ def text_of(driver):
     return driver.find_element(By.ID, "text").get_attribute("value")
 
 
+def laid_on(driver):
+    """A sensor without a place is laid on an end, and so is of it; its axis is asked for."""
+    whole = text_of(driver)
+    driver.find_element(By.CSS_SELECTOR, "#form > p > button").click()
+    soon("a new sensor waits beside the cask", lambda: driver.find_elements(By.CSS_SELECTOR, "[data-channel='2']"))
+    sensor = driver.find_element(By.CSS_SELECTOR, "[data-channel='2'] circle")
+    end = driver.find_element(By.CSS_SELECTOR, "[data-channel='1'] circle")
+    driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", sensor)
+    ActionChains(driver).click_and_hold(sensor).move_to_element(end).release().perform()
+    soon("it is of the second end", lambda: value(driver, "channel.2.end") == "second")
+    soon("its axis is still asked for", lambda: told(driver, "form-word").startswith("3 fields"))
+    driver.find_element(By.ID, "remove-2").click()
+    soon("it goes without a trace", lambda: text_of(driver).strip() == whole.strip())
+
+
 def changed_besides(driver, folder):
     """A channel more and less, the text by hand, the report on paper, a recording that is too large."""
     whole = text_of(driver)
@@ -233,8 +255,9 @@ def changed_besides(driver, folder):
         file.truncate(1_200_000_000)
     chosen(driver, large)
     soon("a recording too large is refused unread", lambda: "1.2 GB are more" in told(driver, "recording-refusal"))
-    chosen(driver, EXAMPLES / "anf18-json.mcap")
-    soon("the next one is read", lambda: "/daq/a2.samples" in told(driver, "listing"))
+    data = base64.b64encode((EXAMPLES / "anf18-json.mcap").read_bytes()).decode()
+    driver.execute_script(DROPPED, data, "anf18-json.mcap")
+    soon("the next one, dropped on the page, is read", lambda: "/daq/a2.samples" in told(driver, "listing"))
     held("and the cask file is kept", text_of(driver) == whole)
 
 
@@ -287,6 +310,7 @@ def main(page, command, is_short):
         filled_in(driver, command, folder)
         analysed(driver, folder)
         moved(driver)
+        laid_on(driver)
         refused(driver)
         seen(driver)
         changed_besides(driver, folder)
