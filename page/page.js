@@ -305,7 +305,8 @@ async function analysed() {
     byId("result").scrollIntoView();
   } catch (refusal) {
     const path = refusal.key ?? fieldNamed(refusal);
-    if (form.blame(path, told(refusal))) form.focus(path);
+    if (refusal.message === STOPPED) say("progress", "Stopped.");
+    else if (form.blame(path, told(refusal))) form.focus(path);
     else refuse("analysis-refusal", refusal);
   } finally {
     byId("stop").hidden = true;
@@ -332,33 +333,41 @@ async function started() {
   form = new Form(byId("form"), tables, changed);
   drawing = new Drawing(byId("drawing"), moved, (i) => form.focus(`channel.${i}.position_m`));
   await inTurn(shownAnew);
+}
 
-  const [drop, file] = [byId("drop"), byId("file")];
-  file.onchange = () => taken([...file.files]);
-  byId("cask").onchange = ({ target }) => opened(target.files[0]);
+/** What is done before the form is there waits for it. */
+const ready = during("recording-word", "Starting …", started());
+const whenReady = (work) => ready.then(work, () => null);
+
+function listen() {
+  const [drop, file, cask] = ["drop", "file", "cask"].map(byId);
+  const take = (files) => whenReady(() => taken(files));
+  file.onchange = () => take([...file.files]);
+  cask.onchange = () => whenReady(() => opened(cask.files[0]));
   // So that the same file can be chosen again, once it was changed.
-  for (const input of [file, byId("cask")]) input.onclick = () => { input.value = ""; };
+  for (const input of [file, cask]) input.onclick = () => { input.value = ""; };
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
   document.addEventListener("dragover", () => drop.classList.add("over"));
   document.addEventListener("dragleave", () => drop.classList.remove("over"));
   document.addEventListener("drop", (event) => {
     drop.classList.remove("over");
     const isFolder = [...event.dataTransfer.items].some((item) => item.webkitGetAsEntry?.()?.isDirectory);
-    if (!isFolder) taken([...event.dataTransfer.files]);
+    if (!isFolder) take([...event.dataTransfer.files]);
     else refuse("recording-refusal", { problem: "this is a folder", mend: "pack it as a zip, and drop that" });
   });
   byId("anew").onclick = () => inTurn(() => begun({ keep: false }));
   byId("form").onsubmit = (event) => event.preventDefault();
-  byId("text").oninput = () => inTurn(() => {
+  byId("text").oninput = () => whenReady(() => inTurn(() => {
     Object.assign(state, { text: byId("text").value, isOwn: true });
     return shownAnew();
-  });
+  }));
   byId("save-cask").onclick = () => queue.then(() => save(CASK_NAME, state.text));
-  byId("analyse").onclick = analysed;
+  byId("analyse").onclick = () => whenReady(analysed);
   byId("stop").onclick = () => forRecording.stop();
   byId("save-report").onclick = () => save(...state.files[0]);
   byId("print").onclick = () => byId("report-frame").contentWindow.print();
 }
 
-started().catch((fault) => refuse("broken", { problem: `This browser cannot run the page: ${fault.message}.`,
+listen();
+ready.catch((fault) => refuse("broken", { problem: `This browser cannot run the page: ${fault.message}.`,
   mend: "It needs a browser of 2023 or newer that may run WebAssembly." }));

@@ -87,7 +87,8 @@ def equal(driver, command, is_short):
 
 
 def value(driver, path):
-    return driver.find_element(By.ID, f"field-{path}").get_attribute("value")
+    found = driver.find_elements(By.ID, f"field-{path}")
+    return found[0].get_attribute("value") if found else None
 
 
 def told(driver, place):
@@ -243,8 +244,7 @@ def changed_besides(driver, folder):
     soon("broken text is refused above the form", lambda: "cask.toml, line" in told(driver, "form-refusal"))
     put = "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))"
     driver.execute_script(put, box, whole)
-    soon("mended text is in the form", lambda: driver.find_elements(By.ID, "field-channel.1.source"))
-    soon("with its values", lambda: value(driver, "channel.1.source") == "/daq/a2.samples")
+    soon("mended text is in the form", lambda: value(driver, "channel.1.source") == "/daq/a2.samples")
     held("and nothing is refused", not told(driver, "form-refusal"), told(driver, "form-refusal"))
     frame = "document.getElementById('report-frame').contentWindow"
     driver.execute_script(f"{frame}.print = () => {{ window.isPrinted = 1; }}")
@@ -291,6 +291,20 @@ def seen(driver):
     driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+def in_german(driver, page):
+    """A browser that speaks German shows numbers with a comma, and takes a point too."""
+    agent = driver.execute_script("return navigator.userAgent")
+    driver.execute_cdp_cmd("Emulation.setUserAgentOverride", {"userAgent": agent, "acceptLanguage": "de-DE"})
+    driver.get(page.resolve().as_uri())
+    driver.find_element(By.ID, "cask").send_keys(str(EXAMPLES / "anf18-json.toml"))
+    soon("a German browser shows a comma", lambda: value(driver, "cask.length_m") == "5,512")
+    field = driver.find_element(By.ID, "field-cask.length_m")
+    field.clear()
+    field.send_keys("5.6", Keys.TAB)
+    soon("and takes a point", lambda: "length_m = 5.6\n" in text_of(driver))
+    held("which it shows as a comma", value(driver, "cask.length_m") == "5,6", value(driver, "cask.length_m"))
+
+
 def closed(driver):
     """A page that can ask for nothing."""
     held("no request is allowed", driver.execute_async_script(
@@ -320,6 +334,7 @@ def main(page, command, is_short):
     asked_for = driver.execute_script("return performance.getEntriesByType('resource').map((entry) => entry.name)")
     held("no request", not [name for name in asked_for if not name.startswith("blob:")], asked_for)
     closed(driver)
+    in_german(driver, page)
     driver.quit()
 
 
