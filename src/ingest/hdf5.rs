@@ -8,22 +8,29 @@ mod clocks;
 mod column;
 mod fault;
 mod find;
-#[cfg(windows)]
+#[cfg(all(windows, feature = "native"))]
 mod job;
+#[cfg(feature = "native")]
 mod library;
 mod list;
 pub(super) mod names;
 mod packed;
 mod patience;
+#[cfg(any(not(feature = "native"), test))]
+mod pure;
+#[cfg_attr(not(feature = "native"), allow(dead_code, reason = "a page starts no process"))]
 mod room;
 mod sensors;
 mod starts;
+mod tree;
 mod types;
+#[cfg(feature = "native")]
 mod wall;
 
 pub(super) use list::list;
 #[cfg(any(test, fuzzing))]
 pub(super) use room::answer_by;
+#[cfg(feature = "native")]
 pub use room::{Hdf5Program, use_program};
 
 use super::refusal::Refusal;
@@ -37,12 +44,15 @@ use column::DatasetColumn;
 use room::File;
 use starts::Start;
 use std::collections::HashMap;
-#[cfg(unix)]
+#[cfg(all(unix, feature = "native"))]
 use std::ffi::OsString;
-use std::io::{BufWriter, stdin, stdout};
-use std::path::Path;
-use std::process::ExitCode;
 use std::rc::Rc;
+#[cfg(feature = "native")]
+use std::{
+    io::{BufWriter, stdin, stdout},
+    path::Path,
+    process::ExitCode,
+};
 
 /// Whether an attribute of this name on samples says how they become a physical quantity.
 #[must_use]
@@ -53,6 +63,7 @@ pub fn is_conversion(name: &str) -> bool {
 
 /// Where this process was started to take an HDF5 file apart: does so until nobody asks any more. Else
 /// `program` is noted as the one to be started for it.
+#[cfg(feature = "native")]
 pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     let mut words = std::env::args_os().skip(1);
     if words.next().is_none_or(|word| word != room::WORD) {
@@ -67,6 +78,7 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
 
 /// For a process that was started to take the file at `path` apart: closes it in and answers on standard
 /// output what standard input asks, and says whether it could; then the process is to end.
+#[cfg(feature = "native")]
 #[must_use]
 pub fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
@@ -78,7 +90,7 @@ pub fn take_apart(path: &Path) -> bool {
 /// Starts the program anew where variables are set by which the C library, which writes the curves of a
 /// report in this process, would load code or take another driver: `HDF5_PLUGIN_PATH`, `HDF5_VOL_CONNECTOR`,
 /// `HDF5_DRIVER` and the like.
-#[cfg(unix)]
+#[cfg(all(unix, feature = "native"))]
 fn begin_without_variables(program: &Path) {
     use std::os::unix::process::CommandExt;
     let is_heeded = |(name, value): &(OsString, OsString)| {
@@ -103,7 +115,7 @@ fn begin_without_variables(program: &Path) {
 /// # Errors
 /// A damaged file, a source that is not there or holds no numbers, times that are none.
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
-    let file = File::open(request.file.path, request.limits)?;
+    let file = File::open(request.file, request.limits)?;
     let clocks = Clocks::default();
     let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);

@@ -11,30 +11,7 @@ pub(crate) mod error;
 pub(crate) mod foreign;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
-#[cfg(feature = "native")]
 mod hdf5;
-#[cfg(not(feature = "native"))]
-mod hdf5 {
-    pub(super) mod names;
-
-    use super::{IngestError, ReadRequest, error, refusal::Refusal};
-
-    fn refused(request: ReadRequest) -> IngestError {
-        let mend = "analyse it by the dropcheck command, or export it as MCAP or CSV";
-        error::of_file(request.file.path, Refusal::new("it is HDF5, which this page does not read", mend))
-    }
-
-    pub(super) fn read(
-        request: ReadRequest,
-        _: &super::CaskFile,
-    ) -> Result<super::RawRecording, IngestError> {
-        Err(refused(request))
-    }
-
-    pub(super) fn list(request: ReadRequest) -> Result<super::Listing, IngestError> {
-        Err(refused(request))
-    }
-}
 mod limits;
 mod lines;
 mod listed;

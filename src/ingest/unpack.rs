@@ -30,6 +30,16 @@ pub(super) fn lz4(packed: &[u8], most: u64, into: &mut Vec<u8>) -> io::Result<us
     decoder.take(most).read_to_end(into)
 }
 
+/// Unpacks deflated bytes with a check sum behind them into their place; the count of those that came.
+pub(super) fn zlib(packed: &[u8], into: &mut [u8]) -> Option<usize> {
+    #[cfg(feature = "native")]
+    let count = libdeflater::Decompressor::new().zlib_decompress(packed, into).ok();
+    #[cfg(not(feature = "native"))]
+    let count =
+        miniz_oxide::inflate::decompress_slice_iter_to_slice(into, [packed].into_iter(), true, false).ok();
+    count
+}
+
 /// What deflated bytes unpack to, empty where it is not `length` bytes.
 pub(super) fn deflate(packed: &[u8], length: usize) -> Vec<u8> {
     let mut bytes = vec![0; length];

@@ -5,6 +5,7 @@
 //! over as bytes: the other process may have been taken over by the file, so nothing in an answer is believed
 //! before [`Dataset::is_sane`] and the reader held it against the file.
 
+use super::types::Type;
 use encoding_rs::WINDOWS_1252;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -243,6 +244,23 @@ impl NumberType {
 }
 
 impl Dataset {
+    /// One of which nothing but its type is known.
+    pub(super) fn of_type(dtype: &Type) -> Self {
+        Self {
+            type_name: dtype.name(),
+            value_bytes: dtype.bytes as u64,
+            number: dtype.number(),
+            is_plain: dtype.is_plain(),
+            fields: dtype.fields(),
+            is_records: dtype.is_record(),
+            shape: None,
+            storage: Storage::Virtual,
+            filters: Vec::new(),
+            stored_bytes: 0,
+            attributes: Vec::new(),
+        }
+    }
+
     /// How it is stored, for people: type, shape, filters.
     pub(super) fn described(&self) -> String {
         let kind = decoded(&self.type_name);

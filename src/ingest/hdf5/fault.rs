@@ -9,6 +9,9 @@ use std::path::Path;
 pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
 
 const AGAIN: &str = "copy the file from the logger again";
+/// What begins the words for what the C library alone reads, or may.
+pub(super) const BEYOND: &str = "only the HDF5 library reads ";
+
 const BAD_SUM: &str = "a check sum does not fit: the data are damaged";
 
 /// Part of the library's words, what they mean, and what to do.
@@ -29,10 +32,9 @@ const MEANINGS: [(&str, &str, &str); 8] = [
      "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"),
 ];
 
-/// A fault of the whole file.
-pub(super) fn of_file(path: &Path, fault: Refusal) -> IngestError {
-    let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    error::of_file(path, fault.at(&format!("HDF5 file of {size} bytes")))
+/// A fault of the whole file, which has so many bytes.
+pub(super) fn of_file(path: &Path, bytes: u64, fault: Refusal) -> IngestError {
+    error::of_file(path, fault.at(&format!("HDF5 file of {bytes} bytes")))
 }
 
 /// What the library's words mean, outermost first.
@@ -49,6 +51,10 @@ pub(super) fn of_words(words: &[Bytes]) -> Refusal {
 /// The same where it is known.
 pub(super) fn meaning(words: &[Bytes]) -> Option<Refusal> {
     let words = texts(words);
+    if let Some(beyond) = words.iter().find(|word| word.starts_with(BEYOND)) {
+        let mend = "analyse it by the dropcheck command, or convert it: export it anew, in MCAP or CSV";
+        return Some(Refusal::new(format!("{beyond}, which this page has not"), mend));
+    }
     let all = words.join(": ").to_lowercase();
     let (part, problem, remedy) = MEANINGS.iter().find(|(part, ..)| all.contains(part))?;
     // The library gives the sizes for a file that is cut off.

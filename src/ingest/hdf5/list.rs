@@ -46,13 +46,12 @@ struct Lister {
 /// # Errors
 /// A file that the library cannot open.
 pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
-    let file = File::open(request.file.path, request.limits)?;
+    let file = File::open(request.file, request.limits)?;
     let listing = list_objects(&file, request.progress);
     file.whole().map(|()| listing)
 }
 
 fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
-    let (major, minor, patch) = file.library;
     let guard = if file.is_walled { "" } else { UNGUARDED };
     let listing = Listing {
         schema: "dropcheck.inspect/1",
@@ -60,7 +59,7 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
         bytes: file.bytes,
         format: RecordingFormat::Hdf5,
         counts: BTreeMap::from(["groups", "datasets"].map(|counted| (counted.to_owned(), 0))),
-        facts: BTreeMap::from([("read with".into(), format!("HDF5 library {major}.{minor}.{patch}{guard}"))]),
+        facts: BTreeMap::from([("read with".into(), format!("{}{guard}", file.library))]),
         channels: Vec::new(),
         issues: Vec::new(),
     };

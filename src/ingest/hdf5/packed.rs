@@ -6,10 +6,10 @@ use super::column::{DatasetColumn, Place};
 use super::fault::REPACK;
 use crate::data::Samples;
 use crate::ingest::Limits;
+use crate::ingest::recording_file::OpenFile;
 use crate::ingest::refusal::Refusal;
-use libdeflater::Decompressor;
+use crate::ingest::{RecordingFile, unpack};
 use rayon::prelude::*;
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 /// Bytes read at a time of a dataset that lies in one piece: they stay in the cache until they are turned.
@@ -103,7 +103,8 @@ fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
         Storage::Chunked { shape, chunks } => layout.in_chunks(dataset, shape, chunks.as_ref()?)?,
         _ => return None,
     };
-    let (path, mut values) = (&file.path, vec![T::Sample::default(); column.length]);
+    let source = RecordingFile { path: &file.path, in_memory: file.in_memory.as_ref() };
+    let mut values = vec![T::Sample::default(); column.length];
     // A chunk for every stretch of rows, or the rest is what the library fills in.
     if chunks.len() != column.length.div_ceil(layout.rows) {
         return None;
@@ -114,7 +115,7 @@ fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
         .enumerate()
         .with_min_len(layout.least_in_turn(chunks.len(), file.limits))
         .map_init(
-            || (File::open(path).ok(), Vec::new(), Vec::new()),
+            || (source.opened().ok(), Vec::new(), Vec::new()),
             |(file, packed, bytes), (i, (values, chunk))| {
                 let is_next = chunk.row == i * layout.rows;
                 is_next.then(|| layout.unpack(file.as_mut()?, chunk, packed, bytes))??;
@@ -192,7 +193,7 @@ impl ChunkLayout<'_> {
     /// The bytes of a chunk as they were before they were deflated.
     fn unpack(
         &self,
-        file: &mut File,
+        file: &mut OpenFile,
         chunk: &StoredChunk,
         packed: &mut Vec<u8>,
         bytes: &mut Vec<u8>,
@@ -213,7 +214,7 @@ impl ChunkLayout<'_> {
             *packed = unshuffled(packed, self.value_bytes);
         }
         bytes.resize(whole, 0);
-        (Decompressor::new().zlib_decompress(packed, bytes).ok()? == whole).then_some(())
+        (unpack::zlib(packed, bytes)? == whole).then_some(())
     }
 
     /// The chunk's share of the column out of its bytes; `None` where it is short of it.

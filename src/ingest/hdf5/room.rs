@@ -13,9 +13,11 @@ use super::super::error::IngestError;
 use super::answer::{Object, Query, Reply, Slab, receive, send};
 use super::fault;
 use super::patience::{PATIENCE, ProcessEnd, Watched};
+#[cfg(any(not(feature = "native"), test))]
+use super::pure;
 use crate::data::Samples;
-use crate::ingest::Limits;
 use crate::ingest::refusal::Refusal;
+use crate::ingest::{Limits, RecordingFile};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -23,7 +25,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::rc::Rc;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The word by which this program is started to take a file apart.
 pub(super) const WORD: &str = "__hdf5";
@@ -56,10 +58,12 @@ pub fn use_program(program: Hdf5Program) {
 /// An open file, and what is known of it.
 pub(super) struct File {
     pub path: PathBuf,
+    /// All of it, where it is not on disk.
+    pub in_memory: Option<Arc<[u8]>>,
     pub bytes: u64,
     pub user_block: u64,
-    /// The library's version.
-    pub library: (u8, u8, u8),
+    /// The library and its version.
+    pub library: String,
     /// Whether the system keeps the process from every other file.
     pub is_walled: bool,
     pub limits: Limits,
@@ -75,17 +79,18 @@ impl File {
     ///
     /// # Errors
     /// The library does not open it.
-    pub(super) fn open(path: &Path, limits: Limits) -> Result<Rc<Self>, IngestError> {
-        let fault = |fault: Refusal| fault::of_file(path, fault);
-        let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
-        let (user_block, library, is_walled) = match link.answer() {
-            Ok((Reply::Opened { user_block, library, is_walled }, _)) => (user_block, library, is_walled),
-            Ok((Reply::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
-            _ => return Err(fault(link.end_before_answer())),
-        };
+    pub(super) fn open<'a>(
+        file: impl Into<RecordingFile<'a>>,
+        limits: Limits,
+    ) -> Result<Rc<Self>, IngestError> {
+        let file = file.into();
+        let bytes = file.length().unwrap_or(0);
+        let opened = Link::opened(file).map_err(|refusal| fault::of_file(file.path, bytes, refusal))?;
+        let OpenedLink { link, user_block, library, is_walled } = opened;
         Ok(Rc::new(Self {
-            path: path.to_owned(),
-            bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+            path: file.path.to_owned(),
+            in_memory: file.in_memory.cloned(),
+            bytes,
             user_block,
             library,
             is_walled,
@@ -102,7 +107,7 @@ impl File {
     /// # Errors
     /// The library broke off.
     pub(super) fn whole(&self) -> Result<(), IngestError> {
-        self.lost.get().map_or(Ok(()), |lost| Err(fault::of_file(&self.path, lost.clone())))
+        self.lost.get().map_or(Ok(()), |lost| Err(fault::of_file(&self.path, self.bytes, lost.clone())))
     }
 
     /// What stands at an absolute path.
@@ -198,6 +203,14 @@ impl File {
     }
 }
 
+/// A link, and what was said of the file when it was opened.
+struct OpenedLink {
+    link: Link,
+    user_block: u64,
+    library: String,
+    is_walled: bool,
+}
+
 /// The way to the library and back.
 struct Link {
     to: Box<dyn Write>,
@@ -206,6 +219,25 @@ struct Link {
 }
 
 impl Link {
+    fn opened(file: RecordingFile) -> Result<OpenedLink, Refusal> {
+        #[cfg(any(not(feature = "native"), test))]
+        if let Some(bytes) = file.in_memory {
+            let (store, user_block) = pure::opened(bytes).map_err(|words| fault::of_words(&words))?;
+            let (to, from) = pure::OnTheSpot::of(store);
+            let link = Self { to: Box::new(to), from: Box::new(from), process: None };
+            return Ok(OpenedLink { link, user_block, library: pure::READER.into(), is_walled: true });
+        }
+        let mut link = Self::to(file.path).map_err(|refusal| unstarted(&refusal))?;
+        match link.answer() {
+            Ok((Reply::Opened { user_block, library: (major, minor, patch), is_walled }, _)) => {
+                let library = format!("HDF5 library {major}.{minor}.{patch}");
+                Ok(OpenedLink { link, user_block, library, is_walled })
+            }
+            Ok((Reply::Refused(words), _)) => Err(fault::of_words(&words)),
+            _ => Err(link.end_before_answer()),
+        }
+    }
+
     fn ask(&mut self, request: &Query) -> io::Result<()> {
         self.wait_for(0);
         send(&mut self.to, request)?;

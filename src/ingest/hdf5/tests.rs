@@ -20,6 +20,11 @@ pub(super) fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
     let created = File::create(&path).unwrap();
     fill(&created).unwrap();
     created.close().unwrap();
+    // The C library may have it open still when the next line is reached.
+    let copy = dir.path().join("copy.h5");
+    std::fs::copy(&path, &copy).unwrap();
+    let refused = super::pure::tests::refused_of(&copy);
+    assert!(refused.iter().all(|refused| refused.contains("only the HDF5 library")), "{refused:?}");
     Made { _dir: dir, path }
 }
 

@@ -1,9 +1,11 @@
 //! A type in an HDF5 file to numbers, fields of numbers, and words for people.
 
+#[cfg(feature = "native")]
+pub(super) mod of_library;
+#[cfg(any(not(feature = "native"), test))]
+pub(super) mod of_message;
+
 use super::answer::{Bytes, NumberType, RecordField};
-use hdf5_metno::Datatype;
-use hdf5_metno::datatype::ByteOrder;
-use hdf5_metno::types::{CompoundType, FloatSize, IntSize, TypeDescriptor};
 
 /// A type with more fields than this is no table of channels; nested types multiply.
 const MOST_FIELDS: usize = 4096;
@@ -11,97 +13,130 @@ const MOST_FIELDS: usize = 4096;
 /// Types within types are followed so far.
 const DEEPEST: usize = 8;
 
-/// How numbers of this type are read; `None` where they are none.
-pub(super) fn number(dtype: &Datatype) -> Option<NumberType> {
-    match dtype.to_descriptor() {
-        Ok(descriptor) => described(&descriptor),
-        // Half precision and odd widths have no name in Rust; the library converts them.
-        Err(_) if dtype.size() <= 2 && dtype.conv_to::<f32>().is_some() => Some(NumberType::F32),
-        Err(_) => dtype.conv_to::<f64>().map(|_| NumberType::F64),
-    }
+/// The type of one value or record, as the file has it.
+#[derive(Debug)]
+pub(super) struct Type {
+    pub kind: Kind,
+    pub bytes: usize,
+    /// Of all numbers in it; not told of a field.
+    pub order: Order,
 }
 
-fn described(descriptor: &TypeDescriptor) -> Option<NumberType> {
-    Some(match descriptor {
-        TypeDescriptor::Integer(IntSize::U1) => NumberType::I8,
-        TypeDescriptor::Integer(IntSize::U2) => NumberType::I16,
-        TypeDescriptor::Integer(IntSize::U4) => NumberType::I32,
-        TypeDescriptor::Integer(IntSize::U8) => NumberType::I64,
-        TypeDescriptor::Unsigned(IntSize::U1) => NumberType::U8,
-        TypeDescriptor::Unsigned(IntSize::U2) => NumberType::U16,
-        TypeDescriptor::Unsigned(IntSize::U4) => NumberType::U32,
-        TypeDescriptor::Unsigned(IntSize::U8) => NumberType::U64,
-        TypeDescriptor::Float(FloatSize::U4) => NumberType::F32,
-        TypeDescriptor::Float(_) => NumberType::F64,
-        _ => return None,
-    })
+/// What values of a type are.
+#[derive(Debug)]
+pub(super) enum Kind {
+    Number(NumberType),
+    /// A number that has no name in Rust: half precision, odd widths.
+    OddNumber,
+    Text,
+    VaryingText,
+    List(Box<Type>, usize),
+    VaryingList,
+    /// Named values.
+    Named,
+    References,
+    /// Names of fields, where they begin in a record (bytes), and what they are.
+    Record(Vec<Field>),
+    Other,
 }
 
-/// Whether values are stored as their [`number`] is, the lowest byte first.
-pub(super) fn is_plain(dtype: &Datatype) -> bool {
-    let is_one = dtype.to_descriptor().is_ok_and(|descriptor| described(&descriptor).is_some());
-    is_one && (dtype.size() == 1 || dtype.byte_order() == ByteOrder::LittleEndian)
+/// A field of a record.
+#[derive(Debug)]
+pub(super) struct Field {
+    pub name: Bytes,
+    /// Where it begins in a record, bytes.
+    pub from: usize,
+    pub held: Type,
 }
 
-/// A type for people: `int16`, big-endian where it is.
-pub(super) fn name(dtype: &Datatype) -> Bytes {
-    let name = match dtype.to_descriptor() {
-        Ok(TypeDescriptor::Compound(compound)) => {
-            let names: Vec<Bytes> = compound.fields.into_iter().map(|f| f.name.into_bytes()).collect();
-            return [&b"records ("[..], &names.join(&b", "[..]), b")"].concat();
+/// Which byte of a number stands first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Nothing in it has an order.
+    None,
+    Lowest,
+    Highest,
+    Mixed,
+}
+
+impl Type {
+    /// How numbers of this type are read; `None` where they are none.
+    pub(super) fn number(&self) -> Option<NumberType> {
+        match self.kind {
+            Kind::Number(number) => Some(number),
+            Kind::OddNumber if self.bytes <= 2 => Some(NumberType::F32),
+            Kind::OddNumber => Some(NumberType::F64),
+            _ => None,
         }
-        Ok(
-            TypeDescriptor::FixedAscii(_)
-            | TypeDescriptor::FixedUnicode(_)
-            | TypeDescriptor::VarLenAscii
-            | TypeDescriptor::VarLenUnicode,
-        ) => return b"text".to_vec(),
-        Ok(TypeDescriptor::VarLenArray(_) | TypeDescriptor::FixedArray(..)) => return b"lists".to_vec(),
-        Ok(TypeDescriptor::Enum(_) | TypeDescriptor::Boolean) => return b"named values".to_vec(),
-        Ok(TypeDescriptor::Reference(_)) => return b"references".to_vec(),
-        Ok(number) => number.to_string(),
-        // IEEE 754 binary16 is the only one that loggers write and Rust has no type for.
-        Err(_) if dtype.conv_to::<f64>().is_some() && dtype.size() == 2 => "float16".into(),
-        Err(_) if dtype.conv_to::<f64>().is_some() => format!("{}-byte number", dtype.size()),
-        Err(_) => return b"another type".to_vec(),
-    };
-    match dtype.byte_order() {
-        ByteOrder::BigEndian if dtype.size() > 1 => format!("{name} big-endian"),
-        _ => name,
     }
-    .into_bytes()
+
+    /// Whether values are stored as their [`Self::number`] is, the lowest byte first.
+    pub(super) fn is_plain(&self) -> bool {
+        matches!(self.kind, Kind::Number(_)) && (self.bytes == 1 || self.order == Order::Lowest)
+    }
+
+    /// Whether its values are records.
+    pub(super) fn is_record(&self) -> bool {
+        matches!(self.kind, Kind::Record(_))
+    }
+
+    /// A type for people: `int16`, big-endian where it is.
+    pub(super) fn name(&self) -> Bytes {
+        let name = match &self.kind {
+            Kind::Record(fields) => {
+                let names: Vec<&[u8]> = fields.iter().map(|field| &field.name[..]).collect();
+                return [&b"records ("[..], &names.join(&b", "[..]), b")"].concat();
+            }
+            Kind::Text | Kind::VaryingText => return b"text".to_vec(),
+            Kind::List(..) | Kind::VaryingList => return b"lists".to_vec(),
+            Kind::Named => return b"named values".to_vec(),
+            Kind::References => return b"references".to_vec(),
+            Kind::Number(number) => number_name(*number),
+            // IEEE 754 binary16 is the only one that loggers write and Rust has no type for.
+            Kind::OddNumber if self.bytes == 2 => "float16".into(),
+            Kind::OddNumber => format!("{}-byte number", self.bytes),
+            Kind::Other => return b"another type".to_vec(),
+        };
+        match self.order {
+            Order::Highest if self.bytes > 1 => format!("{name} big-endian"),
+            _ => name,
+        }
+        .into_bytes()
+    }
+
+    /// The fields of numbers; none where the type is no record, or none whose layout in the file the library
+    /// tells: fields that differ in byte order, and references, texts and lists of varying length, which take
+    /// other room in the file than in memory.
+    pub(super) fn fields(&self) -> Vec<RecordField> {
+        let mut fields = Vec::new();
+        if let Kind::Record(inner) = &self.kind
+            && self.order != Order::Mixed
+            && !self.varies()
+        {
+            let is_big_endian = self.order == Order::Highest;
+            let outer = Outer { name: b"", from: 0, depth: 0, record_bytes: self.bytes, is_big_endian };
+            outer.add(inner, &mut fields);
+        }
+        fields
+    }
+
+    fn varies(&self) -> bool {
+        match &self.kind {
+            Kind::Record(fields) => fields.iter().any(|field| field.held.varies()),
+            Kind::List(base, _) => base.varies(),
+            Kind::VaryingList | Kind::VaryingText | Kind::References => true,
+            _ => false,
+        }
+    }
 }
 
-/// The fields of numbers; none where the type is no record, or none whose layout in the file the library
-/// tells: fields that differ in byte order, and references, texts and lists of varying length, which take
-/// other room in the file than in memory.
-pub(super) fn fields(dtype: &Datatype) -> Vec<RecordField> {
-    let mut fields = Vec::new();
-    let is_big_endian = match dtype.byte_order() {
-        ByteOrder::BigEndian => true,
-        ByteOrder::LittleEndian | ByteOrder::None => false,
-        ByteOrder::Vax | ByteOrder::Mixed => return fields,
+fn number_name(number: NumberType) -> String {
+    let kind = match number {
+        NumberType::F32 | NumberType::F64 => "float",
+        NumberType::U8 | NumberType::U16 | NumberType::U32 | NumberType::U64 => "uint",
+        _ => "int",
     };
-    if let Ok(descriptor) = dtype.to_descriptor()
-        && !varies(&descriptor)
-        && let TypeDescriptor::Compound(compound) = descriptor
-    {
-        let outer = Outer { name: b"", from: 0, depth: 0, record_bytes: dtype.size(), is_big_endian };
-        outer.add(compound, &mut fields);
-    }
-    fields
-}
-
-fn varies(descriptor: &TypeDescriptor) -> bool {
-    match descriptor {
-        TypeDescriptor::Compound(compound) => compound.fields.iter().any(|field| varies(&field.ty)),
-        TypeDescriptor::FixedArray(base, _) => varies(base),
-        TypeDescriptor::VarLenArray(_)
-        | TypeDescriptor::VarLenAscii
-        | TypeDescriptor::VarLenUnicode
-        | TypeDescriptor::Reference(_) => true,
-        _ => false,
-    }
+    format!("{kind}{}", 8 * number.bytes())
 }
 
 /// The record, or a field of it that holds fields itself.
@@ -114,24 +149,22 @@ struct Outer<'a> {
 }
 
 impl Outer<'_> {
-    fn add(&self, compound: CompoundType, fields: &mut Vec<RecordField>) {
-        for inner in compound.fields {
-            // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at
-            // them.
-            let name = [self.name, &inner.name.into_bytes()].concat();
-            let from = self.from.saturating_add(inner.offset);
-            let (base, count) = match inner.ty {
-                TypeDescriptor::Compound(compound) if self.depth < DEEPEST => {
+    fn add(&self, inner: &[Field], fields: &mut Vec<RecordField>) {
+        for field in inner {
+            let name = [self.name, &field.name].concat();
+            let from = self.from.saturating_add(field.from);
+            let (base, count) = match &field.held.kind {
+                Kind::Record(inner) if self.depth < DEEPEST => {
                     let name = &[&name, &b"."[..]].concat();
-                    Outer { name, from, depth: self.depth + 1, ..*self }.add(compound, fields);
+                    Outer { name, from, depth: self.depth + 1, ..*self }.add(inner, fields);
                     continue;
                 }
-                TypeDescriptor::FixedArray(base, count) => (*base, count),
-                base => (base, 1),
+                Kind::List(base, count) => (&**base, *count),
+                _ => (&field.held, 1),
             };
             // A damaged type may place a field outside its record.
-            let end = count.checked_mul(base.size()).and_then(|all| all.checked_add(from));
-            if let Some(number) = described(&base)
+            let end = count.checked_mul(base.bytes).and_then(|all| all.checked_add(from));
+            if let Kind::Number(number) = base.kind
                 && end.is_some_and(|end| end <= self.record_bytes)
                 && count > 0
                 && fields.len() < MOST_FIELDS
