@@ -32,6 +32,7 @@ class Drawing {
     const corners = picture.querySelector("polygon").getAttribute("points").split(" ");
     this.corners = corners.map((corner) => corner.split(",").map(Number));
     this.length = cask.length_m;
+    this.step = 10 ** Math.floor(Math.log10(this.length / 200));
     const focused = document.activeElement?.dataset?.channel;
     const waiting = channels.filter((channel) => channel.end !== "none" && !isStated(channel.position_m));
     const isHere = (one, other) => Math.abs(one.position_m - other.position_m) < this.length / 40;
@@ -60,13 +61,8 @@ class Drawing {
     return this.rounded(share * this.length);
   }
 
-  /** So that a step is less than a hundredth of the cask. */
-  step() {
-    return 10 ** Math.floor(Math.log10(this.length / 200));
-  }
-
   rounded(position_m) {
-    const digits = Math.max(0, -Math.log10(this.step()));
+    const digits = Math.max(0, -Math.log10(this.step));
     return Number(Math.min(Math.max(position_m, 0), this.length).toFixed(digits));
   }
 
@@ -81,8 +77,7 @@ class Drawing {
       "aria-valuetext": isPlaced ? `${channel.position_m} m from the first end` : "no place yet" },
     drawn("circle", { r: 34 }));
     // The program draws the name of a channel that is stated in full.
-    const word = { y: 10, "text-anchor": "middle", "font-size": 26 };
-    if (!this.isDrawn(channel)) handle.append(drawn("text", word, name.slice(0, 14)));
+    if (!this.isDrawn(channel)) handle.append(drawn("text", { y: 10, "font-size": 26 }, name.slice(0, 14)));
     handle.onpointerdown = (event) => this.drag(handle, i, event);
     handle.onkeydown = (event) => this.key(event, i, isPlaced ? channel.position_m : 0);
     return handle;
@@ -112,7 +107,7 @@ class Drawing {
     const steps = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     const ends = { Home: 0, End: this.length }[event.key];
     if (event.key === "Enter") this.chosen(i);
-    else if (steps !== undefined) this.moved(i, this.rounded(position_m + steps * this.step()));
+    else if (steps !== undefined) this.moved(i, this.rounded(position_m + steps * this.step));
     else if (ends !== undefined) this.moved(i, ends);
     else return;
     event.preventDefault();

@@ -4,9 +4,10 @@ const CASK_NAME = "cask.toml";
 const EMPTY = "[cask]\n\n[drop]\n";
 
 /** What the page holds: the recording, its listing, and the text of the cask file, which is the truth. */
-const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [] };
+const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [], analysed: null };
 let form;
 let drawing;
+let waiting;
 
 /** One change of the text after the other. */
 let queue = Promise.resolve();
@@ -126,8 +127,8 @@ async function begun({ keep }) {
       text = await forForm.text({ op: "edit", cask: text, path: `${table}.${key}`, value: toml(value) });
     }
   }
-  state.isOwn = keep && state.isOwn;
-  state.text = text;
+  Object.assign(state, { text, isOwn: keep && state.isOwn });
+  form.drawnFor = null;
   await shownAnew();
 }
 
@@ -143,12 +144,16 @@ async function opened(file) {
     return;
   }
   state.isOwn = true;
+  form.drawnFor = null;
   byId("anew").hidden = !state.recording;
   await inTurn(shownAnew);
 }
 
-/** A change that a field, a handle or a button asks for. */
-const changed = (path, value) => inTurn(async () => {
+let pending = 0;
+
+/** A change that a field, a handle or a button asks for; of some that follow each other the last is shown. */
+const changed = (path, value) => (pending += 1) && inTurn(async () => {
+  pending -= 1;
   state.isOwn = true;
   const edit = async (path, value) => {
     state.text = await forForm.text({ op: "edit", cask: state.text, path, value });
@@ -161,7 +166,7 @@ const changed = (path, value) => inTurn(async () => {
   if (/^channel\.\d+\.end$/.test(path) && value === '"none"') {
     for (const key of ["axis", "position_m", "offset_m", "polarity"]) await edit(path.replace("end", key), null);
   }
-  await shownAnew();
+  if (!pending) await shownAnew();
 });
 
 const moved = (i, position_m) => {
@@ -176,7 +181,9 @@ const moved = (i, position_m) => {
 /** Shows the text in form, drawing and prediction, and what is wrong in it. */
 async function shownAnew() {
   if (document.activeElement !== byId("text")) byId("text").value = state.text;
+  clearTimeout(waiting);
   refuse("form-refusal");
+  toldStale();
   form.forgive();
   let values;
   try {
@@ -210,9 +217,8 @@ function withExamples(text) {
 function draft(tables, channels = []) {
   const lines = (values) => Object.entries(values).filter(([, value]) => isStated(value))
     .map(([key, value]) => `${key} = ${toml(value)}\n`).join("");
-  const [one, all] = [Object.entries(tables).map(([table, values]) => `[${table}]\n${lines(values ?? {})}`),
-    channels.map((channel) => `[[channel]]\n${lines(channel)}`)];
-  return one.concat(all).join("");
+  return [...Object.entries(tables).map(([table, values]) => `[${table}]\n${lines(values ?? {})}`),
+    ...channels.map((channel) => `[[channel]]\n${lines(channel)}`)].join("");
 }
 
 async function drawnAnew() {
@@ -221,10 +227,9 @@ async function drawnAnew() {
     drawing.clear("The drawing of the set-up appears here with the length of the cask and the drop angle.");
     return;
   }
-  // What the drawing does not show may still be open.
-  const tables = { cask: { mass_kg: 1, ...cask }, drop: { height_m: 1, angle_deg: drop.angle_deg } };
-  if (!isStated(cask.mass_kg)) tables.cask.mass_kg = 1;
-  delete tables.cask.inertia_kg_m2;
+  // The drawing does not show the mass, which may still be open: any that a cask of this size may have.
+  const mass_kg = cask.mass_kg ?? 300 * cask.length_m * (cask.height_m || cask.length_m / 7) ** 2;
+  const tables = { cask: { ...cask, mass_kg, inertia_kg_m2: null }, drop: { height_m: 1, angle_deg: drop.angle_deg } };
   const channels = form.channels().map((channel, i) => ({ ...channel, source: `s${i}` }))
     .filter((channel) => drawing.isDrawn(channel))
     .map(({ name, end, axis, source, position_m, offset_m, polarity }) =>
@@ -237,11 +242,8 @@ async function drawnAnew() {
   }
 }
 
-let waiting;
-
 /** The prediction, once nothing more is typed for a while. */
 function foretold() {
-  clearTimeout(waiting);
   waiting = setTimeout(async () => {
     const { cask, drop, contact, tolerance } = form.values;
     const isOpen = form.missing().some((path) => !path.startsWith("channel."));
@@ -292,6 +294,8 @@ async function analysed() {
     const work = forRecording.ask(question, state.recording);
     const answer = await during("progress", `Analysing ${question.name} …`, work);
     let at = 0;
+    state.analysed = question.cask;
+    toldStale();
     state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
     const [[, report], ...others] = state.files;
     byId("files").replaceChildren(...others.map(([name, bytes]) => {
@@ -314,12 +318,15 @@ async function analysed() {
 }
 
 /** The field of a channel that a refusal of the recording speaks of: the key that its remedy names, or the source. */
-function fieldNamed({ problem, mend }) {
+function fieldNamed({ problem = "", mend }) {
   const i = form.channels().findIndex(({ name }) => problem.includes(`channel "${name}"`));
   const keys = form.tables.get("channel").keys.map((key) => key.name);
   const named = [...(mend ?? "").matchAll(/`(\w+)/g)].map(([, word]) => word).find((word) => keys.includes(word));
   return i < 0 ? null : `channel.${i}.${named ?? "source"}`;
 }
+
+const toldStale = () => say("stale",
+  state.analysed === state.text ? "" : "The form was changed after this report: press Analyse again.");
 
 /** What the report has not, since it stands in other files. */
 function withoutPictures() {
