@@ -32,11 +32,16 @@ class Drawing {
     const corners = picture.querySelector("polygon").getAttribute("points").split(" ");
     this.corners = corners.map((corner) => corner.split(",").map(Number));
     this.length = cask.length_m;
+    this.step = 10 ** Math.floor(Math.log10(this.length / 200));
     const focused = document.activeElement?.dataset?.channel;
     const waiting = channels.filter((channel) => channel.end !== "none" && !isStated(channel.position_m));
-    const handles = channels.map((channel, i) =>
-      (channel.end === "none" ? "" : this.handle(channel, i, waiting.indexOf(channel))));
-    const words = waiting.length ? [drawn("text", { x: 60, y: 32, "font-size": 24 }, "Drag to its place:")] : [];
+    const isHere = (one, other) => Math.abs(one.position_m - other.position_m) < this.length / 40;
+    const handles = channels.map((channel, i) => {
+      // Sensors at one place stand below each other.
+      const beside = channels.slice(0, i).filter((other) => isStated(channel.position_m) && isHere(channel, other));
+      return channel.end === "none" ? "" : this.handle(channel, i, waiting.indexOf(channel), beside.length);
+    });
+    const words = waiting.length ? [drawn("text", { x: 60, y: 42, "font-size": 24 }, "Drag to its place:")] : [];
     this.above.replaceChildren(...words, ...handles);
     if (focused !== undefined) this.above.querySelector(`[data-channel="${focused}"]`)?.focus();
   }
@@ -56,28 +61,23 @@ class Drawing {
     return this.rounded(share * this.length);
   }
 
-  /** So that a step is less than a hundredth of the cask. */
-  step() {
-    return 10 ** Math.floor(Math.log10(this.length / 200));
-  }
-
   rounded(position_m) {
-    const digits = Math.max(0, -Math.log10(this.step()));
+    const digits = Math.max(0, -Math.log10(this.step));
     return Number(Math.min(Math.max(position_m, 0), this.length).toFixed(digits));
   }
 
-  handle(channel, i, turn) {
+  handle(channel, i, turn, below) {
     const isPlaced = turn < 0;
     const name = isStated(channel.name) ? channel.name : `channel ${i + 1}`;
-    const [x, y] = isPlaced ? this.at(channel.position_m) : [310 + 110 * (turn % 12), 24 + 60 * Math.floor(turn / 12)];
+    const [x, y] = isPlaced ? this.at(channel.position_m)
+      : [350 + 190 * (turn % 8), 34 + 76 * Math.floor(turn / 8)];
     const handle = drawn("g", { class: "handle", tabindex: 0, role: "slider", "data-channel": i,
       "aria-label": `Place of ${name} along the axis`, "aria-valuemin": 0, "aria-valuemax": this.length,
-      "aria-valuenow": isPlaced ? channel.position_m : 0, transform: `translate(${x} ${y})`,
+      "aria-valuenow": isPlaced ? channel.position_m : 0, transform: `translate(${x} ${y + 68 * below})`,
       "aria-valuetext": isPlaced ? `${channel.position_m} m from the first end` : "no place yet" },
     drawn("circle", { r: 34 }));
     // The program draws the name of a channel that is stated in full.
-    const word = { y: 10, "text-anchor": "middle", "font-size": 26 };
-    if (!this.isDrawn(channel)) handle.append(drawn("text", word, name));
+    if (!this.isDrawn(channel)) handle.append(drawn("text", { y: 10, "font-size": 26 }, name.slice(0, 14)));
     handle.onpointerdown = (event) => this.drag(handle, i, event);
     handle.onkeydown = (event) => this.key(event, i, isPlaced ? channel.position_m : 0);
     return handle;
@@ -107,7 +107,7 @@ class Drawing {
     const steps = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     const ends = { Home: 0, End: this.length }[event.key];
     if (event.key === "Enter") this.chosen(i);
-    else if (steps !== undefined) this.moved(i, this.rounded(position_m + steps * this.step()));
+    else if (steps !== undefined) this.moved(i, this.rounded(position_m + steps * this.step));
     else if (ends !== undefined) this.moved(i, ends);
     else return;
     event.preventDefault();

@@ -1,6 +1,7 @@
 // Questions to the module `page/src`, asked in a worker, to its answers: the page never waits for one.
 
 const LARGEST_BYTES = 1e9;
+const STOPPED = "stopped";
 
 /** What was wrong, with the place in the cask file if it lies there; its message is the command's. */
 class Refusal extends Error {
@@ -90,7 +91,7 @@ class Asker {
   /** Ends what it works on. */
   async stop() {
     (await this.worker).terminate();
-    for (const { reject } of this.waiting.values()) reject(new Refusal({ text: "stopped" }));
+    for (const { reject } of this.waiting.values()) reject(new Refusal({ text: STOPPED }));
     this.waiting.clear();
     this.start();
   }
@@ -123,7 +124,10 @@ const forForm = new Asker();
 const forLook = new Asker();
 const forRecording = new Asker();
 
+/** Bytes as another program may hand them over. */
+const blob = (bytes) => new Blob([Array.isArray(bytes) ? Uint8Array.from(bytes) : bytes]);
+
 window.dropcheck = {
-  inspect: (bytes, name) => forRecording.json({ op: "inspect", name }, new Blob([bytes])),
-  analyze: (bytes, name, cask) => forRecording.json({ op: "analyze", name, cask }, new Blob([bytes])),
+  inspect: (bytes, name) => forRecording.json({ op: "inspect", name }, blob(bytes)),
+  analyze: (bytes, name, cask) => forRecording.json({ op: "analyze", name, cask }, blob(bytes)),
 };

@@ -4,9 +4,10 @@ const CASK_NAME = "cask.toml";
 const EMPTY = "[cask]\n\n[drop]\n";
 
 /** What the page holds: the recording, its listing, and the text of the cask file, which is the truth. */
-const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [] };
+const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [], analysed: null };
 let form;
 let drawing;
+let waiting;
 
 /** One change of the text after the other. */
 let queue = Promise.resolve();
@@ -87,7 +88,7 @@ async function recorded(recording) {
     byId("listing").replaceChildren(...listed(listing));
     form.sources = listing.channels.map((channel) => channel.source);
     byId("anew").hidden = !state.isOwn;
-    if (state.isOwn && form.channels().length) await inTurn(shown_anew);
+    if (state.isOwn && form.channels().length) await inTurn(shownAnew);
     else await inTurn(() => begun({ keep: true }));
     const look = await forLook.text({ op: "look", name }, recording);
     if (turn !== state.asked) return;
@@ -126,22 +127,33 @@ async function begun({ keep }) {
       text = await forForm.text({ op: "edit", cask: text, path: `${table}.${key}`, value: toml(value) });
     }
   }
-  state.isOwn = keep && state.isOwn;
-  state.text = text;
-  await shown_anew();
+  Object.assign(state, { text, isOwn: keep && state.isOwn });
+  form.drawnFor = null;
+  await shownAnew();
 }
 
 // The cask file.
 
 async function opened(file) {
-  state.text = await file.text();
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const coding = { "255,254": "utf-16le", "254,255": "utf-16be" }[bytes.slice(0, 2)] ?? "utf-8";
+  try {
+    state.text = new TextDecoder(coding, { fatal: true }).decode(bytes);
+  } catch {
+    refuse("form-refusal", { problem: `${file.name}: not text in UTF-8`, mend: "save it as UTF-8 in an editor" });
+    return;
+  }
   state.isOwn = true;
+  form.drawnFor = null;
   byId("anew").hidden = !state.recording;
-  await inTurn(shown_anew);
+  await inTurn(shownAnew);
 }
 
-/** A change that a field, a handle or a button asks for. */
-const changed = (path, value) => inTurn(async () => {
+let pending = 0;
+
+/** A change that a field, a handle or a button asks for; of some that follow each other the last is shown. */
+const changed = (path, value) => (pending += 1) && inTurn(async () => {
+  pending -= 1;
   state.isOwn = true;
   const edit = async (path, value) => {
     state.text = await forForm.text({ op: "edit", cask: state.text, path, value });
@@ -154,20 +166,24 @@ const changed = (path, value) => inTurn(async () => {
   if (/^channel\.\d+\.end$/.test(path) && value === '"none"') {
     for (const key of ["axis", "position_m", "offset_m", "polarity"]) await edit(path.replace("end", key), null);
   }
-  await shown_anew();
+  if (!pending) await shownAnew();
 });
 
 const moved = (i, position_m) => {
   const { end } = form.channels()[i];
   changed(`channel.${i}.position_m`, String(position_m));
-  const nearer = position_m < drawing.length / 2 ? "first" : "second";
-  if (!isStated(end)) changed(`channel.${i}.end`, toml(nearer));
+  // What is laid on an end belongs to it; in the middle third it is asked for.
+  const share = position_m / drawing.length;
+  if (isStated(end) || Math.abs(share - 0.5) < 1 / 6) return;
+  changed(`channel.${i}.end`, toml(share < 0.5 ? "first" : "second"));
 };
 
 /** Shows the text in form, drawing and prediction, and what is wrong in it. */
-async function shown_anew() {
+async function shownAnew() {
   if (document.activeElement !== byId("text")) byId("text").value = state.text;
+  clearTimeout(waiting);
   refuse("form-refusal");
+  toldStale();
   form.forgive();
   let values;
   try {
@@ -201,9 +217,8 @@ function withExamples(text) {
 function draft(tables, channels = []) {
   const lines = (values) => Object.entries(values).filter(([, value]) => isStated(value))
     .map(([key, value]) => `${key} = ${toml(value)}\n`).join("");
-  const [one, all] = [Object.entries(tables).map(([table, values]) => `[${table}]\n${lines(values ?? {})}`),
-    channels.map((channel) => `[[channel]]\n${lines(channel)}`)];
-  return one.concat(all).join("");
+  return [...Object.entries(tables).map(([table, values]) => `[${table}]\n${lines(values ?? {})}`),
+    ...channels.map((channel) => `[[channel]]\n${lines(channel)}`)].join("");
 }
 
 async function drawnAnew() {
@@ -212,10 +227,9 @@ async function drawnAnew() {
     drawing.clear("The drawing of the set-up appears here with the length of the cask and the drop angle.");
     return;
   }
-  // What the drawing does not show may still be open.
-  const tables = { cask: { mass_kg: 1, ...cask }, drop: { height_m: 1, angle_deg: drop.angle_deg } };
-  if (!isStated(cask.mass_kg)) tables.cask.mass_kg = 1;
-  delete tables.cask.inertia_kg_m2;
+  // The drawing does not show the mass, which may still be open: any that a cask of this size may have.
+  const mass_kg = cask.mass_kg ?? 300 * cask.length_m * (cask.height_m || cask.length_m / 7) ** 2;
+  const tables = { cask: { ...cask, mass_kg, inertia_kg_m2: null }, drop: { height_m: 1, angle_deg: drop.angle_deg } };
   const channels = form.channels().map((channel, i) => ({ ...channel, source: `s${i}` }))
     .filter((channel) => drawing.isDrawn(channel))
     .map(({ name, end, axis, source, position_m, offset_m, polarity }) =>
@@ -228,11 +242,8 @@ async function drawnAnew() {
   }
 }
 
-let waiting;
-
 /** The prediction, once nothing more is typed for a while. */
 function foretold() {
-  clearTimeout(waiting);
   waiting = setTimeout(async () => {
     const { cask, drop, contact, tolerance } = form.values;
     const isOpen = form.missing().some((path) => !path.startsWith("channel."));
@@ -246,14 +257,16 @@ function foretold() {
 }
 
 function predicted({ predictions }) {
-  const body = predictions.filter(({ model, slap_down_speed_m_s: speed }) => model === "body" && speed !== null);
-  if (!body.length) return "The model predicts no slap-down of this drop.";
-  const among = (key) => [Math.min(...body.map((one) => one[key])), Math.max(...body.map((one) => one[key]))];
-  const [least, most] = among("slap_down_speed_m_s").map((speed) => speed.toFixed(1));
-  const contacts = new Set(body.map(({ contact }) => contact));
-  const friction = contacts.size > 1 ? ", and friction from none to sticking" : "";
-  return `Predicted slap-down speed at ${shown(body[0].angle_deg)}°: ${least} to ${most} m/s, `
-    + `for a restitution k from ${among("k").join(" to ")}${friction}.`;
+  const model = predictions.some((one) => one.model === "body") ? "body" : "rod";
+  const all = predictions.filter((one) => one.model === model);
+  const slapping = all.filter((one) => one.slap_down_speed_m_s !== null);
+  if (!slapping.length) return "The model predicts no slap-down of this drop.";
+  const span = (many, key) => [Math.min, Math.max].map((end) => end(...many.map((one) => one[key])));
+  const [least, most] = span(slapping, "slap_down_speed_m_s").map((speed) => speed.toFixed(1));
+  const friction = new Set(all.map((one) => one.contact)).size > 1 ? " and friction from none to sticking" : "";
+  return `Predicted slap-down speed at ${shown(all[0].angle_deg)}°: ${least} to ${most} m/s, `
+    + `for a restitution k from ${span(all, "k").join(" to ")}${friction}`
+    + `${slapping.length < all.length ? "; in a part of this range the cask does not slap down." : "."}`;
 }
 
 // The result.
@@ -281,6 +294,8 @@ async function analysed() {
     const work = forRecording.ask(question, state.recording);
     const answer = await during("progress", `Analysing ${question.name} …`, work);
     let at = 0;
+    state.analysed = question.cask;
+    toldStale();
     state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
     const [[, report], ...others] = state.files;
     byId("files").replaceChildren(...others.map(([name, bytes]) => {
@@ -294,7 +309,8 @@ async function analysed() {
     byId("result").scrollIntoView();
   } catch (refusal) {
     const path = refusal.key ?? fieldNamed(refusal);
-    if (form.blame(path, told(refusal))) form.focus(path);
+    if (refusal.message === STOPPED) say("progress", "Stopped.");
+    else if (form.blame(path, told(refusal))) form.focus(path);
     else refuse("analysis-refusal", refusal);
   } finally {
     byId("stop").hidden = true;
@@ -302,12 +318,15 @@ async function analysed() {
 }
 
 /** The field of a channel that a refusal of the recording speaks of: the key that its remedy names, or the source. */
-function fieldNamed({ problem, mend }) {
+function fieldNamed({ problem = "", mend }) {
   const i = form.channels().findIndex(({ name }) => problem.includes(`channel "${name}"`));
   const keys = form.tables.get("channel").keys.map((key) => key.name);
   const named = [...(mend ?? "").matchAll(/`(\w+)/g)].map(([, word]) => word).find((word) => keys.includes(word));
   return i < 0 ? null : `channel.${i}.${named ?? "source"}`;
 }
+
+const toldStale = () => say("stale",
+  state.analysed === state.text ? "" : "The form was changed after this report: press Analyse again.");
 
 /** What the report has not, since it stands in other files. */
 function withoutPictures() {
@@ -320,34 +339,42 @@ async function started() {
   const tables = await forForm.json({ op: "keys" });
   form = new Form(byId("form"), tables, changed);
   drawing = new Drawing(byId("drawing"), moved, (i) => form.focus(`channel.${i}.position_m`));
-  await inTurn(shown_anew);
+  await inTurn(shownAnew);
+}
 
-  const [drop, file] = [byId("drop"), byId("file")];
-  file.onchange = () => taken([...file.files]);
-  byId("cask").onchange = ({ target }) => opened(target.files[0]);
+/** What is done before the form is there waits for it. */
+const ready = during("recording-word", "Starting …", started());
+const whenReady = (work) => ready.then(work, () => null);
+
+function listen() {
+  const [drop, file, cask] = ["drop", "file", "cask"].map(byId);
+  const take = (files) => whenReady(() => taken(files));
+  file.onchange = () => take([...file.files]);
+  cask.onchange = () => whenReady(() => opened(cask.files[0]));
   // So that the same file can be chosen again, once it was changed.
-  for (const input of [file, byId("cask")]) input.onclick = () => { input.value = ""; };
+  for (const input of [file, cask]) input.onclick = () => { input.value = ""; };
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
   document.addEventListener("dragover", () => drop.classList.add("over"));
   document.addEventListener("dragleave", () => drop.classList.remove("over"));
   document.addEventListener("drop", (event) => {
     drop.classList.remove("over");
     const isFolder = [...event.dataTransfer.items].some((item) => item.webkitGetAsEntry?.()?.isDirectory);
-    if (!isFolder) taken([...event.dataTransfer.files]);
+    if (!isFolder) take([...event.dataTransfer.files]);
     else refuse("recording-refusal", { problem: "this is a folder", mend: "pack it as a zip, and drop that" });
   });
   byId("anew").onclick = () => inTurn(() => begun({ keep: false }));
   byId("form").onsubmit = (event) => event.preventDefault();
-  byId("text").oninput = () => inTurn(() => {
+  byId("text").oninput = () => whenReady(() => inTurn(() => {
     Object.assign(state, { text: byId("text").value, isOwn: true });
-    return shown_anew();
-  });
+    return shownAnew();
+  }));
   byId("save-cask").onclick = () => queue.then(() => save(CASK_NAME, state.text));
-  byId("analyse").onclick = analysed;
+  byId("analyse").onclick = () => whenReady(analysed);
   byId("stop").onclick = () => forRecording.stop();
   byId("save-report").onclick = () => save(...state.files[0]);
   byId("print").onclick = () => byId("report-frame").contentWindow.print();
 }
 
-started().catch((fault) => refuse("broken", { problem: `This browser cannot run the page: ${fault.message}.`,
+listen();
+ready.catch((fault) => refuse("broken", { problem: `This browser cannot run the page: ${fault.message}.`,
   mend: "It needs a browser of 2023 or newer that may run WebAssembly." }));
