@@ -69,7 +69,7 @@ pub struct Key {
     pub name: &'static str,
     /// What stands behind it.
     pub takes: Takes,
-    /// What holds where it is left out, as docs/formats.md says it; [`REQUIRED`] where nothing does.
+    /// What holds where it is left out, as docs/formats.md says it; "required" where nothing does.
     pub default: &'static str,
     /// A value as it could stand in a file; "" where the form has no line of its own for the key.
     pub example: &'static str,

@@ -132,7 +132,7 @@ fn a_sensor_that_cannot_be_right_is_named_and_left_out() {
     let drop = TurningDrop::new();
     let plain = "unit = \"deg/s\"\n";
     for (to, code, words) in
-        [("unit = \"deg/s\"\npolarity = -1\n", "polarity", "-1.0"), ("unit = \"rad/s\"\n", "scale", "57")]
+        [("unit = \"deg/s\"\npolarity = -1\n", "polarity", "-1 times"), ("unit = \"rad/s\"\n", "scale", "57")]
     {
         let result = drop.analysed(&[[plain, to]]);
         let found = result["quality"].as_array().expect("findings");
