@@ -24,11 +24,11 @@ class Form {
     this.tables = new Map(tables.map((table) => [table.table, table]));
   }
 
-  /** Keys that must be there and are not, as paths. */
+  /** Keys that must be there and are not, and those that `init` left to be filled in, as paths. */
   missing() {
     const paths = [];
     const look = (table, at, stated) => {
-      for (const key of this.tables.get(table).keys.filter((key) => key.asked)) {
+      for (const key of this.tables.get(table).keys.filter((key) => key.asked || key.name in stated)) {
         const isSpared = (at === "drop" && key.name === "height_m" && isStated(stated.impact_velocity_m_s))
           || (stated.end === "none" && ["axis", "position_m"].includes(key.name));
         if (!isStated(stated[key.name]) && !isSpared) paths.push(`${at}.${key.name}`);

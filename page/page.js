@@ -199,16 +199,19 @@ async function shownAnew() {
     await forForm.ask({ op: "check", cask: withExamples(state.text) });
   } catch (refusal) {
     const isOpen = refusal.key ? missing.includes(refusal.key) : missing.length > 0;
-    if (!isOpen && !form.blame(refusal.key, told(refusal))) refuse("form-refusal", refusal);
+    if (!isOpen && !form.blame(refusal.key, told(inField(refusal)))) refuse("form-refusal", refusal);
   }
   await drawnAnew();
   foretold();
 }
 
+/** A refusal under its field, which needs no line of the text. */
+const inField = ({ problem, mend }) => ({ problem: problem.replace(/^cask\.toml, line \d+: /, ""), mend });
+
 /** The text with an example in each place that is still open: what is wrong beside these is told at once. */
 function withExamples(text) {
   const keys = ["cask", "drop", "channel"].flatMap((table) => form.tables.get(table).keys);
-  const example = (name) => keys.find((key) => key.asked && key.name === name)?.example;
+  const example = (name) => keys.find((key) => key.example && key.name === name)?.example;
   return text.replace(/^(\w+)(\s*=\s*)(nan|"FILL IN")/gm, (line, name, equals) =>
     (example(name) ? `${name}${equals}${example(name)}` : line));
 }
