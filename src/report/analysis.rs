@@ -334,7 +334,7 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         Fact::words("Program", program(result)),
         Fact::words("Schema of result.json", result.schema),
     ];
-    facts.extend(input.reader.as_ref().map(|reader| Fact::words("Recording converted by", &reader[..])));
+    facts.extend(input.reader.as_ref().map(|reader| Fact::words("Recording read by", &reader[..])));
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
     let rest = input.rest.as_deref().zip(input.rest_sha256.as_deref());
     let rest = rest.map(|(path, sha256)| {
