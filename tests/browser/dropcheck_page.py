@@ -22,7 +22,7 @@ from selenium.webdriver.common.by import By
 EXAMPLES = Path(__file__).parents[2] / "fixtures/examples"
 SHORT = ["anf18-json", "anf10-plain", "vhlw-rest"]
 # When, where, by which words and by what the recording was read; a page has other ones.
-OF_THE_CALL = {"program", "command", "analysed", "cask", "version", "recording", "read with"}
+OF_THE_CALL = {"program", "command", "analysed", "cask", "version", "recording", "read with", "reader"}
 # What has no interval of its own, and what is zero but for the last digits.
 RELATIVE, ABSOLUTE = 1e-6, 1e-12
 
