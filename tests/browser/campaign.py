@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from page import held, opened
+from page import fits_small_screens, held, opened
 from selenium.webdriver.common.by import By
 
 
@@ -47,12 +47,7 @@ def main(page):
     held("their curves over one another", len(curves) == 4 and all(c.get_attribute("d") for c in curves), len(curves))
     rows = driver.find_elements(By.CSS_SELECTOR, ".compared tbody tr")
     held("quantity by quantity", rows[0].text.startswith("slap-down speed"), rows[0].text)
-    for size in (375, 768):
-        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
-        time.sleep(0.3)
-        wide = driver.execute_script("return document.documentElement.scrollWidth")
-        held(f"nothing wider than {size} px", wide <= size, wide)
+    fits_small_screens(driver)
     driver.quit()
 
 

@@ -7,11 +7,10 @@ first that fails ends it with status 1.
 """
 
 import sys
-import time
 from pathlib import Path
 
 from axe_core_python.selenium import Axe
-from page import held, opened, sheets_of
+from page import fits_small_screens, held, opened, sheets_of
 from selenium.webdriver.common.by import By
 
 
@@ -24,12 +23,7 @@ def main(page):
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
         axe = Axe().run(driver)
         held(f"accessible in the {scheme}", not axe["violations"], [v["id"] for v in axe["violations"]])
-    for size in (375, 768):
-        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
-        time.sleep(0.3)
-        wide = driver.execute_script("return document.documentElement.scrollWidth")
-        held(f"nothing wider than {size} px", wide <= size, wide)
+    fits_small_screens(driver)
     sheets = sheets_of(driver)
     held("one sheet of A4", len(sheets) == 1, len(sheets))
     driver.quit()

@@ -61,6 +61,16 @@ def printed(driver):
     held("no heading at the foot of a sheet", not [e for e in ends if any(e and h.endswith(e) for h in heads)], ends)
 
 
+def fits_small_screens(driver):
+    """Nothing of the page is wider than a phone or a tablet."""
+    for size in (375, 768):
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
+        time.sleep(0.3)
+        wide = driver.execute_script("return document.documentElement.scrollWidth")
+        held(f"nothing wider than {size} px", wide <= size, wide)
+
+
 def opened(page):
     """The page in a browser, where nothing went wrong and nothing was asked for."""
     driver = browser()

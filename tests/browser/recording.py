@@ -8,11 +8,10 @@ fails ends it with status 1.
 
 import json
 import sys
-import time
 from pathlib import Path
 
 from axe_core_python.selenium import Axe
-from page import held, opened, scale
+from page import fits_small_screens, held, opened, scale
 from selenium.webdriver.common.by import By
 
 
@@ -40,12 +39,7 @@ def main(page):
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
         axe = Axe().run(driver, options={"runOnly": ["color-contrast"]})
         held(f"contrast in the {scheme}", not axe["violations"], [v["id"] for v in axe["violations"]])
-    for size in (375, 768):
-        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
-        time.sleep(0.3)
-        wide = driver.execute_script("return document.documentElement.scrollWidth")
-        held(f"nothing wider than {size} px", wide <= size, wide)
+    fits_small_screens(driver)
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     shown = [e.is_displayed() for e in driver.find_elements(By.CSS_SELECTOR, "figure > svg")]
     held("paper has the drawings", all(shown) and not chart.is_displayed(), len(shown))
