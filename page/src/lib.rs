@@ -15,16 +15,6 @@ pub extern "C" fn alloc(length: usize) -> *mut u8 {
     Box::leak(vec![0_u8; length].into_boxed_slice()).as_mut_ptr()
 }
 
-/// Gives back a block that [`call`] handed out.
-///
-/// # Safety
-/// The block is one that [`alloc`] or [`call`] handed out, of that length, and is used no more.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn free(block: *mut u8, length: usize) {
-    // SAFETY: the block was leaked as a box of this length.
-    drop(unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(block, length)) });
-}
-
 /// The answer to the question in a block, which is taken.
 ///
 /// # Safety
