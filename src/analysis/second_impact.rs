@@ -118,8 +118,10 @@ impl SecondImpact {
             fit::FitData { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
-        let u_step_m_s =
-            |i: usize| fit::u_step_m_s(&basis, i).hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i));
+        let u_step_m_s = |i: usize| {
+            let own_m_s = fit::u_step_m_s(&basis, i).hypot(fit::u_base_strain_m_s(&basis, i));
+            own_m_s.hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i))
+        };
         let u_steps_m_s = (0..flight.plateaus.len()).map(u_step_m_s).collect();
         let moved = motion::outcome(&integrated, &flight, &times, &setup)?;
         let turned_rad_s = moved.separation.angular_velocity_rad_s - moved.contact.angular_velocity_rad_s;

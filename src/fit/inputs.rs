@@ -2,7 +2,7 @@
 //! inputs with them moved.
 
 use super::FitData;
-use super::steps::u_step_m_s;
+use super::steps::{u_base_strain_m_s, u_step_m_s};
 use crate::data::planar::first_arm_m;
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MeasuredRotation, Motion, MotionState, Setup,
@@ -100,6 +100,7 @@ pub(super) enum InputShift {
     RateScale { sensor: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },
     Place { channel: usize, by_m: f64, gained_rad_s: f64 },
+    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
     Angle { by_rad: f64 },
     ImpactVelocity { share: f64 },
     Event { event: Event, by_s: f64 },
@@ -150,6 +151,9 @@ impl InputShift {
             // v0 is that of the root of the height.
             Self::ImpactVelocity { share } if setup.is_of_fall => {
                 row("impact_velocity_percent", "drop.height_m", "1 %", 0.005, share, REST)
+            Self::BaseStrain { share, .. } => {
+                row("base_strain_percent", "tolerance.base_strain_percent", "1 %", 0.01, share, SECOND_SENSOR)
+            }
             }
             Self::ImpactVelocity { share } => {
                 row("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01, share, REST)
@@ -232,7 +236,9 @@ impl Inputs {
             }
         };
         match change {
-            InputShift::Step { channel, add_m_s } => step(channel, by * add_m_s),
+            InputShift::Step { channel, add_m_s } | InputShift::BaseStrain { channel, add_m_s, .. } => {
+                step(channel, by * add_m_s);
+            }
             InputShift::Scale { channel, share } => {
                 let value = base.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
                 step(channel, by * share * value);
@@ -426,6 +432,9 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
         transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
     };
     let share = known.cross_axis / 2.0;
+    let share = known.base_strain / 2.0;
+    let strain = InputShift::BaseStrain { channel, add_m_s: u_base_strain_m_s(measured, channel), share };
+    add("base strain", percent(share), strain);
     add("cross axis", percent(share), InputShift::Cross { channel, share, other_m_s });
     if is_transverse {
         let by_m = known.position_m / 2.0;

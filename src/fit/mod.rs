@@ -15,7 +15,7 @@ use crate::data::{
 
 pub use inputs::Inputs;
 pub use ladder::{RungTaken, ladder};
-pub use steps::u_step_m_s;
+pub use steps::{u_base_strain_m_s, u_step_m_s};
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).
 pub const COVERAGE: f64 = 2.0;

@@ -3,6 +3,7 @@
 use super::FitData;
 use crate::data::{MOST_LOST_M_S, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
+use std::f64::consts::FRAC_2_PI;
 
 /// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
 /// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
@@ -41,6 +42,16 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
         })
         .sum();
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
+}
+
+/// Standard uncertainty of what strain of its base adds to a channel's velocity step, m/s: half a sine over the
+/// contact, of the stated share of the channel's peak there.
+pub fn u_base_strain_m_s(measured: &FitData, channel: usize) -> f64 {
+    let (signal, events) = (&measured.signals[channel], measured.events);
+    let Some((contact_s, left_s)) = events.first_contact_s().zip(events.separation_s()) else { return 0.0 };
+    let pulse = signal.force_m_s2.get(signal.index_from(contact_s)..signal.index_from(left_s));
+    let peak_m_s2 = pulse.into_iter().flatten().fold(0.0_f64, |peak, force| peak.max(force.abs()));
+    measured.tolerances.base_strain / 2.0 * peak_m_s2 * (left_s - contact_s) * FRAC_2_PI
 }
 
 /// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
