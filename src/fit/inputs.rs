@@ -21,6 +21,10 @@ const MEASURE: &str = "measure between the edges that strike";
 const FILM: &str = "high-speed video of the fall";
 const GYRO: &str = "an angular-rate sensor and the rest before the release";
 
+/// Standard uncertainty of how far a crushed corner's force lies inward of the corner, m for each of crush:
+/// a flattened edge has up to (cot φ − tan φ) / 2, 1.7 at 15°, a limiter with a broad foot 5.
+const FOOTPRINT: f64 = 1.0;
+
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
 
@@ -96,17 +100,18 @@ impl Event {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum InputShift {
     Step { channel: usize, add_m_s: f64 },
+    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
     Scale { channel: usize, share: f64 },
     RateScale { sensor: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },
     Place { channel: usize, by_m: f64, gained_rad_s: f64 },
-    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
     Angle { by_rad: f64 },
     ImpactVelocity { share: f64 },
     Event { event: Event, by_s: f64 },
     CentreOfGravity { by_m: f64 },
     Inertia { share: f64 },
     Friction { ratio: f64, by: f64 },
+    Footprint { by: f64 },
     Clock { share: f64 },
     Length { by_m: f64 },
     Section { by_m: f64 },
@@ -137,12 +142,17 @@ impl InputShift {
             Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
         };
         match *self {
-            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } => None,
+            Self::Step { .. } | Self::Event { .. } | Self::Footprint { .. } | Self::OfSecondImpact { .. } => {
+                None
+            }
             Self::Scale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
             }
             Self::RateScale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, SECOND_RATE_SENSOR)
+            }
+            Self::BaseStrain { share, .. } => {
+                row("base_strain_percent", "tolerance.base_strain_percent", "1 %", 0.01, share, SECOND_SENSOR)
             }
             Self::Place { by_m, .. } => row("position_m", "position_m", "10 mm", 0.01, by_m, SECOND_SENSOR),
             Self::Cross { share, .. } => {
@@ -151,9 +161,6 @@ impl InputShift {
             // v0 is that of the root of the height.
             Self::ImpactVelocity { share } if setup.is_of_fall => {
                 row("impact_velocity_percent", "drop.height_m", "1 %", 0.005, share, REST)
-            Self::BaseStrain { share, .. } => {
-                row("base_strain_percent", "tolerance.base_strain_percent", "1 %", 0.01, share, SECOND_SENSOR)
-            }
             }
             Self::ImpactVelocity { share } => {
                 row("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01, share, REST)
@@ -270,6 +277,7 @@ impl Inputs {
                 let most = MOST_FRICTION / self.setup.angle_rad.tan();
                 self.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
             }
+            InputShift::Footprint { by: u } => self.setup.footprint += by * u,
             InputShift::Clock { share } => self.setup.second_s += by * share,
             InputShift::Length { by_m } => self.setup.length_m += by * by_m,
             InputShift::Section { by_m } => self.setup.height_m += by * by_m,
@@ -325,6 +333,8 @@ pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput>
     if let Some(AssumedFriction { ratio, u }) = measured.friction {
         add("friction of the first contact", format!("{u:.3}"), InputShift::Friction { ratio, by: u });
     }
+    let footprint = InputShift::Footprint { by: FOOTPRINT };
+    add("footprint of the crushed corner", format!("{FOOTPRINT} m a metre of crush"), footprint);
     let by_m = known.length * measured.setup.length_m / 2.0;
     add("length", format!("{:.0} mm", 1e3 * by_m), InputShift::Length { by_m });
     let by_m = known.height * measured.setup.height_m / 2.0;
@@ -422,6 +432,9 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
         let share = u_scale(measured, channel);
         add("calibration", percent(share), InputShift::Scale { channel, share });
     }
+    let share = known.base_strain / 2.0;
+    let strain = InputShift::BaseStrain { channel, add_m_s: u_base_strain_m_s(measured, channel), share };
+    add("base strain", percent(share), strain);
     let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
     let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
     let omega = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
@@ -432,9 +445,6 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
         transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
     };
     let share = known.cross_axis / 2.0;
-    let share = known.base_strain / 2.0;
-    let strain = InputShift::BaseStrain { channel, add_m_s: u_base_strain_m_s(measured, channel), share };
-    add("base strain", percent(share), strain);
     add("cross axis", percent(share), InputShift::Cross { channel, share, other_m_s });
     if is_transverse {
         let by_m = known.position_m / 2.0;
