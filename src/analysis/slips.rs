@@ -10,6 +10,7 @@ use crate::data::{
     Samples, Severity, Slip,
 };
 use crate::judge::{self, TransversePlace};
+use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
@@ -37,20 +38,19 @@ const MET: f64 = 0.3;
 pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
     let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
     let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
-    let mut tried: Vec<(Doubt, Cure)> = Vec::new();
     let steps = of_steps(recording, &found.result);
     let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
-    for slips in hypotheses(recording, file).into_iter().filter(may_cure) {
+    let cured = |slips: Vec<Slip>| {
         let (mut other, mut stated) = (recording.clone(), file.clone());
         for slip in &slips {
             put_right(slip, &mut other, &mut stated);
         }
         let analysis = analyzed(&other, &stated, Patience::OneBeginning);
-        if is_cured(&analysis) {
-            let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
-            tried.push((Doubt::of(&analysis), Cure { slips, speed, k }));
-        }
-    }
+        let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
+        is_cured(&analysis).then(|| (Doubt::of(&analysis), Cure { slips, speed, k }))
+    };
+    let may_be = hypotheses(recording, file).into_par_iter().filter(may_cure);
+    let tried: Vec<(Doubt, Cure)> = may_be.filter_map(cured).collect();
     let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
     let least = tried.iter().map(|(doubt, _)| clearly(doubt)).reduce(|a, b| if b < a { b } else { a });
     let as_good = tried.into_iter().filter(|(doubt, _)| least.is_some_and(|least| *doubt < least));
