@@ -1,6 +1,6 @@
 //! What the free-flight window gave: a plateau per channel, and the modes that ring on it.
 
-use super::{Axis, End, Signal};
+use super::{Axis, End, SLOWEST_BENDING_HZ, Signal};
 use serde::Serialize;
 
 /// One damped bending mode in the flight window.
@@ -122,6 +122,14 @@ const WHOLLY_ALONE: f64 = 30.0;
 /// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
 const SLOWEST_HZ: f64 = 16.5;
 
+/// The second bending mode, in which the ends go apart, is faster than the first by more than this: 2.76
+/// times in a uniform beam.
+const SECOND_MODE: f64 = 1.8;
+/// No mount of contents that weigh tons is stiffer, Hz.
+const FASTEST_SWING_HZ: f64 = 100.0;
+/// A mode with less than this share of the largest says nothing of how the cask moves.
+const SHOWN: f64 = 0.1;
+
 impl FlightFit {
     /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a
     /// period, slower than any cask's or damped as none; or wholly at one end, as a cable that whips.
@@ -140,6 +148,47 @@ impl FlightFit {
         let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
         let alone = if is_slow || damping > STRONG_DAMPING { ALONE } else { WHOLLY_ALONE };
         first.max(second) > alone * first.min(second)
+    }
+
+    /// How far the outermost channel on the first end goes along with that on the second in a mode, as a share
+    /// of it; negative where it goes the other way.
+    #[must_use]
+    pub fn goes_along(&self, mode: usize, signals: &[Signal]) -> f64 {
+        let across = || signals.iter().zip(&self.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
+        let by_place =
+            |a: &(&Signal, &Plateau), b: &(&Signal, &Plateau)| a.0.position_m.total_cmp(&b.0.position_m);
+        let of = |outermost: Option<(&Signal, &Plateau)>| outermost?.1.ringing_m_s.get(mode).copied();
+        let ends = (of(across().min_by(by_place)), of(across().max_by(by_place)));
+        let (Some(first), Some(last)) = ends else { return 0.0 };
+        let square = last.0 * last.0 + last.1 * last.1;
+        if square > 0.0 { (last.0 * first.0 + last.1 * first.1) / square } else { 0.0 }
+    }
+
+    /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
+    /// body does not bend so: slower than any cask; or both ends go apart, which bending does in its second
+    /// mode.
+    #[must_use]
+    pub fn swinging(&self, signals: &[Signal]) -> usize {
+        let largest_m_s = self.modes.iter().map(|m| m.amplitude_m_s).fold(0.0, f64::max);
+        let slowest_hz = |goes: fn(f64) -> bool| {
+            let shown = |(i, m): &(usize, &Mode)| {
+                m.amplitude_m_s > SHOWN * largest_m_s && goes(self.goes_along(*i, signals))
+            };
+            self.modes.iter().enumerate().find(shown).map(|(_, m)| m.frequency_hz)
+        };
+        let together_hz = slowest_hz(|along| along > 1.0 / ALONE);
+        let apart_hz = slowest_hz(|along| (-ALONE..-1.0 / ALONE).contains(&along));
+        let near = |apart_hz: &f64| {
+            *apart_hz < together_hz.map_or(FASTEST_SWING_HZ, |hz| FASTEST_SWING_HZ.min(SECOND_MODE * hz))
+        };
+        let up_to_hz = apart_hz.filter(near).map_or(0.0, |apart_hz| {
+            let also_hz = together_hz.filter(|hz| *hz < SECOND_MODE * apart_hz);
+            also_hz.map_or(apart_hz, |hz| hz.max(apart_hz))
+        });
+        self.modes
+            .iter()
+            .take_while(|m| m.frequency_hz < SLOWEST_BENDING_HZ || m.frequency_hz <= up_to_hz)
+            .count()
     }
 
     /// How many periods of its slowest mode it shows; infinite without modes.
@@ -197,6 +246,28 @@ mod tests {
         assert!(!flight(0.049, &[30.0, 80.0]).is_told_apart());
         assert!(flight(0.051, &[30.0, 80.0]).is_told_apart());
         assert!(flight(0.001, &[]).is_told_apart(), "nothing rings");
+    }
+
+    #[test]
+    fn ends_that_go_apart_slowly_swing_and_do_not_bend() {
+        let signal = |end, position_m| Signal { end, position_m, ..example::signal(1e4, vec![]) };
+        let signals = [signal(End::First, 0.3), signal(End::Second, 4.7)];
+        // Of each mode the frequency and how the first end goes along.
+        let swinging = |modes: &[(f64, f64)]| {
+            let of = |share: fn(f64) -> f64| Plateau {
+                ringing_m_s: modes.iter().map(|mode| (0.0, share(mode.1))).collect(),
+                ..example::plateau("A", 0.0)
+            };
+            let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
+            let plateaus = vec![of(|along| along), of(|_| 1.0)];
+            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals)
+        };
+        assert_eq!(swinging(&[(80.0, 1.0), (220.0, -1.0)]), 0, "a uniform beam");
+        assert_eq!(swinging(&[(20.0, 1.0), (80.0, 1.0)]), 1, "slower than any cask");
+        assert_eq!(swinging(&[(40.0, 1.0), (55.0, -2.0), (120.0, 1.0)]), 2);
+        assert_eq!(swinging(&[(40.0, -2.0), (50.0, 1.0), (90.0, 1.0)]), 2);
+        assert_eq!(swinging(&[(40.0, -2.0), (120.0, 1.0)]), 1);
+        assert_eq!(swinging(&[(60.0, -0.05), (90.0, 1.0)]), 0, "the first end stands on a node");
     }
 
     #[test]

@@ -197,13 +197,16 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 
 /// The slowest mode where a cask that bends has none, and both ends go along.
 fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Option<Finding> {
-    let frequency_hz = flight.modes.first().map(|m| m.frequency_hz).filter(|hz| *hz < SLOWEST_BENDING_HZ)?;
-    let across = signals.iter().zip(&flight.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
-    let sizes_m_s = across.filter_map(|(_, p)| p.ringing_m_s.first()).map(|(a, b)| a.hypot(*b));
-    let size_m_s = sizes_m_s.fold(0.0, f64::max);
-    let found = DropFinding::Swings { frequency_hz, size_m_s };
-    (size_m_s > LARGE_BEND * v0_m_s && !flight.is_bend(0, signals))
-        .then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+    let across = || signals.iter().zip(&flight.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
+    let size_m_s = |mode: usize| {
+        let sizes_m_s = across().filter_map(|(_, p)| p.ringing_m_s.get(mode)).map(|(a, b)| a.hypot(*b));
+        sizes_m_s.fold(0.0, f64::max)
+    };
+    let mut modes = (0..flight.swinging(signals)).filter(|mode| !flight.is_bend(*mode, signals));
+    let mode = modes.find(|mode| size_m_s(*mode) > LARGE_BEND * v0_m_s)?;
+    let found =
+        DropFinding::Swings { frequency_hz: flight.modes[mode].frequency_hz, size_m_s: size_m_s(mode) };
+    Some(Finding::from(found).between(flight.from_s, flight.to_s))
 }
 
 /// What was observed otherwise beside the same of a result.

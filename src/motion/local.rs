@@ -2,7 +2,7 @@
 
 use super::flight::{centrifugal_m_s2, oscillation};
 use super::{Integrated, Window};
-use crate::data::{At, Axis, FlightFit, SLOWEST_BENDING_HZ, Setup, Signal};
+use crate::data::{At, Axis, FlightFit, Setup, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::free_beam;
 
@@ -37,25 +37,20 @@ pub fn ringing_of_second_end(
     let (first, last) = (signals().min_by(by_place)?, signals().max_by(by_place)?);
     let channel = integrated.signals.iter().position(|s| s.name == last.name)?;
     let plateau = flight.plateau(&last.name)?;
-    let other = flight.plateau(&first.name)?;
     let before_s = slap_down.time_s - slap_down.u_s.max(1.0 / last.sample_rate_hz);
     let since_s = before_s - flight.from_s;
     let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, window, setup.cog_m);
     let own_m_s = integrated.gained_m_s(channel, before_s) - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
-    let mut evens = 0;
+    let (mut evens, swinging) = (0, flight.swinging(&integrated.signals));
     for (i, mode) in flight.modes.iter().enumerate() {
-        let (Some(size), Some(opposite)) = (plateau.ringing_m_s.get(i), other.ringing_m_s.get(i)) else {
-            continue;
-        };
+        let Some(size) = plateau.ringing_m_s.get(i) else { continue };
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };
         let own_m_s = size.0 * z.re + size.1 * z.im;
-        // The share of the other end that goes with this one.
-        let square = size.0 * size.0 + size.1 * size.1;
-        let ratio = if square > 0.0 { (size.0 * opposite.0 + size.1 * opposite.1) / square } else { 0.0 };
+        let (square, ratio) = (size.0 * size.0 + size.1 * size.1, flight.goes_along(i, &integrated.signals));
         let shares = [first, last].map(|s| s.position_m / setup.length_m);
         let straight = 1.0 + (1.0 - ratio) * (1.0 - shares[1]) / (shares[1] - shares[0]).max(0.1);
-        let by_shape = if mode.frequency_hz < SLOWEST_BENDING_HZ {
+        let by_shape = if i < swinging {
             straight
         } else {
             evens += u8::from(ratio > 0.0);

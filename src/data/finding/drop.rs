@@ -93,9 +93,9 @@ pub enum DropFinding {
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
              slap-down speed are not determined", .step_m_s.abs(), 1e3 * .after_s)]
     Blow { step_m_s: f64, after_s: f64 },
-    /// A mode slower than a cask bends.
+    /// A mode that is no bending.
     #[error(
-        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, more slowly than it bends: \
+        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, as it does not bend: \
          contents or mounts move in it; the slap-down speed and k are those of all that moves, `local_speed` \
          is that of the corner that strikes"
     )]
