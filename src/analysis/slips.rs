@@ -49,7 +49,14 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
         let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
         is_cured(&analysis).then(|| (Doubt::of(&analysis), Cure { slips, speed, k }))
     };
-    let may_be = hypotheses(recording, file).into_par_iter().filter(may_cure);
+    // Where all closes without one channel, nothing else is wrong.
+    let left_out = found.result.quality.iter().find_map(|f| match f.what {
+        FindingKind::Channel(ChannelFinding::LeftOut { .. }) => f.channel.as_ref(),
+        _ => None,
+    });
+    let is_of_it =
+        |slips: &Vec<Slip>| left_out.is_none_or(|name| slips.iter().any(|slip| slip.names.contains(name)));
+    let may_be = hypotheses(recording, file).into_par_iter().filter(is_of_it).filter(may_cure);
     let tried: Vec<(Doubt, Cure)> = may_be.filter_map(cured).collect();
     let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
     let least = tried.iter().map(|(doubt, _)| clearly(doubt)).reduce(|a, b| if b < a { b } else { a });
