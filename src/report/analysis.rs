@@ -4,7 +4,7 @@ use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
     TableShape, Tone, Words,
 };
-use super::first_screen::{agreement, cause, untested};
+use super::first_screen::{agreement, cause, of_corner, untested};
 use super::impacts::impacts;
 use super::others::others;
 use super::prediction::prediction_columns;
@@ -162,7 +162,11 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
         [name.to_owned(), determined(value.unwrap_or_else(|| MISSING.to_owned())), detail]
     };
     vec![
-        figure("Slap-down speed, measured", Some(interval(speed)), String::new()),
+        figure(
+            "Slap-down speed, measured",
+            Some(interval(speed)),
+            of_corner(result).map_or_else(String::new, |local| format!("of the corner {local}")),
+        ),
         figure(
             "Slap-down speed, predicted",
             compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s")),

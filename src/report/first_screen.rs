@@ -112,7 +112,7 @@ fn row(name: &str, words: &str, width: usize, most: usize) -> String {
 }
 
 /// The speed of the corner that strikes where its ringing moves it off the interval of the rigid body's.
-fn of_corner(result: &DropResult) -> Option<String> {
+pub(super) fn of_corner(result: &DropResult) -> Option<String> {
     let (local, rigid) = result.slap_down.local_speed.zip(result.slap_down.speed)?;
     let is_apart = (local.value - rigid.value).abs() > rigid.u95;
     is_apart.then(|| interval(Some(&local)) + ", ringing and swinging included")
