@@ -37,7 +37,7 @@ fn the_first_screen_holds_the_most_that_can_be_said() {
         assert!(text.lines().count() <= most, "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
         let last = text.lines().last().expect("a line");
-        assert!(text.contains("Nothing tests") && last.ends_with("report.html"), "{text}");
+        assert!(text.contains("Untested here") && last.ends_with("report.html"), "{text}");
     }
 }
 

@@ -115,7 +115,7 @@ fn row(name: &str, words: &str, width: usize, most: usize) -> String {
 pub(super) fn of_corner(result: &DropResult) -> Option<String> {
     let (local, rigid) = result.slap_down.local_speed.zip(result.slap_down.speed)?;
     let is_apart = (local.value - rigid.value).abs() > rigid.u95;
-    is_apart.then(|| interval(Some(&local)) + ", ringing and swinging included")
+    is_apart.then(|| interval(Some(&local)) + " of the end that strikes, ringing included")
 }
 
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
@@ -153,7 +153,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
         let remedies = row("To test them", &remedies, width, 2);
         let taken = [&before, &remedies, &foot].map(|text| text.lines().count()).iter().sum();
-        row("Nothing tests", &named, width, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
+        row("Untested here", &named, width, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
     });
     before + &tested + &foot
 }

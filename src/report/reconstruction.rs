@@ -231,8 +231,9 @@ pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Optio
         before = table;
     }
     let keys = keys.join(", ");
-    (!named.is_empty())
-        .then(|| format!("variance of {of_what} by assumed tolerances: {}; state {keys}", named.join(", ")))
+    (!named.is_empty()).then(|| {
+        format!("variance of {of_what} by assumed tolerances: {}; enter yours: {keys}", named.join(", "))
+    })
 }
 
 /// An input, and how much of the variance of a quantity it carries.

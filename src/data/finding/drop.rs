@@ -95,14 +95,14 @@ pub enum DropFinding {
     Blow { step_m_s: f64, after_s: f64 },
     /// A mode that is no bending.
     #[error(
-        "the cask swings as a whole at {frequency_hz:.0} Hz by {size_m_s:.2} m/s, as it does not bend: \
-         contents or mounts move in it; the slap-down speed and k are those of all that moves, `local_speed` \
+        "an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is none of the cask's bending: contents or \
+         mounts move in it; the slap-down speed and k are those of cask and contents together, `local_speed` \
          is that of the corner that strikes"
     )]
     Swings { frequency_hz: f64, size_m_s: f64 },
     /// L is still pressed as R strikes.
     #[error(
-        "between first contact and the strike of the second end the velocities bend as in no free flight \
+        "between first contact and the strike of the second end the velocities curve as in no free flight \
          ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
          on the target as the second end strikes; contacts that overlap are not followed"
     )]
