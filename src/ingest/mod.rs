@@ -10,7 +10,7 @@ mod detect;
 pub(crate) mod error;
 pub(crate) mod foreign;
 #[cfg(any(test, fuzzing))]
-pub mod fuzz;
+pub mod fuzz_tests;
 mod hdf5;
 mod limits;
 mod lines;

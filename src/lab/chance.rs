@@ -24,11 +24,6 @@ impl Chance {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Evenly between two values that stand together.
-    pub(super) fn between(&mut self, ends: (f64, f64)) -> f64 {
-        self.even(ends.0, ends.1)
-    }
-
     /// Evenly between the logarithms of two values.
     pub(super) fn log_even(&mut self, low: f64, high: f64) -> f64 {
         self.even(low.ln(), high.ln()).exp()

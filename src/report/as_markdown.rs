@@ -1,27 +1,26 @@
-//! A document to Markdown that stands within another document.
+//! A document to Markdown, its pictures beside it.
 
 use super::document::{CellKind, ChapterPart, Medium, PartContent, ReportDocument, ReportTable, TableCell};
 use super::text::printable;
 
-/// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none
-/// leaves them out.
-pub(crate) fn markdown(document: &ReportDocument, folder: Option<&str>) -> String {
+/// The Markdown.
+pub(crate) fn markdown(document: &ReportDocument) -> String {
     let mut blocks = Vec::new();
     for chapter in &document.chapters {
         let heading = chapter.heading(Medium::Markdown).map(cell_text).unwrap_or_default();
         blocks.extend((!heading.is_empty()).then(|| format!("### {heading}\n")));
         let shown = chapter.shown(Medium::Markdown).into_iter();
-        blocks.extend(shown.filter_map(|part| passage(part, &heading, folder)));
+        blocks.extend(shown.filter_map(|part| passage(part, &heading)));
     }
     blocks.join("\n")
 }
 
-fn passage(passage: &ChapterPart, heading: &str, folder: Option<&str>) -> Option<String> {
+fn passage(passage: &ChapterPart, heading: &str) -> Option<String> {
     match &passage.content {
         PartContent::Sentence(_, words) => {
             Some(format!("{}\n", printable(words.on(Medium::Markdown)).replace('<', "&lt;")))
         }
-        PartContent::Picture(name, _) => folder.map(|folder| format!("![{heading}]({folder}{name}.svg)\n")),
+        PartContent::Picture(name, _) => Some(format!("![{heading}]({name}.svg)\n")),
         PartContent::ReportTable(table) => Some(self::table(table)),
         // What only pages and terminals have.
         _ => None,

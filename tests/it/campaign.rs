@@ -7,7 +7,6 @@ use dropcheck::lab::campaign::{self, DamageKind, Tally};
 use dropcheck::lab::data::{
     Campaign, CampaignRequest, CampaignRow, Damage, RungSaid, SceneNumber, Scored, Stated,
 };
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -19,16 +18,9 @@ fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
     campaign::run(&CampaignRequest { scenes, seed, kinds, exact }, &|_| {})
 }
 
-/// The CSV of all rows.
-fn csv(campaign: &Campaign) -> Vec<u8> {
-    let lines = campaign.rows.iter().enumerate();
-    lines.flat_map(|(i, row)| campaign::csv(row, i == 0).expect("the CSV is written")).collect()
-}
-
-/// The cells of the CSV, a map a scene.
-fn cells(campaign: &Campaign) -> Vec<BTreeMap<String, String>> {
-    let bytes = csv(campaign);
-    csv::Reader::from_reader(&bytes[..]).deserialize().map(|row| row.expect("a whole row")).collect()
+/// All rows as they are written.
+fn lines(campaign: &Campaign) -> String {
+    serde_json::to_string(&campaign.rows).expect("the rows are written")
 }
 
 #[test]
@@ -37,8 +29,8 @@ fn a_seed_gives_the_same_campaign_and_another_seed_another() {
     let numbers: Vec<String> = campaign.rows.iter().map(|row| row.scene.to_string()).collect();
     assert_eq!(numbers[..3], ["U0", "U1", "U2"]);
     assert!(campaign.rows[3..].iter().all(|row| matches!(row.scene, SceneNumber::Damaged(_))));
-    assert_eq!(csv(&campaign), csv(&run(3, 7, false)));
-    assert_ne!(csv(&campaign), csv(&run(3, 8, false)));
+    assert_eq!(lines(&campaign), lines(&run(3, 7, false)));
+    assert_ne!(lines(&campaign), lines(&run(3, 8, false)));
 }
 
 #[test]
@@ -114,8 +106,7 @@ fn a_pass_whose_interval_ends_half_its_width_short_of_the_truth_is_missed() {
         (Verdict::Review, Some((0.9, 1.1)), "caught"),
         (Verdict::Fail, None, "caught"),
     ] {
-        let rows = vec![judged(row, verdict, off)];
-        let outcome = &cells(&Campaign { request: campaign.request.clone(), rows })[0]["outcome"];
+        let outcome = campaign::outcome(&judged(row, verdict, off)).word();
         assert_eq!(outcome, wanted, "{verdict:?} {off:?}");
     }
 }
@@ -188,9 +179,9 @@ fn merge(folder: &Path, names: &[&str]) -> crate::run::Answer {
     dropcheck(["merge".into()].into_iter().chain(paths).chain(["--out".into(), folder.join("merged").into()]))
 }
 
-/// The campaign's two files.
-fn both(folder: &Path) -> [Vec<u8>; 2] {
-    ["campaign.csv", "campaign.md"].map(|name| fs::read(folder.join(name)).expect(name))
+/// The campaign's tables.
+fn tables(folder: &Path) -> Vec<u8> {
+    fs::read(folder.join("campaign.md")).expect("the tables")
 }
 
 #[test]
@@ -218,7 +209,7 @@ fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
     for names in [["2.jsonl", "0.jsonl", "1.jsonl"], ["swapped.jsonl", "2.jsonl", "0.jsonl"]] {
         let merged = merge(folder, &names);
         assert_eq!(merged.status, 0, "{}", merged.stderr);
-        assert!(both(&folder.join("merged")) == both(&folder.join("whole")));
+        assert!(tables(&folder.join("merged")) == tables(&folder.join("whole")));
     }
     other("foreign.jsonl", &text.replace("\"seed\":9", "\"seed\":8"));
     other("version.jsonl", &text.replace("\"version\":\"", "\"version\":\"9"));
@@ -232,13 +223,16 @@ fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
         (Some("foreign.jsonl"), "is of another campaign"),
         (Some("version.jsonl"), "is of another version"),
         (Some("empty.jsonl"), "empty.jsonl is no shard"),
-        (Some("whole/campaign.csv"), "campaign.csv is no shard"),
+        (Some("whole/campaign.md"), "campaign.md is no shard"),
     ] {
         let answer = merge(folder, &["0.jsonl", "2.jsonl"].into_iter().chain(file).collect::<Vec<_>>());
         let words = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(answer.status, 2, "{file:?}");
         assert!(words.contains(wanted), "{file:?}: {words}");
-        assert!(both(&folder.join("merged")) == both(&folder.join("whole")), "what was there is unchanged");
+        assert!(
+            tables(&folder.join("merged")) == tables(&folder.join("whole")),
+            "what was there is unchanged"
+        );
     }
 }
 
@@ -254,7 +248,7 @@ fn a_campaign_that_was_stopped_goes_on() {
         let answer = validate(folder, &["--out", "@on", "--jsonl", "@on.jsonl", "--resume"]);
         assert_eq!(answer.status, 0, "{}", answer.stderr);
         assert_eq!(fs::read_to_string(folder.join("on.jsonl")).expect("lines"), text);
-        assert!(both(&folder.join("on")) == both(&folder.join("whole")));
+        assert!(tables(&folder.join("on")) == tables(&folder.join("whole")));
     }
     let answer = validate(folder, &["--jsonl", "@on.jsonl", "--resume", "--exact"]);
     assert_eq!((answer.status, answer.stderr.contains("another campaign")), (2, true), "{}", answer.stderr);

@@ -1,10 +1,9 @@
-//! `validate --campaign`: random scenes, one after the other, to lines, a CSV and tables; and the shards of a
-//! campaign to the same.
+//! `validate --campaign`: random scenes, one after the other, to lines and tables; and the shards of a campaign
+//! to the same tables.
 
 use super::super::Ending;
 use super::super::lines::{self, LineOutput, LineRecord};
-use super::super::output::{Folder, print, replace, replace_by};
-use super::document::MarkedDocument;
+use super::super::output::{Folder, print};
 use crate::lab::campaign::{self, ScenePlace, Tally};
 use crate::lab::data::{CampaignRequest, CampaignRow};
 use clap::Args;
@@ -13,8 +12,8 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Files of a campaign's folder.
-const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
+/// The file in a campaign's folder.
+const NAME: &str = "campaign.md";
 
 /// Where lines go, one after the other.
 type Take<'a> = &'a mut dyn FnMut(&[u8]) -> miette::Result<()>;
@@ -28,27 +27,21 @@ pub struct Parts {
     /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
     #[arg(long, value_name = "I/N", value_parser = lines::part, default_value = "0/1",
         hide_default_value = true,
-        requires = "jsonl", conflicts_with_all = ["out", "into"])]
+        requires = "jsonl", conflicts_with = "out")]
     shard: (usize, usize),
     /// Go on with the lines of --jsonl that an earlier run of the same words has left
     #[arg(long, requires = "jsonl")]
     resume: bool,
 }
 
-/// Draws the scenes and writes what is asked for: lines, the files of the folder `out`, the tables in the
-/// document `into`.
-pub fn run(
-    request: &CampaignRequest,
-    parts: &Parts,
-    out: Option<&Path>,
-    into: Option<&Path>,
-) -> miette::Result<Ending> {
+/// Draws the scenes and writes what is asked for: lines, and the tables, in the folder `out` where one is
+/// named.
+pub fn run(request: &CampaignRequest, parts: &Parts, out: Option<&Path>) -> miette::Result<Ending> {
     let (index, count) = parts.shard;
     let numbers = campaign::numbers(request);
     lines::holds_some(parts.shard, numbers.len())?;
     let place = ScenePlace::first(request, numbers.len(), count);
     let own: Vec<usize> = (index..numbers.len()).step_by(count).collect();
-    let document = into.map(|path| MarkedDocument::of(path, "campaign")).transpose()?;
     let open = |path: &PathBuf| {
         LineRecord::open(path, parts.resume, &[], |line| own_number(place, &own, path, line).map(Some))
     };
@@ -64,12 +57,9 @@ pub fn run(
     let tables = tabled(request, out, |take| {
         output.each(own.clone(), rayon::current_num_threads(), make, |line| take(line.as_bytes()))
     })?;
-    if let Some(document) = &document {
-        document.write(&tables)?;
-    }
     if count > 1 && !output.is_standard_output {
         print(&format!("Shard {index}/{count}; `dropcheck merge` makes the tables of all shards.\n"))?;
-    } else if out.is_none() && document.is_none() && !output.is_standard_output {
+    } else if out.is_none() && !output.is_standard_output {
         print(&tables)?;
     }
     Ok(Ending::Clear)
@@ -82,7 +72,7 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     let (lines, first) = lines::merged(paths, is_none)?;
     let request: CampaignRequest = serde_json::from_value(first["of"].clone()).into_diagnostic()?;
     tabled(&request, Some(out), |take| lines.each(take))?;
-    print(&format!("Written: {}\n", crate::report::printable(&out.join(NAMES[1]).display().to_string())))?;
+    print(&format!("Written: {}\n", crate::report::printable(&out.join(NAME).display().to_string())))?;
     Ok(Ending::Clear)
 }
 
@@ -100,36 +90,23 @@ fn own_number(place: ScenePlace, own: &[usize], path: &Path, line: &Value) -> mi
     })
 }
 
-/// The tables of all lines that `work` hands over, in a folder beside their rows as CSV where one is named.
+/// The tables of all lines that `work` hands over, in a folder where one is named.
 fn tabled(
     request: &CampaignRequest,
     out: Option<&Path>,
     work: impl FnOnce(Take) -> miette::Result<()>,
 ) -> miette::Result<String> {
+    let folder = out.map(|out| Folder::checked(out, &[NAME], &[])).transpose()?;
     let mut tally = Tally::new(request.clone());
     // As they are written, so that a merge of shards counts the same numbers.
-    let mut counted = |line: &[u8]| {
-        let row = campaign::read(line)?;
-        tally.add(&row);
-        Some(row)
-    };
-    let Some(out) = out else {
-        work(&mut |line| {
-            counted(line);
-            Ok(())
-        })?;
-        return Ok(campaign::markdown(&tally));
-    };
-    Folder::checked(out, &NAMES, &[])?.make()?;
-    let mut is_first = true;
-    replace_by(&out.join(NAMES[0]), |write| {
-        work(&mut |line| match counted(line) {
-            Some(row) => write(&campaign::csv(&row, std::mem::take(&mut is_first))?),
-            None => Ok(()),
-        })
+    work(&mut |line| {
+        campaign::read(line).iter().for_each(|row| tally.add(row));
+        Ok(())
     })?;
     let tables = campaign::markdown(&tally);
-    replace(&out.join(NAMES[1]), tables.as_bytes())?;
+    if let Some(folder) = folder {
+        folder.write(&[(NAME.to_owned(), tables.clone().into_bytes())])?;
+    }
     Ok(tables)
 }
 

@@ -4,32 +4,22 @@ use super::super::Ending;
 use super::super::output::{Folder, columns, print};
 use super::super::progress::with_progress;
 use super::super::rerun::program_sha256;
-use super::document::MarkedDocument;
 use crate::data::Program;
 use crate::lab::data::{TrialMachine, TrialRequest};
 use crate::lab::methods::{self, References};
-use crate::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
+use crate::lab::report::{TRIAL_NAMES, trial_files, trial_outcome};
 use crate::report;
 use std::path::Path;
 
-/// Writes the trial into the folder `out` and, by its extract, into the document `into`; ends with what is
-/// accepted, a site's own reference recordings in the folder `site` among it.
-pub fn run(
-    request: TrialRequest,
-    site: Option<&Path>,
-    out: Option<&Path>,
-    into: Option<&Path>,
-) -> miette::Result<Ending> {
+/// Writes the trial into the folder `out`; ends with what is accepted, a site's own reference recordings in
+/// the folder `site` among it.
+pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> miette::Result<Ending> {
     let folder = out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
-    let document = into.map(|path| MarkedDocument::of(path, "trial")).transpose()?;
     let site = site.map(References::of).transpose()?;
     let trial =
         with_progress("trial", |progress| methods::trial(request, machine(), site.as_ref(), progress));
     if let Some(folder) = &folder {
         folder.write(&trial_files(&trial)?)?;
-    }
-    if let Some(document) = &document {
-        document.write(&trial_markdown(&trial, out.map(|out| document.way_to(out)).as_deref()))?;
     }
     print(&trial_outcome(&trial, columns()))?;
     if let Some(folder) = &folder {

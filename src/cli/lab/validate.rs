@@ -38,14 +38,9 @@ pub struct Arguments {
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
     exact: bool,
-    /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the
-    /// files of the scene
+    /// Folder for the page, pictures and tables of the trial, for campaign.md, or for the files of the scene
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!--
-    /// trial: end -->`, or of a campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
-    #[arg(long, value_name = "FILE", conflicts_with = "scene")]
-    into: Option<PathBuf>,
     #[command(flatten)]
     parts: campaign::Parts,
 }
@@ -60,12 +55,11 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         (_, out, Some(scenes)) => {
             let kinds = campaign::words(arguments.kinds.clone());
             let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
-            campaign::run(&request, &arguments.parts, out.as_deref(), arguments.into.as_deref())
+            campaign::run(&request, &arguments.parts, out.as_deref())
         }
         (_, out, None) => {
             let request = TrialRequest { quick: arguments.quick, seed: arguments.seed };
-            let site = arguments.reference.as_deref();
-            trial::run(request, site, out.as_deref(), arguments.into.as_deref())
+            trial::run(request, arguments.reference.as_deref(), out.as_deref())
         }
     }
 }

@@ -9,7 +9,7 @@ mod complaint;
 mod descriptors;
 mod extent;
 #[cfg(any(test, fuzzing))]
-pub(super) mod fuzz;
+pub(super) mod fuzz_tests;
 mod json;
 mod list;
 mod message_type;

@@ -10,7 +10,7 @@ mod tables;
 mod tally;
 
 pub use lines::{SCHEMA, ScenePlace, line, read};
-pub use score::csv;
+pub use statistics::outcome;
 pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;

@@ -1,14 +1,11 @@
-//! An analysis beside its truth to a row, and a row to a line of CSV.
+//! An analysis beside its truth to a row.
 
-use super::statistics;
-use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
+use crate::data::{Analysis, Estimate, Severity};
 use crate::lab::chance::round;
 use crate::lab::data::{
     CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
 };
 use crate::lab::drawn::DrawnDrop;
-use crate::report::ReportError;
-use crate::report::records::records;
 use crate::report::text::json_word;
 use std::collections::BTreeMap;
 
@@ -91,74 +88,4 @@ fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
     names.sort();
     names.dedup();
     names
-}
-
-/// The row as a line of CSV, below the line of its headers where that is wanted: they are the same for every
-/// row.
-///
-/// # Errors
-/// Where the writer fails.
-pub fn csv(row: &CampaignRow, with_headers: bool) -> Result<Vec<u8>, ReportError> {
-    let cells = cells(row);
-    let (headers, cells): (Vec<String>, Vec<String>) = cells.into_iter().unzip();
-    records(with_headers.then_some(headers).into_iter().chain([cells]))
-}
-
-/// A cell under its header.
-type Cell = (String, String);
-
-fn cell(header: &str, value: impl std::fmt::Display) -> Cell {
-    (header.to_owned(), value.to_string())
-}
-
-fn maybe(header: &str, value: Option<f64>) -> Cell {
-    (header.to_owned(), value.map(|value| value.to_string()).unwrap_or_default())
-}
-
-/// A value and its half-width.
-fn pair(header: &str, stated: Option<Stated>) -> [Cell; 2] {
-    [maybe(header, stated.map(|e| e.value)), maybe(&format!("{header}_u95"), stated.map(|e| e.u95))]
-}
-
-fn cells(row: &CampaignRow) -> Vec<Cell> {
-    let (damage, facts) = (row.damage.as_ref(), &row.facts);
-    let mut cells = vec![
-        cell("scene", row.scene),
-        cell("kind", damage.map_or("none", |damage| &damage.kind)),
-        maybe("size", damage.map(|damage| damage.size)),
-        cell("size_unit", damage.map_or("", |damage| &damage.unit)),
-        cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), json_word)),
-        cell("outcome", statistics::outcome(row).word()),
-        cell("errors", row.errors.join(" ")),
-        cell("warnings", row.warnings.join(" ")),
-    ];
-    for (name, ..) in statistics::QUANTITIES {
-        let scored = row.quantities.get(name);
-        cells.extend(pair(name, scored.and_then(|scored| scored.stated)));
-        cells.push(maybe(&format!("{name}_true"), scored.and_then(|scored| scored.truth)));
-        cells.push(maybe(&format!("{name}_off"), scored.and_then(statistics::half_widths_off)));
-    }
-    cells.push(cell("rung", row.rung.map_or_else(String::new, json_word)));
-    for rung in ReconstructionRung::ALL {
-        let said = row.rungs.iter().find(|said| said.rung == rung);
-        let name = json_word(rung);
-        cells.push(cell(
-            &format!("{name}_consistent"),
-            said.map_or("", |said| if said.consistent { "yes" } else { "no" }),
-        ));
-        cells.extend(pair(&format!("{name}_speed"), said.and_then(|said| said.speed)));
-        cells.extend(pair(&format!("{name}_k"), said.and_then(|said| said.k)));
-    }
-    cells.extend([
-        maybe("largest_miss_u", row.largest_miss_u),
-        cell("cask", &facts.cask),
-        cell("angle_true_deg", facts.angle_deg),
-        cell("rate_hz", facts.rate_hz),
-        cell("modes", facts.modes),
-        cell("yields", facts.yields),
-        cell("rest", facts.rest),
-        cell("stated_angle_deg", facts.stated_angle_deg),
-        cell("stated_contact", &facts.stated_contact),
-    ]);
-    cells
 }

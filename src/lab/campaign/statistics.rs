@@ -26,7 +26,7 @@ pub(super) const QUANTITIES: [(&str, &str, bool, usize); 10] = [
 
 /// What became of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum SceneOutcome {
+pub enum SceneOutcome {
     /// Passed, and right.
     Right,
     /// Not passed, but its numbers hold.
@@ -42,13 +42,13 @@ impl SceneOutcome {
     pub(super) const ALL: [Self; 4] = [Self::Right, Self::Covered, Self::Caught, Self::Missed];
 
     /// "right", "covered" and so on.
-    pub(super) fn word(self) -> String {
+    pub fn word(self) -> String {
         format!("{self:?}").to_lowercase()
     }
 }
 
 /// What became of the scene of this row, by speed and k.
-pub(super) fn outcome(row: &CampaignRow) -> SceneOutcome {
+pub fn outcome(row: &CampaignRow) -> SceneOutcome {
     let off = ["speed", "k"].map(|name| row.quantities.get(name).and_then(half_widths_off));
     let worst = off.iter().flatten().fold(0.0_f64, |worst, off| worst.max(*off));
     let has_both = off.iter().all(Option::is_some);

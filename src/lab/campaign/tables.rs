@@ -13,7 +13,7 @@ use crate::report::text::json_word;
 
 /// The whole as Markdown.
 pub fn markdown(tally: &Tally) -> String {
-    as_markdown::markdown(&document(tally), None)
+    as_markdown::markdown(&document(tally))
 }
 
 /// A table of scenes by the rung of the reconstruction taken, and one of what every rung says of the drops

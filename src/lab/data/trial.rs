@@ -30,20 +30,14 @@ pub struct TrialPoint {
     pub class: String,
     /// Whether it is what the program takes where nothing is said.
     pub is_default: bool,
-    /// Whether no other of its class beats it.
-    pub is_on_front: bool,
     /// Median error against the truth, in `error_unit`.
     pub median_error: f64,
     /// 95th percentile of the error, in `error_unit`.
     pub p95_error: f64,
     /// Of what the error is a share, or its unit: "% of the slap-down speed".
     pub error_unit: String,
-    /// Median time of a `time_per`, ns.
+    /// Median time from file to answer, ns.
     pub time_ns: f64,
-    /// Quartiles of that time over the repeats, ns.
-    pub time_quartiles_ns: [f64; 2],
-    /// What the time is of: "call", "file".
-    pub time_per: String,
     /// Cases the error is taken over.
     pub cases: u32,
     /// Cases besides in which the method gives no number.

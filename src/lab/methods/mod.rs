@@ -4,25 +4,17 @@ mod drops;
 mod limits;
 mod map;
 mod points;
-mod prediction;
 mod references;
 mod ways;
 
 pub use limits::limits;
 pub use points::{ALL_CLASSES, READING};
 pub use references::References;
-pub use ways::WAYS;
+pub use ways::{WAYS, points as ways};
 
 use crate::ingest::Progress;
 use crate::lab::campaign;
-use crate::lab::data::{CampaignRequest, Trial, TrialMachine, TrialPoint, TrialRequest};
-use crate::numerics::as_f64;
-
-/// Tries the ways of a family.
-type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
-
-/// The families by name: the ways of working with a recording, and the rungs of the prediction.
-pub const FAMILIES: [(&str, Trying); 2] = [("ways", ways::points), ("prediction", prediction::points)];
+use crate::lab::data::{CampaignRequest, Trial, TrialMachine, TrialRequest};
 
 /// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
 pub fn trial(
@@ -31,13 +23,9 @@ pub fn trial(
     site: Option<&References>,
     progress: Progress,
 ) -> Trial {
-    let mut points = Vec::new();
-    for (done, (_, tried)) in FAMILIES.iter().enumerate() {
-        // Ways, the map and the campaign take a third of the time each.
-        progress(as_f64(done) / as_f64(3 * FAMILIES.len()));
-        points.extend(tried(&request));
-    }
-    points::mark_front(&mut points);
+    // Ways, the map and the campaign take a third of the time each.
+    progress(0.0);
+    let points = ways(&request);
     let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
     let drops = CampaignRequest {
         scenes: request.either(100, 600),

@@ -3,20 +3,14 @@
 
 use super::drops::{CALM, DropClass, NOISY, ONE_MODE, SLOW_MODE, conditioned};
 use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
-use super::prediction;
 use crate::analysis::flight_search::{self, Patience};
 use crate::analysis::{analyze, sticking};
-use crate::data::{
-    AssumedFriction, At, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
-};
+use crate::data::{CaskFile, Events, ReconstructionRung, Recording};
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};
 use crate::lab::report::{SyntheticFormat, synthetic_files};
 use crate::motion::{self, Integrated};
-use crate::numerics::as_f64;
-use crate::numerics::filter::ZeroPhaseLowPass;
-use crate::numerics::quadrature::running_integral;
-use crate::{analysis, events, fit, ingest};
+use crate::{analysis, events, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -57,46 +51,14 @@ type Working = fn(&Recording, &CaskFile) -> Option<Answer>;
 const TAKEN: &str = "dropcheck, as taken";
 
 /// Ways of working with a recording that is read.
-const WORKINGS: [(&str, Working); 7] = [
+const WORKINGS: [(&str, Working); 3] = [
     (TAKEN, |recording, file| Some(Answer::of(&analyze(recording, file).result))),
-    ("filter first, CFC 60", |recording, file| filter_first(60.0, recording, file)),
-    ("filter first, CFC 180", |recording, file| filter_first(180.0, recording, file)),
-    ("single channels (paper)", |recording, file| alone(None, recording, file)),
-    ("planar alone", |recording, file| alone(Some(ReconstructionRung::Planar), recording, file)),
-    ("flight alone", |recording, file| alone(Some(ReconstructionRung::Flight), recording, file)),
-    ("joint alone", |recording, file| alone(Some(ReconstructionRung::Joint), recording, file)),
+    ("planar alone", |recording, file| alone(ReconstructionRung::Planar, recording, file)),
+    ("flight alone", |recording, file| alone(ReconstructionRung::Flight, recording, file)),
 ];
 
-/// As one reads it off filtered curves: both channels filtered, integrated, the speed at the foot of the
-/// second's highest pulse, the rebound as the first's mean between its own and that foot.
-fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<Answer> {
-    let v0_m_s = file.drop.impact_velocity_m_s;
-    let filtered = |end: End| {
-        let channel = recording.channels.iter().find(|c| c.end == end && c.axis == Axis::Transverse)?;
-        let mut force = channel.force_m_s2(0, channel.samples.len());
-        let still = force.len().min(2000);
-        let offset_m_s2 = force[..still].iter().sum::<f64>() / as_f64(still);
-        for f in &mut force {
-            *f -= offset_m_s2;
-        }
-        let smooth = ZeroPhaseLowPass::with_cfc(class, channel.sample_rate_hz)?.apply(&force);
-        let velocity = running_integral(&smooth, 1.0 / channel.sample_rate_hz);
-        Some((smooth, velocity))
-    };
-    let ((first, rising), (second, falling)) = (filtered(End::First)?, filtered(End::Second)?);
-    let top = |of: &[f64], from: usize| (from..of.len()).max_by(|&a, &b| of[a].total_cmp(&of[b]));
-    let struck = top(&first, 0)?;
-    let left = (struck..first.len()).find(|&i| first[i] < 0.05 * first[struck])?;
-    let slap = top(&second, left)?;
-    let foot = (left..slap).rev().find(|&i| second[i] < 0.05 * second[slap])?;
-    let free = rising.get(left..foot).filter(|free| !free.is_empty());
-    let mean = |free: &[f64]| free.iter().sum::<f64>() / as_f64(free.len());
-    Some(Answer::bare(Some(v0_m_s - falling[foot]), free.map(|free| mean(free) / v0_m_s - 1.0)))
-}
-
-/// One rung of the reconstruction, without the others, the checks and the prediction; none is each channel by
-/// itself, as \[P\] Fig. 13 has it: −v0 + ∫f dt, gravity left out, read off as L leaves and as R strikes.
-fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFile) -> Option<Answer> {
+/// A simple rung of the reconstruction, without the others, the checks and the prediction.
+fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
@@ -107,62 +69,24 @@ fn alone(rung: Option<ReconstructionRung>, recording: &Recording, file: &CaskFil
         slap_down: found.slap_down,
         ..Events::default()
     };
-    let (setup, flight) = (sticking(file), found.flight?);
-    let plain = || {
+    let (setup, mut flight) = (sticking(file), found.flight?);
+    if rung == ReconstructionRung::Planar {
         let window = motion::Window {
             from_s: flight.from_s,
             to_s: flight.to_s,
             drift: flight.drift,
             angular_velocity_rad_s: motion::rotation_rad_s(&signals, &flight),
         };
-        motion::mean_of_flight(&integrated, &flight, &window, setup.cog_m)
-    };
-    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
-    let of_motion = |moved: crate::data::Motion| {
-        let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
-        Answer::bare(speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s))
-    };
-    match rung {
-        None => {
-            let v0_m_s = setup.impact_velocity_m_s;
-            let read_m_s = |end: End, at: At| {
-                let own = signals.iter().position(|s| s.axis == Axis::Transverse && s.end == end)?;
-                Some(integrated.gained_m_s(own, at.time_s) - v0_m_s)
-            };
-            let struck_m_s = events.slap_down.and_then(|at| read_m_s(End::Second, at));
-            let left_m_s = read_m_s(End::First, found.separation)?;
-            Some(Answer::bare(struck_m_s.map(f64::abs), Some(left_m_s / v0_m_s)))
-        }
-        Some(ReconstructionRung::Planar) => moved(&plain()?, &events, &setup).map(of_motion),
-        Some(ReconstructionRung::Flight) => moved(&flight, &events, &setup).map(of_motion),
-        Some(ReconstructionRung::Joint) => {
-            let ratio = moved(&flight, &events, &setup)?.impulse_ratio;
-            let u = file.tolerances.friction / 2.0 * ratio.abs();
-            let basis = fit::FitData {
-                signals: &signals,
-                flight: &flight,
-                events: &events,
-                setup: &setup,
-                friction: Some(AssumedFriction { ratio, u }),
-                specs: &file.channels,
-                tolerances: file.tolerances,
-                inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
-                rests: &[],
-                fall_s: None,
-                rotations: &[],
-                stood_in: None,
-                second: None,
-            };
-            let said = fit::ladder(&basis, None, &moved)?.choice.candidates;
-            let of_joint = |c: &ReconstructionCandidate| Answer { speed: c.speed, k: c.k };
-            said.iter().find(|c| c.rung == ReconstructionRung::Joint).map(of_joint)
-        }
+        flight = motion::mean_of_flight(&integrated, &flight, &window, setup.cog_m)?;
     }
+    let moved = motion::outcome(&integrated, &flight, &events, &setup)?;
+    let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
+    Some(Answer::bare(speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s)))
 }
 
 /// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time
 /// and no answer.
-pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
+pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
     let drops: Vec<FiledDrop> =
         CLASSES.iter().flat_map(|class| filed(class, request, folder.path())).collect();
@@ -171,9 +95,9 @@ pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     for drop in &drops {
         // Each way has its turn on a file, after one that nobody times.
         black_box(read(drop));
-        worked[0].timed(1, || read(drop).map(|_| Answer::default()));
+        worked[0].timed(|| read(drop).map(|_| Answer::default()));
         for (worked, (_, way)) in worked[1..].iter_mut().zip(&WORKINGS) {
-            worked.timed(1, || read(drop).and_then(|(recording, file)| way(&recording, &file)));
+            worked.timed(|| read(drop).and_then(|(recording, file)| way(&recording, &file)));
         }
     }
     worked.extend(in_python(&drops, folder.path()));
@@ -231,5 +155,5 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     (worked.answers.len() == drops.len()).then_some(worked)
 }
 
-/// The families of what is worked from file to answer, and of the prediction for itself.
-pub const WAYS: [&str; 3] = [SPEED.family, K.family, prediction::FAMILY];
+/// The families of what is worked from file to answer.
+pub const WAYS: [&str; 2] = [SPEED.family, K.family];

@@ -4,4 +4,4 @@ mod synthetic;
 mod trial;
 
 pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
-pub use trial::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
+pub use trial::{TRIAL_NAMES, trial_files, trial_outcome};

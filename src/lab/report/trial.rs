@@ -10,12 +10,6 @@ use crate::report::{ReportError, as_html, as_markdown, as_text, json};
 pub const TRIAL_NAMES: [&str; 5] =
     ["validation.html", "validation.json", "validation.md", "speed.svg", "failures.svg"];
 
-/// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves
-/// them out.
-pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
-    as_markdown::markdown(&document::document(trial), folder)
-}
-
 /// What a terminal shows at the end: the limits, and whether the program is accepted.
 pub fn trial_outcome(trial: &Trial, width: usize) -> String {
     as_text::text(&document::verdict(trial), width)
@@ -27,10 +21,10 @@ pub fn trial_outcome(trial: &Trial, width: usize) -> String {
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let pictures = [pictures::ways(trial), pictures::failures(trial)];
-    let page = as_html::page(&document::document(trial), &pictures).into_bytes();
+    let document = document::document(trial);
+    let page = as_html::page(&document, &pictures).into_bytes();
     let [speed, failures] = pictures.map(|picture| picture.svg.into_bytes());
-    let extract = trial_markdown(trial, Some("")).into_bytes();
-    let bytes = [page, json::pretty(trial)?, extract, speed, failures];
+    let bytes = [page, json::pretty(trial)?, as_markdown::markdown(&document).into_bytes(), speed, failures];
     Ok(TRIAL_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
 }
 
@@ -49,13 +43,10 @@ mod tests {
             method: method.into(),
             class: ALL_CLASSES.into(),
             is_default,
-            is_on_front: is_default,
             median_error: error,
             p95_error: 2.0 * error,
             error_unit: "%".into(),
             time_ns,
-            time_quartiles_ns: [0.9 * time_ns, 1.1 * time_ns],
-            time_per: "file".into(),
             cases: 3,
             matters: 1.0,
             ..TrialPoint::default()

@@ -48,10 +48,8 @@ fn decades(times: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 /// Every way of working over all classes, with a bar from its best class to its worst.
 pub(super) fn ways(trial: &Trial) -> Picture {
     let caption = "Time from file to answer, each way timed whole on the same files; below and left is \
-                   better. Mark: 95th percentile of the error over all classes of drops, hollow where \
-                   another way is as fast and as accurate; ring: what the program takes. Bar: from the best \
-                   class to the worst. The rungs of the prediction are given the true k, and timed by \
-                   themselves.";
+                   better. Mark: 95th percentile of the error over all classes of drops; ring: what the \
+                   program takes. Bar: from the best class to the worst.";
     let families = WAYS.map(|family| pooled(trial, family).collect::<Vec<_>>());
     let panels: Vec<Panel> = families.iter().filter_map(|ways| ways_panel(trial, ways)).collect();
     let nothing = ("There is nothing to show: no way was tried.", "No way was tried.");
@@ -96,7 +94,6 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     };
     let lines = ways.iter().enumerate().map(bar);
     let mark = |(index, way): (usize, &&TrialPoint)| Points {
-        is_hollow: !way.is_on_front,
         is_named_there: true,
         ..look(index, vec![at(way)]).named(&way.method[..])
     };
