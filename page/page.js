@@ -296,10 +296,9 @@ async function analysed() {
     const question = { op: "report", name: state.recording.name, cask: state.text };
     const work = forRecording.ask(question, state.recording);
     const answer = await during("progress", `Analysing ${question.name} …`, work);
-    let at = 0;
     state.analysed = question.cask;
     toldStale();
-    state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
+    state.files = answer.header.names.map((name, i) => [name, answer.bodies[i]]);
     const [[, report], ...others] = state.files;
     byId("files").replaceChildren(...others.map(([name, bytes]) => {
       const button = element("button", { type: "button" }, `Save ${name}`);
