@@ -34,12 +34,12 @@ class Drawing {
     this.length = cask.length_m;
     this.step = 10 ** Math.floor(Math.log10(this.length / 200));
     const focused = document.activeElement?.dataset?.channel;
-    const waiting = channels.filter((channel) => channel.end !== "none" && !isStated(channel.position_m));
+    const waiting = channels.filter((channel) => isOfMotion(channel) && !isStated(channel.position_m));
     const isHere = (one, other) => Math.abs(one.position_m - other.position_m) < this.length / 40;
     const handles = channels.map((channel, i) => {
       // Sensors at one place stand below each other.
       const beside = channels.slice(0, i).filter((other) => isStated(channel.position_m) && isHere(channel, other));
-      return channel.end === "none" ? "" : this.handle(channel, i, waiting.indexOf(channel), beside.length);
+      return isOfMotion(channel) ? this.handle(channel, i, waiting.indexOf(channel), beside.length) : "";
     });
     const words = waiting.length ? [drawn("text", { x: 60, y: 42, "font-size": 24 }, "Drag to its place:")] : [];
     this.above.replaceChildren(...words, ...handles);
@@ -84,7 +84,7 @@ class Drawing {
   }
 
   isDrawn(channel) {
-    return ["name", "end", "axis", "position_m"].every((key) => isStated(channel[key])) && channel.end !== "none";
+    return ["name", "end", "axis", "position_m"].every((key) => isStated(channel[key])) && isOfMotion(channel);
   }
 
   drag(handle, i, event) {

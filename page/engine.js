@@ -14,7 +14,6 @@ class Refusal extends Error {
 /** Runs in the worker, of which it is the whole text. Each question has an instance, and so a memory, of its own. */
 function atWork() {
   let engine;
-  const refused = (problem, mend) => ({ header: { error: { text: `${problem}\n  help: ${mend}`, problem, mend } } });
 
   function asked(header, recording) {
     const { memory, alloc, call } = new WebAssembly.Instance(engine).exports;
@@ -25,37 +24,28 @@ function atWork() {
     const block = new Uint8Array(memory.buffer, at, length);
     block.set(question, 4);
     block.set(recording, 4 + question.length);
-    let place = call(at, length) >>> 0;
-    const next = () => {
-      const size = new DataView(memory.buffer).getUint32(place, true);
-      const bytes = new Uint8Array(memory.buffer, place + 4, size).slice();
-      place += 4 + size;
-      return bytes;
-    };
-    return { header: JSON.parse(new TextDecoder().decode(next())), body: next() };
+    const place = call(at, length) >>> 0;
+    const word = (from) => new DataView(memory.buffer).getUint32(from, true);
+    const part = (_, i) => new Uint8Array(memory.buffer, word(place + 4 + 8 * i), word(place + 8 + 8 * i)).slice();
+    const [head, ...bodies] = Array.from({ length: word(place) }, part);
+    return { header: JSON.parse(new TextDecoder().decode(head)), bodies };
   }
 
-  async function answered({ header, recording }) {
-    let bytes = new Uint8Array();
+  function answered({ header, bytes }) {
     try {
-      if (recording) bytes = new Uint8Array(await recording.arrayBuffer());
-    } catch {
-      return refused(`${header.name}: the browser can no longer read the file`,
-        "it was moved, changed or is too large for the memory that is free; choose it again");
-    }
-    try {
-      return asked(header, bytes);
+      return asked(header, new Uint8Array(bytes));
     } catch (fault) {
-      return refused(`${header.name || "the cask file"}: the program ended without an answer (${fault.message})`,
-        "a large recording may need more memory than a page gets (4 GB): cut it to some seconds around the drop, "
-        + "or analyse it by the dropcheck command; a small one that does this is a fault of dropcheck to report");
+      const problem = `${header.name || "the cask file"}: the program ended without an answer (${fault.message})`;
+      const mend = "a large recording may need more memory than a page gets (4 GB): cut it to some seconds around the "
+        + "drop, or analyse it by the dropcheck command; a small one that does this is a fault of dropcheck to report";
+      return { header: { error: { text: `${problem}\n  help: ${mend}`, problem, mend } } };
     }
   }
 
-  self.onmessage = async ({ data }) => {
+  self.onmessage = ({ data }) => {
     if (data.engine) { engine = data.engine; return; }
-    const { header, body } = await answered(data);
-    self.postMessage({ id: data.id, header, body }, body ? [body.buffer] : []);
+    const { header, bodies = [] } = answered(data);
+    self.postMessage({ id: data.id, header, bodies }, bodies.map((body) => body.buffer));
   };
 }
 
@@ -71,8 +61,7 @@ const engine = compiled();
 /** A worker that is asked one question after the other. */
 class Asker {
   constructor() {
-    this.waiting = new Map();
-    this.number = 0;
+    Object.assign(this, { waiting: new Map(), number: 0 });
     this.start();
   }
 
@@ -96,22 +85,26 @@ class Asker {
     this.start();
   }
 
-  /** The answer's header and body; `recording` is a Blob or nothing. */
+  /** The answer's header and bodies; `recording` is a Blob or nothing. */
   async ask(header, recording = null) {
-    if (recording && recording.size > LARGEST_BYTES) {
-      const problem = `${header.name}: ${(recording.size / 1e9).toFixed(1)} GB are more than a page can hold (1 GB)`;
-      const mend = "cut it to some seconds around the drop, or analyse it by the dropcheck command";
-      throw new Refusal({ text: `${problem}\n  help: ${mend}`, problem, mend });
+    const refuse = (problem, mend) => { throw new Refusal({ text: `${problem}\n  help: ${mend}`, problem, mend }); };
+    if (recording?.size > LARGEST_BYTES) {
+      refuse(`${header.name}: ${(recording.size / 1e9).toFixed(1)} GB are more than a page can hold (1 GB)`,
+        "cut it to some seconds around the drop, or analyse it by the dropcheck command");
     }
+    // Read here: WebKit lets no worker of a page on a disk do it.
+    const bytes = await (recording ?? new Blob()).arrayBuffer().catch(() =>
+      refuse(`${header.name}: the browser can no longer read the file`,
+        "it was moved, changed or is too large for the memory that is free; choose it again"));
     const worker = await this.worker;
     const id = this.number++;
     const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
-    worker.postMessage({ id, header, recording });
+    worker.postMessage({ id, header, bytes }, [bytes]);
     return answer;
   }
 
   async text(header, recording) {
-    return new TextDecoder().decode((await this.ask(header, recording)).body);
+    return new TextDecoder().decode((await this.ask(header, recording)).bodies[0]);
   }
 
   async json(header, recording) {

@@ -30,7 +30,7 @@ class Form {
     const look = (table, at, stated) => {
       for (const key of this.tables.get(table).keys.filter((key) => key.asked || key.name in stated)) {
         const isSpared = (at === "drop" && key.name === "height_m" && isStated(stated.impact_velocity_m_s))
-          || (stated.end === "none" && ["axis", "position_m"].includes(key.name));
+          || (stated.end === "none" && key.name === "axis") || (!isOfMotion(stated) && key.name === "position_m");
         if (!isStated(stated[key.name]) && !isSpared) paths.push(`${at}.${key.name}`);
       }
     };
@@ -75,9 +75,11 @@ class Form {
     }
     for (const [i, channel] of this.channels().entries()) {
       const name = isStated(channel.name) ? channel.name : `Channel ${i + 1}`;
-      byId(`legend-${i}`).textContent = name;
+      byId(`legend-${i}`).textContent = [name, shown(channel.source)].filter(Boolean).join(": ");
       byId(`remove-${i}`).setAttribute("aria-label", `Take ${name} out`);
     }
+    const left = this.sources.filter((source) => !this.channels().some((channel) => channel.source === source));
+    byId("left").textContent = left.length ? `Not among them: ${left.slice(0, 9).join(", ")}` : "";
   }
 
   /** Puts words under a field, or takes them away; whether there is such a field. */
@@ -106,7 +108,7 @@ class Form {
     this.place.replaceChildren(
       element("datalist", { id: "sources" }, ...this.sources.map((value) => element("option", { value }))),
       element("div", { class: "pair" }, this.group("cask", "Cask", "cask"), this.group("drop", "Drop", "drop")),
-      element("h3", {}, "Sensors"), ...channels, element("p", {}, add),
+      element("h3", {}, "Sensors"), ...channels, element("p", {}, add, " ", element("span", { id: "left" })),
       element("h3", {}, "What may be stated besides"), ...others.map((table) => this.folded(table)));
     for (const id of open) byId(id)?.setAttribute("open", "");
   }
@@ -144,19 +146,20 @@ class Form {
   field(table, key, path) {
     const id = `field-${path}`;
     const { label, unit } = named(table, key.name);
-    const choices = CHOICES[key.takes === "flag" ? "flag" : key.name];
+    const choices = choicesOf(key);
     const attributes = { id, "aria-describedby": `${id}-hint ${id}-error`, autocomplete: "off", spellcheck: "false",
       inputmode: key.takes === "number" ? "decimal" : null, list: key.name === "source" ? "sources" : null };
-    const none = key.asked ? "choose" : "left out";
+    const none = key.asked ? "choose" : `default: ${choices?.[key.default.replace(/[`"]/g, "")]}`;
     const input = choices
       ? element("select", { id, "aria-describedby": attributes["aria-describedby"] },
         element("option", { value: "" }, none),
         ...Object.entries(choices).map(([value, words]) => element("option", { value }, words)))
       : element("input", { type: "text", ...attributes });
     const error = element("p", { class: "error", id: `${id}-error` });
+    const said = choices && (key.asked || key.takes === "number") ? "" : hint(key);
     const box = element("div", { class: "field" },
       element("label", { for: id }, label, unit ? element("span", { class: "soft" }, ` in ${unit}`) : null),
-      input, error, element("p", { class: "hint", id: `${id}-hint` }, choices && key.asked ? "" : hint(key)));
+      input, error, element("p", { class: "hint", id: `${id}-hint` }, said));
     const field = { input, error, box, isWrong: false };
     const taken = (isDone) => {
       try {

@@ -149,6 +149,8 @@ async function opened(file) {
   await inTurn(shownAnew);
 }
 
+/** Keys that a channel has no more with such a word, be it for its end or its axis. */
+const WITHOUT = { '"none"': ["axis", "position_m", "offset_m", "polarity"], '"rate"': ["position_m", "offset_m"] };
 let pending = 0;
 
 /** A change that a field, a handle or a button asks for; of some that follow each other the last is shown. */
@@ -163,9 +165,8 @@ const changed = (path, value) => (pending += 1) && inTurn(async () => {
     const lines = keys.map((key) => `${key.name} = ${key.takes === "number" ? "nan" : '"FILL IN"'}\n`);
     state.text = `${state.text.trimEnd()}\n\n[[channel]]\n${lines.join("")}`;
   } else await edit(path, value);
-  if (/^channel\.\d+\.end$/.test(path) && value === '"none"') {
-    for (const key of ["axis", "position_m", "offset_m", "polarity"]) await edit(path.replace("end", key), null);
-  }
+  const place = /^channel\.\d+\.(?=(end|axis)$)/.exec(path)?.[0];
+  for (const key of (place && WITHOUT[value]) ?? []) await edit(place + key, null);
   if (!pending) await shownAnew();
 });
 
@@ -296,10 +297,9 @@ async function analysed() {
     const question = { op: "report", name: state.recording.name, cask: state.text };
     const work = forRecording.ask(question, state.recording);
     const answer = await during("progress", `Analysing ${question.name} …`, work);
-    let at = 0;
     state.analysed = question.cask;
     toldStale();
-    state.files = answer.header.sizes.map(([name, size]) => [name, answer.body.subarray(at, at += size)]);
+    state.files = answer.header.names.map((name, i) => [name, answer.bodies[i]]);
     const [[, report], ...others] = state.files;
     byId("files").replaceChildren(...others.map(([name, bytes]) => {
       const button = element("button", { type: "button" }, `Save ${name}`);

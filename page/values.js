@@ -7,17 +7,20 @@ const UNITS = [["kg_m2", "kg m²"], ["m_s2", "m/s²"], ["deg_s", "°/s"], ["rad_
 
 /** Names that the key alone would tell badly. */
 const LABELS = { cog_m: "Centre of gravity", inertia_kg_m2: "Moment of inertia", cfc: "Class (CFC)",
-  polarity: "Sign", "cask.height_m": "Height of the section", "cask.width_m": "Width of the section",
+  "cask.height_m": "Height of the section", "cask.width_m": "Width of the section",
   "drop.height_m": "Drop height", "drop.angle_deg": "Drop angle", position_m: "Position", k: "k" };
 
-/** Keys that take one of some words. */
-const CHOICES = {
-  end: { first: "first: low, touches first", second: "second: slaps down", none: "none: not of the motion" },
-  axis: { transverse: "transverse: across the cask", axial: "axial: along the cask" },
-  polarity: { 1: "+ as the arrow shows", "-1": "− the other way round" },
-  coupling: { dc: "DC", ac: "AC" },
-  flag: { true: "made", false: "left out" },
-};
+/** The words that a key takes and what they mean, as its row has them; null where it takes others. */
+function choicesOf({ name, takes, remark, default: otherwise }) {
+  if (takes === "flag") return { true: "made", false: "left out" };
+  if (name === "polarity") return { 1: "+ as the arrow shows", "-1": "− the other way round" };
+  const words = [...`${otherwise}, ${remark}`.matchAll(/"(\w+)"(?: \((.*?)\)|: (.*))?/g)];
+  if (takes !== "text" || words.length < 2) return null;
+  return Object.fromEntries(words.map(([, word, ...meant]) => [word, [word, ...meant.filter(Boolean)].join(": ")]));
+}
+
+/** Whether a channel is an accelerometer, which has a place on the cask. */
+const isOfMotion = ({ end, axis }) => end !== "none" && axis !== "rate";
 
 /** Keys that are shown first; the others wait behind "More". */
 const FIRST = {
@@ -26,7 +29,9 @@ const FIRST = {
   channel: ["name", "end", "axis", "position_m", "polarity", "source", "unit"],
 };
 
-const DECIMAL_SIGN = new Intl.NumberFormat(navigator.language).format(1.5).charAt(1);
+const DECIMAL_SIGN = (() => {
+  try { return new Intl.NumberFormat(navigator.language).format(1.5).charAt(1); } catch { return "."; }
+})();
 
 /** `mass_kg` to "Mass" and "kg". */
 function named(table, key) {
@@ -83,8 +88,7 @@ function literal({ name, takes }, text) {
   const typed = text.trim();
   if (typed === "") return null;
   if (takes === "number") return numberOf(typed);
-  if (takes === "flag" || takes === "date" || takes === "texts") return typed;
-  if (takes === "other" && typed.startsWith("{")) return typed;
+  if (["flag", "date", "texts"].includes(takes) || (takes === "other" && typed.startsWith("{"))) return typed;
   if (name === "friction") {
     try { return numberOf(typed); } catch { /* A word. */ }
   }

@@ -1,8 +1,8 @@
-//! The calls of the page `dropcheck.html`: a block of bytes with what is asked to a block with the answer.
+//! The calls of the page `dropcheck.html`: a block of bytes with what is asked to the parts of the answer.
 //!
-//! A block is the length of a header (four bytes, the lowest first), the header (JSON), and what follows it: in
-//! a question the recording, in an answer the length of a body and the body. The module imports nothing: it can
-//! reach no file and no network.
+//! A question is the length of a header (four bytes, the lowest first), the header (JSON) and the recording; an
+//! answer the number of its parts, then where each lies and how long it is: a header, and what the page shows or
+//! saves. The module imports nothing: it can reach no file and no network.
 
 mod cask_text;
 mod question;
@@ -27,9 +27,12 @@ pub unsafe extern "C" fn call(block: *mut u8, length: usize) -> *mut u8 {
         drop(block);
         question.answered()
     });
-    let Answer { header, body } = answer.unwrap_or_else(|refusal| question::refused(&refusal));
-    let header = header.to_string();
-    let length = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX).to_le_bytes();
-    let block = [&length(header.as_bytes()), header.as_bytes(), &length(&body), &body].concat();
-    Box::leak(block.into_boxed_slice()).as_mut_ptr()
+    let Answer { header, bodies } = answer.unwrap_or_else(|refusal| question::refused(&refusal));
+    let parts = std::iter::once(header.to_string().into_bytes()).chain(bodies);
+    let parts: Vec<&[u8]> = parts.map(|part| &*part.leak()).collect();
+    let places = parts.iter().flat_map(|part| [part.as_ptr().addr(), part.len()]);
+    let words = std::iter::once(parts.len()).chain(places);
+    let table: Vec<u8> =
+        words.flat_map(|word| u32::try_from(word).unwrap_or(u32::MAX).to_le_bytes()).collect();
+    table.leak().as_mut_ptr()
 }

@@ -45,12 +45,12 @@ pub struct Answer {
     /// Whether it is one, with what the page reads itself.
     pub header: Value,
     /// What the page shows or saves.
-    pub body: Vec<u8>,
+    pub bodies: Vec<Vec<u8>>,
 }
 
 impl From<Vec<u8>> for Answer {
     fn from(body: Vec<u8>) -> Self {
-        Self { header: json!({ "ok": true }), body }
+        Self { header: json!({ "ok": true }), bodies: vec![body] }
     }
 }
 
@@ -129,12 +129,10 @@ impl Question {
         Ok(dropcheck::analyze(&recording, &file))
     }
 
-    /// Every file of the report, one after the other.
+    /// Every file of the report.
     fn report(&self) -> Result<Answer, Report> {
-        let files = report::files(&self.analysis()?)?;
-        let sizes: Vec<Value> = files.iter().map(|(name, bytes)| json!([name, bytes.len()])).collect();
-        let body = files.into_iter().flat_map(|(_, bytes)| bytes).collect();
-        Ok(Answer { header: json!({ "ok": true, "sizes": sizes }), body })
+        let (names, bodies): (Vec<String>, _) = report::files(&self.analysis()?)?.into_iter().unzip();
+        Ok(Answer { header: json!({ "ok": true, "names": names }), bodies })
     }
 }
 
@@ -156,5 +154,5 @@ pub fn refused(refusal: &Report) -> Answer {
         "line": wrong_line.map(|wrong| wrong.line),
         "key": wrong_line.and_then(|wrong| cask_text::key_at(wrong.text.inner(), wrong.line)),
     });
-    Answer { header: json!({ "error": error }), body: Vec::new() }
+    Answer { header: json!({ "error": error }), bodies: Vec::new() }
 }

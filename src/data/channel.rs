@@ -84,6 +84,14 @@ impl Samples {
         }
     }
 
+    /// Gives back the memory that they do not need.
+    pub(crate) fn shrink(&mut self) {
+        match self {
+            Self::F32(v) => v.shrink_to_fit(),
+            Self::F64(v) => v.shrink_to_fit(),
+        }
+    }
+
     /// Keeps the first `count` of them.
     pub(crate) fn truncate(&mut self, count: usize) {
         match self {

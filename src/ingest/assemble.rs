@@ -97,7 +97,7 @@ fn has_numbers(spec: &ChannelSpec, raw: &RawChannel) -> Result<(), Refusal> {
 
 fn channel(
     spec: &ChannelSpec,
-    raw: RawChannel,
+    mut raw: RawChannel,
     scale: UnitScale,
     first_s: f64,
     issues: &mut Vec<Finding>,
@@ -116,6 +116,7 @@ fn channel(
              `sample_rate_hz` in this channel of the cask file",
         ));
     }
+    raw.uniform.samples.shrink();
     issues.extend(scale.contradiction.clone().map(|found| found.on(&spec.name)));
     issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
     Ok(Channel {

@@ -73,9 +73,13 @@ pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
         head.get(*at..).is_some_and(|from| from.starts_with(mark))
     };
     let found = MARKS.iter().find(has_mark).map(|(_, _, what, mend)| (*what, *mend));
-    found
+    let found = found
         .or_else(|| is_matlab_4(head).then_some(("a MATLAB file of version 4", MATLAB)))
-        .or_else(|| sheet(head))
+        .or_else(|| sheet(head));
+    // Who has a page alone has no shell.
+    found.map(|(what, mend)| {
+        (what, if cfg!(feature = "native") || !mend.contains("pip install") { mend } else { EXPORT })
+    })
 }
 
 /// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length

@@ -123,7 +123,7 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
     }
     // Zeros behind a short stretch only make the lines of its spectrum denser.
     force.resize(count.max(512), 0.0);
-    let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
+    let (frequency_hz, size) = magnitude(force.into_iter(), signal.sample_rate_hz);
     let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
     Some(BandContent {
         in_band: (band.iter().map(|m| m * m).sum::<f64>() / as_f64(band.len().max(1))).sqrt(),

@@ -19,8 +19,7 @@ pub fn other_curve(channel: &Channel, events: &Events) -> Option<OtherCurve> {
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     let mean = numbers().sum::<f64>() / numbers().count() as f64;
     let about_mean = |value: &f64| if value.is_finite() { value - mean } else { 0.0 };
-    let swings: Vec<f64> = values.iter().map(about_mean).collect();
-    let (frequency_hz, magnitude) = magnitude(&swings, channel.sample_rate_hz);
+    let (frequency_hz, magnitude) = magnitude(values.iter().map(about_mean), channel.sample_rate_hz);
     Some(OtherCurve {
         channel: channel.name.clone(),
         unit: channel.unit.clone(),

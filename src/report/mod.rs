@@ -105,7 +105,7 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
         return (Vec::new(), Vec::new());
     };
     let sample_rate_hz = as_f64(curve.time_s.len().max(2) - 1) / (last_s - first_s);
-    magnitude(&curve.raw_m_s2, sample_rate_hz)
+    magnitude(curve.raw_m_s2.iter().copied(), sample_rate_hz)
 }
 
 /// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips

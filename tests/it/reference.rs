@@ -248,7 +248,7 @@ fn spectra_agree_with_the_integral() {
             false if t <= 0.5 => 500.0 * (-40.0 * t).exp() * (TAU * 60.0 * t).sin(),
             _ => 0.0,
         });
-        let (frequencies_hz, magnitudes) = magnitude(&signal, rate_hz);
+        let (frequencies_hz, magnitudes) = magnitude(signal.iter().copied(), rate_hz);
         let frequency_hz = number(case, "/frequency_hz").expect("a frequency");
         let expected = number(case, "/magnitude").expect("a magnitude");
         let bin = frequencies_hz.iter().position(|f| (f - frequency_hz).abs() < 1e-6).expect("a bin");

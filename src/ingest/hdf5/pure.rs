@@ -219,8 +219,7 @@ impl InMemory {
 
     fn numbers(&mut self, path: &str, slab: Slab) -> Result<Numbers, Vec<Bytes>> {
         let dataset = self.file.dataset(path).map_err(words)?;
-        let message = dataset.raw_datatype().map_err(words)?;
-        let dtype = type_of(&message)?;
+        let dtype = type_of(&dataset.raw_datatype().map_err(words)?)?;
         let sizes: Option<Vec<usize>> =
             dataset.shape().iter().map(|size| usize::try_from(*size).ok()).collect();
         let (rows, columns) = match sizes.as_deref() {
@@ -228,7 +227,7 @@ impl InMemory {
             Some([rows, columns]) => (*rows, *columns),
             _ => return Err(beyond("a dataset of more than two dimensions")),
         };
-        let number = NumberIn::of(&dtype, &message).ok_or_else(|| beyond("values that are no numbers"))?;
+        let number = NumberIn::of(&dtype).ok_or_else(|| beyond("values that are no numbers"))?;
         let (from, step, count) = match slab {
             Slab::Whole => (0, 1, rows.saturating_mul(columns)),
             Slab::Row(row) => (row.saturating_mul(columns), 1, columns),

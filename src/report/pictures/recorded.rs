@@ -14,8 +14,8 @@ use std::ops::Range;
 const THINNED_BYTES: usize = 11;
 const EVEN_BYTES: usize = 6;
 
-/// A longer record has the spectrum of a part: the transform of all would take gigabytes.
-const MOST_TRANSFORMED: usize = 1 << 20;
+/// A longer record has the spectrum of a part: the transform of all would take more than to read it.
+const MOST_TRANSFORMED: usize = 1 << 18;
 /// The largest value of each such step is drawn.
 const STEPS_A_DECADE: f64 = 80.0;
 
@@ -93,8 +93,8 @@ fn spectrum(channel: &Channel, look: &ChannelLook, name: &str, title: &str) -> P
         stretch_words(channel, &part)
     );
     let off = |sample: f64| if is_number(sample - look.level) { sample - look.level } else { 0.0 };
-    let values: Vec<f64> = part.map(|i| off(channel.samples.get(i))).collect();
-    let (frequency_hz, magnitude) = magnitude(&values, channel.sample_rate_hz);
+    let values = part.map(|i| off(channel.samples.get(i)));
+    let (frequency_hz, magnitude) = magnitude(values, channel.sample_rate_hz);
     let mut points: Vec<(f64, f64)> = Vec::new();
     let step = |frequency_hz: f64| (frequency_hz.log10() * STEPS_A_DECADE).floor();
     for (frequency_hz, magnitude) in frequency_hz.into_iter().zip(magnitude).skip(1) {

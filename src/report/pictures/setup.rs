@@ -14,6 +14,8 @@ const HEIGHT: f64 = 640.0;
 /// A thin rod is drawn as thick as this share of its length.
 const ROD: f64 = 0.01;
 const ARROW: f64 = 70.0;
+/// Half of what the words of the first end take, which a flat cask has at the edge.
+const HALF_LABEL: f64 = 170.0;
 const PAPER: Colour = Colour(245, 247, 249);
 
 /// Places on the cask, in metres from L's lower corner along the axis and across it, to those of the drawing.
@@ -57,7 +59,8 @@ pub(in super::super) fn picture(file: &CaskFile) -> Picture {
     svg.area(&corners[..4], PAPER, 1.0);
     svg.line(&Curve::new(INK, corners.to_vec()));
     let angle = plain(drop.angle_rad.to_degrees(), 4);
-    svg.word(&format!("first end, L, {angle}° to the target"), (left, ground + 26.0), Anchor::Middle);
+    let first = format!("first end, L, {angle}° to the target");
+    svg.word(&first, (left.max(HALF_LABEL), ground + 26.0), Anchor::Middle);
     let second = place.of(cask.length_m, section_m);
     svg.word("second end, R", (second.0, second.1 - 30.0), Anchor::Middle);
     let cog = place.of(cask.cog_m, section_m / 2.0);

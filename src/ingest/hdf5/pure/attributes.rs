@@ -65,12 +65,10 @@ pub(super) fn value(
         }
         _ => {
             // Named values are numbers, of the type that stands behind their size.
-            let named = matches!(dtype.kind, ValueKind::Named).then(|| &message[8..]);
-            let number = named.map_or(Ok(NumberIn::of(&dtype, message)), |base| {
-                type_of(base).map(|dtype| NumberIn::of(&dtype, base))
-            })?;
+            let named = matches!(dtype.kind, ValueKind::Named).then(|| type_of(&message[8..])).transpose()?;
             let numbers = |number: NumberIn| joined(each().map(|one| number.value(one)).collect());
-            number.map_or(AttributeValue::Other, |number| AttributeValue::Numbers(numbers(number)))
+            NumberIn::of(named.as_ref().unwrap_or(&dtype))
+                .map_or(AttributeValue::Other, |number| AttributeValue::Numbers(numbers(number)))
         }
     }))
 }

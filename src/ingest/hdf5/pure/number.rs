@@ -7,7 +7,7 @@ use super::words::beyond;
 /// The type that a message states.
 pub(super) fn type_of(message: &[u8]) -> Result<ValueType, Vec<Bytes>> {
     let dtype = of_message::of(message).ok_or_else(|| beyond("values of an unknown type"))?;
-    if matches!(dtype.kind, ValueKind::OddNumber) && !of_message::is_half(message) {
+    if matches!(dtype.kind, ValueKind::OddNumber) {
         return Err(beyond(&format!("numbers of an unusual kind, {} bytes each", dtype.bytes)));
     }
     Ok(dtype)
@@ -18,18 +18,16 @@ pub(super) fn type_of(message: &[u8]) -> Result<ValueType, Vec<Bytes>> {
 pub(super) struct NumberIn {
     number: NumberType,
     is_big_endian: bool,
-    is_half: bool,
 }
 
 impl NumberIn {
     /// `None` where the type is none of numbers.
-    pub(super) fn of(dtype: &ValueType, message: &[u8]) -> Option<Self> {
-        let is_big_endian = dtype.order == Order::Highest;
-        Some(Self { number: dtype.number()?, is_big_endian, is_half: of_message::is_half(message) })
+    pub(super) fn of(dtype: &ValueType) -> Option<Self> {
+        Some(Self { number: dtype.number()?, is_big_endian: dtype.order == Order::Highest })
     }
 
     pub(super) fn bytes(self) -> usize {
-        if self.is_half { 2 } else { self.number.bytes() }
+        self.number.bytes()
     }
 
     /// From its bytes.
@@ -41,25 +39,11 @@ impl NumberIn {
             bytes[..length].reverse();
         }
         let (unsigned, beside) = (u64::from_le_bytes(bytes), 64 - 8 * u32::try_from(length).unwrap_or(8));
-        let [low, high, ..] = bytes;
         match self.number {
-            NumberType::F32 if self.is_half => half(u16::from_le_bytes([low, high])),
             NumberType::F32 => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]).into(),
             NumberType::F64 => f64::from_bits(unsigned),
             NumberType::U8 | NumberType::U16 | NumberType::U32 | NumberType::U64 => unsigned as f64,
             _ => ((unsigned << beside).cast_signed() >> beside) as f64,
         }
     }
-}
-
-/// IEEE 754 binary16.
-fn half(bits: u16) -> f64 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023) / 1024.0);
-    let size = match exponent {
-        0 => fraction * 2_f64.powi(-14),
-        31 if fraction > 0.0 => f64::NAN,
-        31 => f64::INFINITY,
-        _ => (1.0 + fraction) * 2_f64.powi(exponent - 15),
-    };
-    if bits >> 15 == 0 { size } else { -size }
 }

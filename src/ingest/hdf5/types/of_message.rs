@@ -5,13 +5,10 @@ use crate::ingest::hdf5::answer::NumberType;
 use hdf5_reader::io::Cursor;
 use hdf5_reader::messages::datatype::parse_datatype_description;
 
-/// What stands behind the size of an IEEE 754 number of half, single and double precision: where its parts
-/// begin and how long they are, bits, and the bias of its exponent.
-const IEEE: [[u8; 12]; 3] = [
-    [0, 0, 16, 0, 10, 5, 0, 10, 15, 0, 0, 0],
-    [0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0],
-    [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0],
-];
+/// What stands behind the size of an IEEE 754 number of single and double precision: where its parts begin and
+/// how long they are, bits, and the bias of its exponent.
+const IEEE: [[u8; 12]; 2] =
+    [[0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0], [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0]];
 
 /// The type that a message states; `None` where it is damaged or unknown.
 pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
@@ -28,8 +25,8 @@ pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
             // The highest bit of the mantissa is not stored, the sign is the last bit, no VAX order.
             let is_ieee = flags & 0x70 == 0x20 && usize::from(more) + 1 == bytes.checked_mul(8)?;
             let kind = match IEEE.iter().position(|parts| is_ieee && rest.get(..12) == Some(parts)) {
-                Some(1) => ValueKind::Number(NumberType::F32),
-                Some(2) => ValueKind::Number(NumberType::F64),
+                Some(0) => ValueKind::Number(NumberType::F32),
+                Some(1) => ValueKind::Number(NumberType::F64),
                 _ => ValueKind::OddNumber,
             };
             known(kind, stated)
@@ -59,14 +56,6 @@ pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
         }
         _ => None,
     }
-}
-
-/// Whether a message states a number of half precision.
-pub(in crate::ingest) fn is_half(message: &[u8]) -> bool {
-    message.first().is_some_and(|class| class & 15 == 1)
-        && message.get(1).is_some_and(|flags| flags & 0x70 == 0x20)
-        && message.get(2) == Some(&15)
-        && message.get(8..20) == Some(&IEEE[0])
 }
 
 fn whole(bytes: usize, is_signed: bool) -> Option<ValueKind> {
