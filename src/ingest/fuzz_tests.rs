@@ -13,10 +13,11 @@ use tempfile::NamedTempFile;
 pub type Decoder = fn(&[u8]);
 
 /// Every decoder with its name.
-pub const TARGETS: [(&str, Decoder); 11] = [
+pub const TARGETS: [(&str, Decoder); 12] = [
     ("answer", answer),
     ("cask", |bytes| in_file(bytes, |path| drop(cask_file::parse(path)))),
     ("csv", table),
+    ("hdf5", datasets),
     ("json", mcap::fuzz_tests::json),
     ("mcap", messages),
     ("mme", channels),
@@ -62,6 +63,14 @@ fn table(bytes: &[u8]) {
     in_memory(bytes, |request| {
         let _ = csv::list(request);
         let _ = csv::read(request, &TABLE);
+    });
+}
+
+/// Bytes as a file that the library of the page takes apart.
+fn datasets(bytes: &[u8]) {
+    in_memory(bytes, |request| {
+        let _ = hdf5::list(request);
+        let _ = hdf5::read(request, &DATASETS);
     });
 }
 

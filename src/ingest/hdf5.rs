@@ -16,7 +16,7 @@ mod list;
 pub(super) mod names;
 mod packed;
 mod patience;
-#[cfg(any(not(feature = "native"), test))]
+#[cfg(any(not(feature = "native"), test, fuzzing))]
 mod pure;
 #[cfg_attr(not(feature = "native"), allow(dead_code, reason = "a page starts no process"))]
 mod room;

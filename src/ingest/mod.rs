@@ -177,12 +177,13 @@ pub fn list_within<'a>(
     let converted = foreign::converted(recording)?;
     let file = converted.as_ref().map_or(recording, |converted| (&converted.file).into());
     let request = ReadRequest { file, limits, progress };
-    let listing = match detect::format(file)? {
+    let format = detect::format(file)?;
+    let listing = rayon::scope(|_| match format {
         RecordingFormat::Mcap => mcap::list(request),
         RecordingFormat::Hdf5 => hdf5::list(request),
         RecordingFormat::Mme => mme::list(request),
         RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
-    };
+    });
     let mut listing = listing.map_err(|fault| fault.in_file(file.path, path))?;
     if let Some(converted) = converted {
         listing.recording = path.display().to_string();

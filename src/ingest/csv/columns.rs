@@ -82,6 +82,20 @@ impl<'a> Keep<'a> {
     pub(super) fn new(wanted: &'a Wanted, columns: Vec<HeldColumn>) -> Self {
         Self { wanted, columns, stamps: Stamps::default(), other_stamps: Stamps::default() }
     }
+
+    /// Takes over the rows of `parts`, in which the values of a slot lie at its `place`.
+    pub(super) fn extend(&mut self, parts: &[RowsPart], place: impl Fn(usize) -> usize + Sync) {
+        // A table of one piece is held as it is.
+        let may_keep_rule = parts.len() > 1;
+        // Most of the time the system hands out the memory, a page after the other.
+        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
+            |(slot, (column, is_time))| {
+                for part in parts {
+                    column.extend(&part.0[place(slot)], *is_time && may_keep_rule);
+                }
+            },
+        );
+    }
 }
 
 impl Sink for Keep<'_> {
@@ -96,16 +110,7 @@ impl Sink for Keep<'_> {
     }
 
     fn append(&mut self, parts: &mut [RowsPart]) {
-        // A table of one piece is held as it is.
-        let may_keep_rule = parts.len() > 1;
-        // Most of the time the system hands out the memory, a page after the other.
-        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
-            |(slot, (column, is_time))| {
-                for part in &*parts {
-                    column.extend(&part.0[slot], *is_time && may_keep_rule);
-                }
-            },
-        );
+        self.extend(parts, |slot| slot);
         parts.iter_mut().for_each(RowsPart::clear);
     }
 

@@ -20,6 +20,7 @@ use crate::data::{
 use crate::ingest::ReadRequest;
 use crate::ingest::time_base::TimeBaseError;
 use crate::numerics::as_f64;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// What is known of a column, or of its rows of one sensor, after one pass.
@@ -89,25 +90,28 @@ impl Sink for Survey<'_> {
     }
 
     fn append(&mut self, parts: &mut [RowsPart]) {
-        for part in &*parts {
-            for (ranges, values) in self.ranges.iter_mut().zip(&part.0) {
+        let (sensors, before) = (&self.sensors, self.rows);
+        let of_column = |(slot, ranges): (usize, &mut Vec<Range>)| {
+            let (mut rows, mut filled) = (before, 0);
+            for part in &*parts {
+                let values = &part.0[slot];
                 for (row, &value) in values.iter().enumerate().filter(|(_, value)| is_number(**value)) {
-                    self.filled = self.filled.max(self.rows + row + 1);
-                    let sensor = self.sensors.as_ref().map_or(Some(0), |(slot, sensors)| {
+                    filled = rows + row + 1;
+                    let sensor = sensors.as_ref().map_or(Some(0), |(slot, sensors)| {
                         sensors.iter().position(|own| own.total_cmp(&part.0[*slot][row]).is_eq())
                     });
                     if let Some(sensor) = sensor {
-                        ranges[sensor].take(self.rows + row, value);
+                        ranges[sensor].take(rows + row, value);
                     }
                 }
+                rows += values.len();
             }
-            self.rows += part.0.first().map_or(0, Vec::len);
-        }
-        let mut take = |part: &mut RowsPart| {
-            RowsPart(self.slots.iter().map(|&slot| std::mem::take(&mut part.0[slot])).collect())
+            filled
         };
-        let mut kept: Vec<RowsPart> = parts.iter_mut().map(&mut take).collect();
-        self.keep.append(&mut kept);
+        let filled = self.ranges.par_iter_mut().enumerate().map(of_column).max();
+        self.filled = self.filled.max(filled.unwrap_or_default());
+        self.rows += parts.iter().map(|part| part.0.first().map_or(0, Vec::len)).sum::<usize>();
+        self.keep.extend(parts, |slot| self.slots[slot]);
         parts.iter_mut().for_each(RowsPart::clear);
     }
 

@@ -13,7 +13,7 @@ use super::super::error::IngestError;
 use super::answer::{Object, Query, Reply, Slab, receive, send};
 use super::fault;
 use super::patience::{PATIENCE, ProcessEnd, Watched};
-#[cfg(any(not(feature = "native"), test))]
+#[cfg(any(not(feature = "native"), test, fuzzing))]
 use super::pure;
 use crate::data::Samples;
 use crate::ingest::refusal::Refusal;
@@ -220,7 +220,7 @@ struct Link {
 
 impl Link {
     fn opened(file: RecordingFile) -> Result<OpenedLink, Refusal> {
-        #[cfg(any(not(feature = "native"), test))]
+        #[cfg(any(not(feature = "native"), test, fuzzing))]
         if let Some(bytes) = file.in_memory {
             let (store, user_block) = pure::opened(bytes).map_err(|words| fault::of_words(&words))?;
             let (to, from) = pure::OnTheSpot::of(store);

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "native")]
 pub(super) mod of_library;
-#[cfg(any(not(feature = "native"), test))]
+#[cfg(any(not(feature = "native"), test, fuzzing))]
 pub(super) mod of_message;
 
 use super::answer::{Bytes, Dataset, NumberType, RecordField, Storage};
