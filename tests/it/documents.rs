@@ -27,10 +27,16 @@ fn written_pages() -> Vec<PathBuf> {
     pages
 }
 
-/// The pages beside fixtures, fuzzing, module and packages.
-fn pages_beside() -> [PathBuf; 4] {
-    ["fixtures/README.md", "tests/fuzz/README.md", "python/README.md", "packaging/RELEASING.md"]
-        .map(|name| root().join(name))
+/// The pages beside fixtures, finite elements, fuzzing, module and packages.
+fn pages_beside() -> [PathBuf; 5] {
+    [
+        "fixtures/README.md",
+        "fixtures/reference/fe/README.md",
+        "tests/fuzz/README.md",
+        "python/README.md",
+        "packaging/RELEASING.md",
+    ]
+    .map(|name| root().join(name))
 }
 
 fn text(page: &Path) -> String {
