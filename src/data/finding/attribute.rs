@@ -2,6 +2,7 @@
 
 use super::{IssueCode as Code, Severity};
 
+findings! {
 /// A finding about the unit, scale or offset of a dataset.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
@@ -13,18 +14,10 @@ pub enum AttributeFinding {
          the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete \
          that of the group where each dataset has its own"
     )]
-    GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool },
+    GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool }
+        => (Code::Scale, if *is_harmless { Note } else { Warning });
     /// Reading would refuse them: the problem and its remedy.
     #[error("{0}")]
-    Refused(String),
+    Refused(words: String) => (Code::Scale, Warning);
 }
-
-impl AttributeFinding {
-    /// The check that speaks, and its severity.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        match self {
-            Self::GroupDiffers { is_harmless: true, .. } => (Code::Scale, Severity::Note),
-            Self::GroupDiffers { .. } | Self::Refused(_) => (Code::Scale, Severity::Warning),
-        }
-    }
 }

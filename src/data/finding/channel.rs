@@ -43,6 +43,7 @@ pub enum RotationCause {
     Nothing,
 }
 
+findings! {
 /// A finding about one channel; its words follow the name of the channel.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
@@ -50,77 +51,79 @@ pub enum ChannelFinding {
     /// Samples stand at a limit; `takes_step` where more velocity is cut off than a result may miss.
     #[error("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more \
              head-room", .limit_m_s2 / G, cut_off(*.during, *.lost_m_s, *.takes_step))]
-    Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool },
+    Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
+        => (Code::Clipped, if *takes_step { Error } else { Warning });
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.
     #[error("lacks samples of the first impact (missing, or one value repeated), and with them its velocity \
              step: {}", if *.shows_slap_down { AS_FAR_AS_TOLD } else { "no slap-down tells what it was" })]
-    LostStep { shows_slap_down: bool },
+    LostStep { shows_slap_down: bool } => (Code::Gap, Error);
     /// Noise makes the velocity uncertain over a stretch of `length_s`.
     #[error("({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, \
              which is in the intervals: record more of the free fall, use a more sensitive range, or look \
              for a loose cable", .noise_m_s2 / G, 2.0 * .u_m_s, 1e3 * .length_s)]
-    Noise { noise_m_s2: f64, u_m_s: f64, length_s: f64, severity: Severity },
+    Noise { noise_m_s2: f64, u_m_s: f64, length_s: f64, severity: Severity } => (Code::Noise, *severity);
     /// The first sample is at this share of the first impact's peak.
     #[error("begins in the first impact, at {:.0} % of its peak: what came before is missing from the \
              velocity step; set the trigger at least 0.1 s before the impact", 100.0 * .share)]
-    BeginsInImpact { share: f64 },
+    BeginsInImpact { share: f64 } => (Code::BeginsLate, Error);
     /// The free fall in the record is too short for an offset.
     #[error("has {:.1} ms of free fall before the first impact: no offset could be taken from it. Record \
              from before the release", 1e3 * .length_s)]
-    ShortFreeFall { length_s: f64 },
+    ShortFreeFall { length_s: f64 } => (Code::BeginsLate, Warning);
     /// A free fall that is long enough holds too few samples for an offset.
     #[error("has {samples} sample(s) in the {:.0} ms of free fall before the first impact, at \
              {sample_rate_hz:.3} Hz: no offset could be taken from so few. Check the times and their unit, \
              or `sample_rate_hz`, and what is missing", 1e3 * .length_s)]
-    FewSamples { length_s: f64, samples: usize, sample_rate_hz: f64 },
+    FewSamples { length_s: f64, samples: usize, sample_rate_hz: f64 } => (Code::BeginsLate, Warning);
     /// The sensor would sit beyond the ends of the cask.
     #[error(
         "is placed at {position_m} m, off the cask, which reaches from 0 to {length_m} m: correct \
          `position_m`, measured along the axis from the first end"
     )]
-    OffCask { position_m: f64, length_m: f64 },
+    OffCask { position_m: f64, length_m: f64 } => (Code::SensorPosition, Warning);
     /// A sensor of the first end is no nearer to it than one of the second.
     #[error(
         "of the first end is placed at {position_m} m, no nearer to it than {second} of the second end at \
          {second_m} m: correct `end` or `position_m`"
     )]
-    NotNearer { position_m: f64, second: String, second_m: f64 },
+    NotNearer { position_m: f64, second: String, second_m: f64 } => (Code::SensorPosition, Warning);
     /// The sensor is nearer to the other end than to its own.
     #[error(
         "belongs to the {end} end and is placed at {position_m} m, nearer to the other end of {length_m} m: \
          correct `end` or `position_m`"
     )]
-    NearerOtherEnd { end: End, position_m: f64, length_m: f64 },
+    NearerOtherEnd { end: End, position_m: f64, length_m: f64 } => (Code::SensorPosition, Warning);
     /// Noise and peak are larger than another channel's by the factor between two units.
     #[error(
         "has {noise:.1} times the noise and {peak:.1} times the peak of {other}, the factor between {units}: \
          one of the two has the wrong `unit` or `sensitivity`"
     )]
-    UnitFactor { noise: f64, peak: f64, other: String, units: &'static str },
+    UnitFactor { noise: f64, peak: f64, other: String, units: &'static str } => (Code::Scale, Warning);
     /// The first pulse has too few samples; by `off_percent` the velocity step may be off.
     #[error("has {samples:.1} samples over the first pulse of {:.1} ms: its velocity step may be off by \
              {off_percent:.0} % and more; sample at {least_hz:.0} Hz or faster", 1e3 * .pulse_s)]
-    LowRate { samples: f64, pulse_s: f64, off_percent: f64, least_hz: f64 },
+    LowRate { samples: f64, pulse_s: f64, off_percent: f64, least_hz: f64 } => (Code::LowRate, Warning);
     /// This share of the pulse's spectrum is left just below half the sample rate.
     #[error("has {:.0} % of the pulse's spectrum left just below half its sample rate of {sample_rate_hz:.0} \
              Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an \
              anti-alias filter before the sampling, or sample faster", 100.0 * .share, 50.0 * .share)]
-    Aliasing { share: f64, sample_rate_hz: f64 },
+    Aliasing { share: f64, sample_rate_hz: f64 } => (Code::Aliasing, Warning);
     /// The other transverse channels and the closures speak against it, and it is left out: speed and k with
     /// it and without.
     #[error("disagrees with the other channels and is left out: without it everything is consistent, at {}; \
              with it there is {}; check its sensitivity, polarity, position and \
              cable", numbers(.without.0, .without.1), numbers(.with.0, .with.1))]
-    LeftOut { with: Numbers, without: Numbers },
+    LeftOut { with: Numbers, without: Numbers } => (Code::NotRigid, Warning);
     /// The samples of another channel.
     #[error("holds the samples of {of}, one for one, {}", if *.is_other_end { "which sits on the other end: \
         correct the `source` of one of the two" } else { "and is left out: one sensor counts once; correct \
                                                           its `source`, or delete its table" })]
-    Copied { of: String, is_other_end: bool },
+    Copied { of: String, is_other_end: bool }
+        => (Code::CopiedChannel, if *is_other_end { Error } else { Warning });
     /// Nothing but noise while other channels show the impacts.
     #[error("{} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one \
              or take the channel out of the cask file", how_still(*.farthest_m_s2))]
-    Dead { farthest_m_s2: f64 },
+    Dead { farthest_m_s2: f64 } => (Code::DeadChannel, Error);
     /// Mains hum with so many harmonics beside the fundamental; `left_m_s` of velocity is not taken off.
     #[error("hums with {:.2} g at {frequency_hz:.1} Hz{} before the impact: {}; check shields and earth \
              loops", .amplitude_m_s2 / G, with_harmonics(*.harmonics), hum_left(*.is_taken_off, *.left_m_s))]
@@ -131,168 +134,136 @@ pub enum ChannelFinding {
         is_taken_off: bool,
         left_m_s: f64,
         severity: Severity,
-    },
+    } => (Code::Hum, *severity);
     /// Single samples far off their neighbours.
     #[error(
         "has {count} spikes of one to five samples that no cask makes; left in, they move the velocity by up \
          to {held_m_s:.3} m/s: fasten or change the cable and its connectors"
     )]
-    Spikes { count: usize, held_m_s: f64, severity: Severity },
+    Spikes { count: usize, held_m_s: f64, severity: Severity } => (Code::Spikes, *severity);
     /// Stretches of samples that repeat to the bit.
     #[error(
         "repeats itself to the bit in {stretches} stretches of {samples} samples together: a connector or \
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value once"
     )]
-    Dropout { stretches: usize, samples: usize, most_m_s: f64 },
+    Dropout { stretches: usize, samples: usize, most_m_s: f64 } => (Code::Dropout, Warning);
     /// AC coupling that the cask file states, undone.
     #[error("is AC-coupled; its droop was put back with the stated time constant of {time_constant_s} s")]
-    AcStated { time_constant_s: f64 },
+    AcStated { time_constant_s: f64 } => (Code::AcCoupled, Note);
     /// A droop after the step like that of the other channels: AC coupling that nobody states.
     #[error("droops after its step in the proportion of the other channels, {:+.2} g after {step_m_s:+.1} \
              m/s, as behind a high-pass of {time_constant_s:.2} s: it is AC-coupled; set `coupling = \"ac\"` \
              and `time_constant_s` from the amplifier's data sheet, or record DC-coupled", .droop_m_s2 / G)]
-    AcUnstated { droop_m_s2: f64, step_m_s: f64, time_constant_s: f64 },
+    AcUnstated { droop_m_s2: f64, step_m_s: f64, time_constant_s: f64 } => (Code::AcCoupled, Warning);
     /// An offset in the free fall, taken off.
     #[error("reads {:+.2} g before the first impact, where free fall reads 0; that offset was taken \
              off{}", .mean_m_s2 / G, if *.is_large { "; check the sensor and its amplifier" } else { "" })]
-    OffsetTakenOff { mean_m_s2: f64, is_large: bool },
+    OffsetTakenOff { mean_m_s2: f64, is_large: bool }
+        => (Code::Offset, if *is_large { Warning } else { Note });
     /// An offset in the free fall, left in as the cask file asks.
     #[error("reads {:+.2} g before the first impact, where free fall reads 0; the cask file leaves that \
              offset in, which adds {adds_m_s:.2} m/s over {:.0} ms; set `offset = true` under \
              `[corrections]` to have it taken off", .mean_m_s2 / G, 1e3 * .over_s)]
-    OffsetLeftIn { mean_m_s2: f64, adds_m_s: f64, over_s: f64, severity: Severity },
+    OffsetLeftIn { mean_m_s2: f64, adds_m_s: f64, over_s: f64, severity: Severity }
+        => (Code::Offset, *severity);
     /// An offset that drifts in the free fall.
     #[error("drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} \
              m/s by the slap-down: let the amplifier warm up, check the cable and its insulation, or use \
              another channel", .slope_m_s3 / G, 2.0 * .u_m_s3 / G)]
-    Drift { slope_m_s3: f64, u_m_s3: f64, adds_m_s: f64 },
+    Drift { slope_m_s3: f64, u_m_s3: f64, adds_m_s: f64 } => (Code::Offset, Warning);
     /// The first impact pulls the channel's end towards the target.
     #[error(
         "reads the first impact as pulling towards the target: set `polarity = -1` for it, or its end is the \
          other one"
     )]
-    Polarity,
+    Polarity => (Code::Polarity, Error);
     /// The offset in the flight is another than before the impact; taken off.
     #[error("reads {:+.2} ± {:.2} g more in the flight than before the impact (zero shift or droop); it was \
              taken off, which moves the velocity by up to {effect_m_s:.2} \
              m/s", .shift_m_s2 / G, 2.0 * .u_m_s2 / G)]
-    ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, severity: Severity },
+    ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, severity: Severity }
+        => (Code::ZeroShift, *severity);
     /// The velocity is off its flight by the time R strikes.
     #[error(
         "is {mismatch_m_s:+.2} m/s off its flight by the time the second end strikes: the first end touched \
          again, or the sensor drifts"
     )]
-    LateMismatch { mismatch_m_s: f64 },
+    LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning);
     /// Plateau and modes leave too much of the flight.
     #[error("is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its \
              velocity step is known to ± {:.2} m/s", 2.0 * .u_m_s)]
-    Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 },
+    Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 } => (Code::FlightFit, Warning);
     /// What was fitted as a mode bends this channel's plateau alone.
     #[error(
         "swings by {size_m_s:.2} m/s at {frequency_hz:.0} Hz in the flight, which the other end does not: a \
          cask rings at both ends, so that is a cable that whips, a loose mount or a slow drift of the \
          sensor, and the velocity step is known only to about as much; fasten cable and sensor"
     )]
-    Bend { frequency_hz: f64, size_m_s: f64 },
+    Bend { frequency_hz: f64, size_m_s: f64 } => (Code::FlightFit, Warning);
     /// The velocity step is off the line through the other channels' ones.
     #[error("gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid \
              body gain there: check its scale, polarity, position and mount, or leave it out of the cask \
              file", 2.0 * .u_m_s)]
-    OffLine { off_m_s: f64, u_m_s: f64 },
+    OffLine { off_m_s: f64, u_m_s: f64 } => (Code::NotRigid, Warning);
     /// No force from one time to another after first contact, and then again.
     #[error("feels no force from {:.1} to {:.1} ms after first contact, and then again: the first end left \
              the target and was struck once more, or something strikes the cask; k and the slap-down speed \
              are not determined", 1e3 * .from_s, 1e3 * .to_s)]
-    ForceRests { from_s: f64, to_s: f64 },
+    ForceRests { from_s: f64, to_s: f64 } => (Code::SecondContact, Warning);
     /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in
     /// spreads of what ringing leaves.
     #[error("shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what \
              ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity \
              steps mix what was before with what came after, so k and the slap-down speed are not \
              determined; fasten the contents, or read the speed from the film", times_ms(.after_s))]
-    Struck { after_s: Vec<f64>, far: f64 },
+    Struck { after_s: Vec<f64>, far: f64 } => (Code::SecondContact, Warning);
     /// The channel answers before the first end is struck.
     #[error("answers the first impact {} before the first end is struck, which no body does: \
              {ONE_TRIGGER}{}", size_ms(*.delay_s, *.u_s), shifted(*.is_shifted))]
-    AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool },
+    AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool } => (Code::Skew, Warning);
     /// The channel answers later than the slowest bending wave, which takes `wave_s`.
     #[error("answers the first impact {} after the first end is struck, and a bending wave needs {:.1} ms at \
              most: {ONE_TRIGGER}{}", size_ms(*.delay_s, *.u_s), 1e3 * .wave_s, shifted(*.is_shifted))]
-    AnswersLate { delay_s: f64, u_s: f64, wave_s: f64, is_shifted: bool },
+    AnswersLate { delay_s: f64, u_s: f64, wave_s: f64, is_shifted: bool } => (Code::Skew, Warning);
     /// The channel answers as late as a bending wave may.
     #[error("answers the first impact {} after the first end is struck: a bending wave may take as long, or \
              the channels' clocks are apart; check that one trigger starts both", size_ms(*.delay_s, *.u_s))]
-    AnswersAsAWave { delay_s: f64, u_s: f64 },
+    AnswersAsAWave { delay_s: f64, u_s: f64 } => (Code::Skew, Note);
     /// A channel that takes no part in the motion stands at a limit.
     #[error("stands at its limit of {} {unit} for {samples} samples: its true extreme lies beyond; use a \
              range with more head-room", digits(*.limit, 4))]
-    OtherClipped { limit: f64, samples: usize, unit: String },
+    OtherClipped { limit: f64, samples: usize, unit: String } => (Code::Clipped, Warning);
     /// A channel that takes no part in the motion shows nothing but noise.
     #[error("{} through the impacts: a slow quantity, or a sensor that is unplugged or broken, or the wrong \
              `source`", other_still(*.farthest, .unit))]
-    OtherStill { farthest: Option<f64>, unit: String },
+    OtherStill { farthest: Option<f64>, unit: String } => (Code::DeadChannel, Note);
     /// The noise of a channel that takes no part in the motion beside its largest deviation from rest.
     #[error("has noise of {} {unit} RMS, {:.0} % of its largest deviation from rest, and its extremes are \
              uncertain by about twice as much: use a more sensitive range, or look for a loose \
              cable", digits(*.noise, 3), 100.0 * .noise / .farthest)]
-    OtherNoise { noise: f64, farthest: f64, unit: String },
+    OtherNoise { noise: f64, farthest: f64, unit: String } => (Code::Noise, Note);
     /// An angular-rate sensor reads this share of the rotation by the accelerometers, and is left out.
     #[error("reads {} times the rotation that the accelerometers have the first impact give: {cause}; \
              until then it is left out", digits(*.share, 3))]
-    OtherRotation { share: f64, cause: RotationCause },
+    OtherRotation { share: f64, cause: RotationCause } => (cause.code(), Warning);
     /// The recording states another unit than the cask file.
     #[error("the cask file gives the unit {stated:?}, the recording {recorded:?}; the cask file is followed")]
-    OtherUnit { stated: String, recorded: String },
+    OtherUnit { stated: String, recorded: String } => (Code::Scale, Note);
+}
+}
+
+impl RotationCause {
+    fn code(self) -> Code {
+        match self {
+            Self::Sign => Code::Polarity,
+            Self::Unit => Code::Scale,
+            Self::Nothing => Code::DeadChannel,
+        }
+    }
 }
 
 impl ChannelFinding {
-    /// The check that speaks, and its severity.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        use Severity::{Error, Note, Warning};
-        match *self {
-            Self::Clipped { takes_step: true, .. } => (Code::Clipped, Error),
-            Self::Clipped { .. } | Self::OtherClipped { .. } => (Code::Clipped, Warning),
-            Self::LostStep { .. } => (Code::Gap, Error),
-            Self::Noise { severity, .. } => (Code::Noise, severity),
-            Self::BeginsInImpact { .. } => (Code::BeginsLate, Error),
-            Self::ShortFreeFall { .. } | Self::FewSamples { .. } => (Code::BeginsLate, Warning),
-            Self::OffCask { .. } | Self::NotNearer { .. } | Self::NearerOtherEnd { .. } => {
-                (Code::SensorPosition, Warning)
-            }
-            Self::UnitFactor { .. } | Self::OtherRotation { cause: RotationCause::Unit, .. } => {
-                (Code::Scale, Warning)
-            }
-            Self::LowRate { .. } => (Code::LowRate, Warning),
-            Self::Aliasing { .. } => (Code::Aliasing, Warning),
-            Self::Dead { .. } => (Code::DeadChannel, Error),
-            Self::OtherStill { .. } => (Code::DeadChannel, Note),
-            Self::OtherNoise { .. } => (Code::Noise, Note),
-            Self::OtherRotation { cause: RotationCause::Sign, .. } => (Code::Polarity, Warning),
-            Self::OtherRotation { .. } => (Code::DeadChannel, Warning),
-            Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),
-            Self::Copied { .. } => (Code::CopiedChannel, Warning),
-            Self::Hum { severity, .. } => (Code::Hum, severity),
-            Self::Spikes { severity, .. } => (Code::Spikes, severity),
-            Self::Dropout { .. } => (Code::Dropout, Warning),
-            Self::AcStated { .. } => (Code::AcCoupled, Note),
-            Self::AcUnstated { .. } => (Code::AcCoupled, Warning),
-            Self::OffsetTakenOff { is_large: false, .. } => (Code::Offset, Note),
-            Self::OffsetTakenOff { .. } | Self::Drift { .. } => (Code::Offset, Warning),
-            Self::OffsetLeftIn { severity, .. } => (Code::Offset, severity),
-            Self::Polarity => (Code::Polarity, Error),
-            Self::ZeroShift { severity, .. } => (Code::ZeroShift, severity),
-            Self::LateMismatch { .. } | Self::ForceRests { .. } | Self::Struck { .. } => {
-                (Code::SecondContact, Warning)
-            }
-            Self::Unexplained { .. } | Self::Bend { .. } => (Code::FlightFit, Warning),
-            Self::LeftOut { .. } | Self::OffLine { .. } => (Code::NotRigid, Warning),
-            Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
-            Self::AnswersAsAWave { .. } => (Code::Skew, Note),
-            Self::OtherUnit { .. } => (Code::Scale, Note),
-        }
-    }
-
     /// What was found on the channel of that name, its size, and what to do.
     pub(super) fn sentence(&self, name: &str) -> String {
         match self {

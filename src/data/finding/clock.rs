@@ -4,19 +4,21 @@
 use super::{IssueCode as Code, Severity};
 use crate::data::shown::{digits, hz};
 
+findings! {
 /// A finding about two things that say when samples were taken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClockFinding {
     /// A rate was taken, and another one is said.
     #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write \
              sample_rate_hz = {rate}", rate = hz(.0.other_hz))]
-    Rates(RatesApart),
+    Rates(apart: RatesApart) => (Code::Clock, Warning);
     /// Times were taken, and another column or dataset does not bear them out.
     #[error("{0}; the first was taken, and every velocity goes with it")]
-    Times(TimesApart),
+    Times(apart: TimesApart) => (Code::Clock, Warning);
     /// A listing has no rate, for reading would refuse: the problem and its remedy.
     #[error("{0}")]
-    Refused(String),
+    Refused(words: String) => (Code::Clock, Warning);
+}
 }
 
 /// Two rates that contradict each other, each in Hz with what says it.
@@ -55,12 +57,4 @@ pub enum HowApart {
     /// By where they begin.
     #[error("they begin {} s apart", digits(*.apart_s, 5))]
     AtStart { apart_s: f64 },
-}
-
-impl ClockFinding {
-    /// The check that speaks, and its severity.
-    #[allow(clippy::unused_self, reason = "as those of the other kinds")]
-    pub(super) fn code(&self) -> (Code, Severity) {
-        (Code::Clock, Severity::Warning)
-    }
 }

@@ -4,6 +4,7 @@ use super::{Cure, Finding, IssueCode as Code, Severity};
 use crate::data::shown::digits;
 use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate, ObservedBeside};
 
+findings! {
 /// A finding about the drop, its motion or its prediction.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
@@ -12,123 +13,125 @@ pub enum DropFinding {
     /// clock that may be why.
     #[error("no impact was found: {}; check source, unit and that the recording covers the \
              drop{}", what_was_seen(*.least_m_s, *.without_rise), doubt_of_rate(.doubt.as_deref()))]
-    NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> },
+    NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> }
+        => (Code::NoImpact, Error);
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
     #[error(
         "{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: \
          too few to tell whether the recording shows one; record with {least_hz:.0} Hz and more, or check \
          `sample_rate_hz`"
     )]
-    TooSlow { rate_hz: f64, samples: f64, least_hz: f64 },
+    TooSlow { rate_hz: f64, samples: f64, least_hz: f64 } => (Code::LowRate, Error);
     /// No transverse channel on an end, which the mass properties may stand in for.
     #[error("no transverse channel on the {end} end: {}", without_end(*.end, *.is_stood_in_for))]
-    MissingEnd { end: End, is_stood_in_for: bool },
+    MissingEnd { end: End, is_stood_in_for: bool } => (Code::MissingChannel, Error);
     /// The recording ends so long after the separation, before a slap-down.
     #[error("no slap-down within {:.0} ms after the first end left the target: the recording ends before \
              it", 1e3 * .after_s)]
-    EndsEarly { after_s: f64 },
+    EndsEarly { after_s: f64 } => (Code::EndsEarly, Error);
     /// No slap-down for so long after the separation.
     #[error("no slap-down within {:.0} ms after the first end left the target: the second end shows no \
              impact", 1e3 * .after_s)]
-    NoSlapDown { after_s: f64 },
+    NoSlapDown { after_s: f64 } => (Code::NoSlapDown, Error);
     /// The flight is too short to be fitted.
     #[error("the free flight between the impacts is too short to be separated from them and from ringing")]
-    ShortFlight,
+    ShortFlight => (Code::FlightFit, Error);
     /// Another drop, so long after the one that was analysed.
     #[error(
         "the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and \
          changes its velocity by {step_m_s:.1} m/s ({first_step_m_s:.1} m/s there): that is another drop. \
          The first one was analysed; for the other, cut the recording between them in a copy"
     )]
-    SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 },
+    SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 }
+        => (Code::SeveralDrops, Warning);
     /// The free fall ends well before the impact.
     #[error("the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: \
              something soft (water, a guide, a cable) was touched first, and the impact velocity is not that \
              of a free fall", 1e3 * (.contact_s - .end_s))]
-    SoftTouch { end_s: f64, contact_s: f64 },
+    SoftTouch { end_s: f64, contact_s: f64 } => (Code::Geometry, Warning);
     /// A coefficient of restitution that is none.
     #[error("k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is \
              wrong", .k.value, .k.u95, if .k.u95 > 1.0 { "says nothing of a number between 0 and \
                                                           1" } else { "lies outside 0 to 1" })]
-    Restitution { k: Estimate },
+    Restitution { k: Estimate } => (Code::RestitutionRange, Error);
     /// The second end rises.
     #[error(
         "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong \
          in the cask file"
     )]
-    TurnsTheWrongWay,
+    TurnsTheWrongWay => (Code::EndsExchanged, Error);
     /// The axial channel has L slide on a contact that is called rough.
     #[error("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file \
              calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set \
              `friction`", .slip.value, .slip.u95)]
-    Slides { slip: Estimate },
+    Slides { slip: Estimate } => (Code::Friction, Warning);
     /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
     /// friction that was taken.
     #[error("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if \
              it sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between \
              ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or \
              state `friction`", .taken.value, .taken.u95)]
-    OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
+    OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate } => (Code::Friction, Note);
     /// The force of the first contact falls to this share of the lower of two maxima around it.
     #[error("the force of the first impact falls to {:.0} % between two maxima: the first end touched twice, \
              or a mode rings as fast as the contact lasts; it was taken as one contact, and k is that of the \
              whole", 100.0 * .dip.max(0.0))]
-    TwoMaxima { dip: f64 },
+    TwoMaxima { dip: f64 } => (Code::SecondContact, Note);
     /// L would sink so far below where it left the target.
     #[error("the first end would sink {:.0} mm below where it left the target before the second end strikes: \
              it touched again, and the flight was not free", 1e3 * .depth_m)]
-    Sinks { depth_m: f64 },
+    Sinks { depth_m: f64 } => (Code::SecondContact, Warning);
     /// L comes down to the target so softly that no channel shows it.
     #[error("the first end comes down to the target before the second end strikes ({:.0} mm below where it \
              left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, \
              and the flight leaves it out", 1e3 * .depth_m)]
-    Settles { depth_m: f64, effect_m_s: f64 },
+    Settles { depth_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning);
     /// L may land as R strikes.
     #[error("the first end comes down again as the second end strikes: by the motion it is then \
              {:.0} ± {:.0} mm above where it left, and a landing before that changes the slap-down speed by \
              up to {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
-    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 },
+    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning);
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
              slap-down speed are not determined", .step_m_s.abs(), 1e3 * .after_s)]
-    Blow { step_m_s: f64, after_s: f64 },
+    Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning);
     /// A mode that is no bending.
     #[error(
         "an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is none of the cask's bending: contents or \
          mounts move in it; the slap-down speed and k are those of cask and contents together, `local_speed` \
          is that of the corner that strikes"
     )]
-    Swings { frequency_hz: f64, size_m_s: f64 },
-    /// L is still pressed as R strikes.
+    Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning);
+    /// L is still pressed as R strikes; an error, to stand before what follows from it.
     #[error(
         "between first contact and the strike of the second end the velocities curve as in no free flight \
          ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
          on the target as the second end strikes; contacts that overlap are not followed"
     )]
-    Pressed { frequency_hz: f64, periods: f64 },
+    Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error);
     /// The target pushes L through the flight.
     #[error(
         "in the flight every transverse channel goes on gaining what it gained in the first impact, \
          {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
     )]
-    Carried { rate_hz: f64 },
+    Carried { rate_hz: f64 } => (Code::SecondContact, Warning);
     /// The flight may have lasted no time.
     #[error("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second \
              end struck, and k and the slap-down speed then mean \
              nothing", 1e3 * .flight_time.value, 1e3 * .flight_time.u95)]
-    NoFlight { flight_time: Estimate },
+    NoFlight { flight_time: Estimate } => (Code::FlightFit, Warning);
     /// The flight is too short to tell its modes from one another.
     #[error("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to \
              it ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are \
              not determined; look at the curves, and state only what they \
              show", 1e3 * .flight_s, .modes_hz.len(), joined(.modes_hz, |f| format!("{f:.0}"), ", "))]
-    Unresolved { flight_s: f64, modes_hz: Vec<f64> },
+    Unresolved { flight_s: f64, modes_hz: Vec<f64> } => (Code::FlightFit, Warning);
     /// The second impact is not told by what is recorded after the slap-down.
     #[error("the {:.0} ms that are recorded after the slap-down do not show the end of the second end's \
              impact: it may not have left the target by then, or something else strikes meanwhile; record \
              until the cask lies still", 1e3 * .recorded_s)]
-    SecondUntold { recorded_s: f64 },
+    SecondUntold { recorded_s: f64 } => (Code::SecondImpact, Note);
     /// Measured and predicted lie apart.
     #[error("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n \
              = {e_n:.1}): check contact law, angle, mass properties and scales",
@@ -137,7 +140,7 @@ pub enum DropFinding {
         .comparison.predicted,
         .comparison.predicted_u95
     )]
-    Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
+    Disagreement { comparison: Comparison, e_n: f64, severity: Severity } => (Code::Disagreement, *severity);
     /// What was seen otherwise lies apart from the result.
     #[error("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); \
              check what was observed, and the cask file",
@@ -146,78 +149,41 @@ pub enum DropFinding {
         .beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")),
         plus_minus(&.beside.observed)
     )]
-    ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity },
+    ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity } => (Code::Observed, *severity);
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The
     /// recording shows a free fall of `fall_s`.
     #[error("{}", missed(.closure, .drop, *.fall_s))]
-    Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
+    Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 }
+        => (code_of(closure.kind), if *is_gross { Error } else { Warning });
     /// The rest before the fall and its length say alike that something took this share of g off it, which
     /// makes another v0 of the drop height.
     #[error("the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows \
              of the rest before it and by its length alike: a guide, a rope or a brake; from the stated \
              height that makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it \
              as `impact_velocity_m_s`, with its tolerance", 100.0 * .share, 100.0 * .u95)]
-    SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity },
+    SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity } => (Code::Geometry, *severity);
     /// All closures together are missed by more than chance.
     #[error("what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for \
              {degrees}): {}; check angle, height, length, scales, positions and mass properties of the \
              cask file", joined(.closures, |c| format!("{} by {} ({:.1} \
                                                    u)", c.name, c.miss, c.most_in_u()), ", "))]
-    AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
+    AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> } => (Code::Geometry, Warning);
     /// With a usual slip put right everything is consistent; with either of two where nothing tells which.
     #[error("{}: check this first; it has not been applied", joined(.cures, Cure::words, "; "))]
-    UsualSlip { cures: Vec<Cure>, severity: Severity },
+    UsualSlip { cures: Vec<Cure>, severity: Severity } => (Code::UsualSlip, *severity);
     /// A closure is missed that this angle would meet with all others.
     #[error("if all else is as stated, a drop angle of {angle_deg:.1}° would close it")]
-    AngleCloses { angle_deg: f64, severity: Severity },
+    AngleCloses { angle_deg: f64, severity: Severity } => (Code::Geometry, *severity);
+}
 }
 
-impl DropFinding {
-    /// The check that speaks, and its severity.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        use Severity::{Error, Note, Warning};
-        match self {
-            Self::NoImpact { .. } => (Code::NoImpact, Error),
-            Self::TooSlow { .. } => (Code::LowRate, Error),
-            Self::MissingEnd { .. } => (Code::MissingChannel, Error),
-            Self::EndsEarly { .. } => (Code::EndsEarly, Error),
-            Self::NoSlapDown { .. } => (Code::NoSlapDown, Error),
-            Self::ShortFlight => (Code::FlightFit, Error),
-            // Before what follows from it.
-            Self::Pressed { .. } => (Code::SecondContact, Error),
-            Self::NoFlight { .. } | Self::Unresolved { .. } => (Code::FlightFit, Warning),
-            Self::SeveralDrops { .. } => (Code::SeveralDrops, Warning),
-            Self::SoftTouch { .. } | Self::AllMissed { .. } => (Code::Geometry, Warning),
-            Self::Restitution { .. } => (Code::RestitutionRange, Error),
-            Self::TurnsTheWrongWay => (Code::EndsExchanged, Error),
-            Self::Slides { .. } => (Code::Friction, Warning),
-            Self::OpenContact { .. } => (Code::Friction, Note),
-            Self::Sinks { .. }
-            | Self::Settles { .. }
-            | Self::MayLand { .. }
-            | Self::Blow { .. }
-            | Self::Carried { .. } => (Code::SecondContact, Warning),
-            Self::Swings { .. } => (Code::Swings, Warning),
-            Self::SecondUntold { .. } => (Code::SecondImpact, Note),
-            Self::TwoMaxima { .. } => (Code::SecondContact, Note),
-            Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
-            Self::ObservedApart { severity, .. } => (Code::Observed, *severity),
-            Self::Missed { closure, is_gross, .. } => {
-                let code = match closure.kind {
-                    ClosureKind::Height
-                    | ClosureKind::Fall
-                    | ClosureKind::SecondTurning
-                    | ClosureKind::RateBefore => Code::Geometry,
-                    ClosureKind::Turning => Code::NotRigid,
-                    ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
-                };
-                (code, if *is_gross { Error } else { Warning })
-            }
-            Self::UsualSlip { severity, .. } => (Code::UsualSlip, *severity),
-            Self::SlowedFall { severity, .. } | Self::AngleCloses { severity, .. } => {
-                (Code::Geometry, *severity)
-            }
+fn code_of(closure: ClosureKind) -> Code {
+    match closure {
+        ClosureKind::Height | ClosureKind::Fall | ClosureKind::SecondTurning | ClosureKind::RateBefore => {
+            Code::Geometry
         }
+        ClosureKind::Turning => Code::NotRigid,
+        ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
     }
 }
 

@@ -4,6 +4,7 @@
 use super::{IssueCode as Code, Severity};
 use crate::data::shown::digits;
 
+findings! {
 /// A finding about an MCAP file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
@@ -11,64 +12,66 @@ pub enum McapFinding {
     /// The file ends before its time; the last message kept begins at `kept_s`.
     #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} \
                                                 s")).unwrap_or_default())]
-    Truncated { end: FileEnd, kept_s: Option<f64> },
+    Truncated { end: FileEnd, kept_s: Option<f64> } => (Code::Truncated, Warning);
     /// A chunk fails its check sum or does not unpack.
     #[error(
         "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over \
          {lasts_s:.6} s"
     )]
-    BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 },
+    BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 } => (Code::Damaged, Warning);
     /// Bytes that are no record.
     #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}", if *.resumed { "reading \
              went on at the next chunk of the file's index" } else { "up to the end of the file" })]
-    Garbage { at: u64, bytes: u64, resumed: bool },
+    Garbage { at: u64, bytes: u64, resumed: bool } => (Code::Damaged, Warning);
     /// Damage that is not told place by place.
     #[error("{places} more places of the file are damaged and were left out")]
-    MoreDamage { places: u64 },
+    MoreDamage { places: u64 } => (Code::Damaged, Warning);
     /// Records whose body does not parse, or messages that belong to no channel; kind and place of the first.
     #[error("{count} records were skipped, the first a {kind} at byte {at} {why}")]
-    BadRecords { count: u64, kind: &'static str, at: u64, why: &'static str },
+    BadRecords { count: u64, kind: &'static str, at: u64, why: &'static str } => (Code::Damaged, Warning);
     /// The file's statistics count other messages than there are.
     #[error("the file's statistics count {claimed} messages, {found} were found")]
-    OtherCount { claimed: u64, found: u64 },
+    OtherCount { claimed: u64, found: u64 } => (Code::Damaged, Warning);
     /// Messages that do not decode; in a listing with their topic.
     #[error("{count} of {messages} messages {}; the first: {first}", undecoded(.topic.as_deref()))]
-    Undecoded { count: u64, messages: u64, topic: Option<String>, first: String },
+    Undecoded { count: u64, messages: u64, topic: Option<String>, first: String } => (Code::Damaged, Warning);
     /// Messages whose stamp is of no use, beside others whose stamp is or not.
     #[error("{count} of {messages} messages carry a stamp of zero or none that can be understood: their log \
              time was taken{}", if *.beside_good { "; the others carry a stamp, and the two clocks may \
                                                     differ" } else { "" })]
-    LogTime { count: u64, messages: u64, beside_good: bool },
+    LogTime { count: u64, messages: u64, beside_good: bool }
+        => (Code::LogTimeUsed, if *beside_good { Warning } else { Note });
     /// Log times that run at another pace than the stamps, by so much of it.
     #[error("the stamps of its messages and their log times disagree: the log times run at a pace that \
              differs by {} %; the stamps were taken, and every velocity goes with them: `time = \
              \"log_time\"` in the cask file takes the other", digits(*.percent, 2))]
-    LogDrift { percent: f64 },
+    LogDrift { percent: f64 } => (Code::Clock, Warning);
     /// Bytes of the data that are not those that the writer summed up.
     #[error(
         "the check sum of its data does not hold: bytes were changed after it was written, and nothing tells \
          which samples are as they were: take the original from the logger again"
     )]
-    DataChanged,
+    DataChanged => (Code::Damaged, Error);
     /// The same of the summary.
     #[error(
         "the check sum of its summary does not hold: bytes were changed after it was written; the summary \
          was left out, the data were read"
     )]
-    SummaryChanged,
+    SummaryChanged => (Code::Damaged, Warning);
     /// A unit that changes between messages, where the cask file states one; in a listing with its source
     /// (`r#`: a text, not an error).
     #[error("{}", changed_unit(.source.as_deref(), &two_units(.first, .other)))]
-    TwoUnits { first: String, other: String, r#source: Option<String> },
+    TwoUnits { first: String, other: String, r#source: Option<String> } => (Code::Scale, Warning);
     /// What reading would say of a source's times.
     #[error("{source}: {problem}")]
-    NoTimes { r#source: String, problem: String },
+    NoTimes { r#source: String, problem: String } => (Code::Clock, Warning);
     /// What a listing has no room for.
     #[error(
         "it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics \
          and {fields} more fields of the listed ones; a source that is not listed is read all the same"
     )]
-    Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize },
+    Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize } => (Code::Unlisted, Note);
+}
 }
 
 /// Where a file ends that was cut or never closed.
@@ -85,29 +88,6 @@ pub enum FileEnd {
     /// Behind the footer, within the closing magic.
     #[error("the file ends at byte {at} within its closing mark; all records before it were read")]
     InMagic { at: u64 },
-}
-
-impl McapFinding {
-    /// The check that speaks, and its severity.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        use Severity::{Error, Note, Warning};
-        match self {
-            Self::Truncated { .. } => (Code::Truncated, Warning),
-            Self::BadChunk { .. }
-            | Self::Garbage { .. }
-            | Self::MoreDamage { .. }
-            | Self::BadRecords { .. }
-            | Self::OtherCount { .. }
-            | Self::SummaryChanged
-            | Self::Undecoded { .. } => (Code::Damaged, Warning),
-            Self::LogTime { beside_good: true, .. } => (Code::LogTimeUsed, Warning),
-            Self::LogTime { .. } => (Code::LogTimeUsed, Note),
-            Self::LogDrift { .. } | Self::NoTimes { .. } => (Code::Clock, Warning),
-            Self::DataChanged => (Code::Damaged, Error),
-            Self::TwoUnits { .. } => (Code::Scale, Warning),
-            Self::Unlisted { .. } => (Code::Unlisted, Note),
-        }
-    }
 }
 
 /// That a unit changes, for a finding and a refusal.

@@ -1,5 +1,35 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
+/// An enum of findings, each with its sentence, and behind the arrow its code and severity.
+macro_rules! findings {
+    (
+        $(#[$of_enum:meta])*
+        pub enum $name:ident {$(
+            $(#[$of_variant:meta])*
+            $variant:ident $({ $($field:ident: $type:ty),* $(,)? })? $(($inner:ident: $inner_type:ty))?
+                => $code:expr;
+        )*}
+    ) => {
+        $(#[$of_enum])*
+        pub enum $name {$(
+            $(#[$of_variant])*
+            $variant $({ $($field: $type),* })? $(($inner_type))?,
+        )*}
+
+        impl $name {
+            /// The check that speaks, and its severity.
+            #[allow(unused_variables, clippy::match_same_arms, reason = "a variant's fields, one arm each")]
+            pub(super) fn code(&self) -> (Code, Severity) {
+                #[allow(unused_imports, reason = "few need all")]
+                use Severity::{Error, Note, Warning};
+                match self {$(
+                    Self::$variant $({ $($field),* })? $(($inner))? => $code,
+                )*}
+            }
+        }
+    };
+}
+
 mod attribute;
 mod channel;
 mod clock;

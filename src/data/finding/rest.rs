@@ -29,81 +29,94 @@ pub enum RestCause {
     Open,
 }
 
+findings! {
 /// A finding about a recording at rest; its words follow the name of the channel where it is about one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum RestFinding {
     /// The level at rest, and by how much it may be off.
     #[error("reads {reads_g:+.2} g at rest, where {expected_g:+.2} ± {most_g:.1} g is expected: {cause}")]
-    Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause },
+    Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error);
     /// All samples are equal.
     #[error(
         "holds one value, without any noise: unplugged, stuck, or the wrong `source`; check cable and \
              amplifier"
     )]
-    OneValue,
+    OneValue => (Code::DeadChannel, Error);
     /// The level changes at rest.
     #[error(
         "does not rest: its level changes by more than 2 % of g; wait until cask and amplifier are \
              steady"
     )]
-    Unsteady,
+    Unsteady => (Code::Offset, Warning);
     /// The level of an angular-rate sensor.
     #[error("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}", if reads_deg_s.abs() > LARGE_DEG_S {
         ": balance it, or correct its `unit`"
     } else {
         "; the rest before the release takes it off"
     })]
-    Rate { reads_deg_s: f64 },
+    Rate { reads_deg_s: f64 } => (Code::Offset, if reads_deg_s.abs() > LARGE_DEG_S { Warning } else { Note });
     /// The level of an angular-rate sensor changes.
     #[error(
         "does not rest: its level changes by more than 1°/s; wait until the cask and the sensor are steady"
     )]
-    Turning,
+    Turning => (Code::Offset, Warning);
     /// Noise or the steps of the converter leave the offset open.
     #[error(
         "has an offset that is open by ± {u95_g:.2} g: slow noise, or coarse steps of the converter; \
              choose a smaller range or more bits, and check the cable"
     )]
-    OpenOffset { u95_g: f64 },
+    OpenOffset { u95_g: f64 } => (Code::Noise, Warning);
     /// The range is below the peak expected of a first impact of this length; a note where that may be
     /// longer.
     #[error("has a range of {range_g:.0} g; a first impact of {:.0} ms peaks at up to {peak_g:.0} g \
              there, ringing aside: choose a larger range, or state `duration_s` under \
              `[contact]`", 1e3 * .pulse_s)]
-    Range { range_g: f64, peak_g: f64, pulse_s: f64, is_sure: bool },
+    Range { range_g: f64, peak_g: f64, pulse_s: f64, is_sure: bool }
+        => (Code::Clipped, if *is_sure { Warning } else { Note });
     /// The time before the trigger is too short.
     #[error("the times begin {:.0} ms before zero, their trigger: too little of the free fall before an \
              impact; set a pre-trigger of {least_s} s or more", 1e3 * .before_s)]
-    ShortPretrigger { before_s: f64, least_s: f64 },
+    ShortPretrigger { before_s: f64, least_s: f64 } => (Code::BeginsLate, Warning);
     /// The record behind the trigger ends before the slap-down.
     #[error(
         "the record ends {after_s:.2} s behind its trigger; the slap-down takes up to {needs_s:.2} s: \
              record longer"
     )]
-    ShortRecord { after_s: f64, needs_s: f64 },
+    ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning);
     /// Another number of blows than two.
     #[error(
         "{count} blows are seen where one on each end is expected: strike each end once, the first \
              end first, a second apart, so that every transverse channel answers"
     )]
-    Blows { count: usize },
+    Blows { count: usize } => (Code::NoImpact, Warning);
     /// The channel answers the blow on the other end first.
     #[error(
         "answers the blow on the {struck} end before the channels of that end: the ends are \
              exchanged; correct `end` and `position_m`, or `source`, or exchange the cables"
     )]
-    OtherEnd { struck: &'static str },
+    OtherEnd { struck: &'static str } => (Code::EndsExchanged, Error);
     /// The first swing after a blow from below goes down.
     #[error(
         "swings down under a blow from below on its own end, which reads positive: turn `polarity` \
              round"
     )]
-    SwingsDown,
+    SwingsDown => (Code::Polarity, Error);
     /// The clocks of two channels are apart by both blows.
     #[error("is {:.1} ms behind {other} by both blows: their clocks are apart; use one \
              trigger", 1e3 * .behind_s)]
-    ClocksApart { behind_s: f64, other: String },
+    ClocksApart { behind_s: f64, other: String } => (Code::Skew, Warning);
+}
+}
+
+impl RestCause {
+    fn code(&self) -> Code {
+        match self {
+            Self::Sign => Code::Polarity,
+            Self::Nothing => Code::AcCoupled,
+            _ => Code::Scale,
+        }
+    }
 }
 
 impl RestFinding {
@@ -112,26 +125,5 @@ impl RestFinding {
     pub fn on(self, channel: &str) -> Finding {
         let (code, message) = (self.code(), format!("{channel} {self}"));
         Finding::made(FindingKind::Rest(self), code, &message).on(channel)
-    }
-
-    /// The check that speaks, and its severity.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        use Severity::{Error, Note, Warning};
-        match self {
-            Self::Reads { cause: RestCause::Sign, .. } | Self::SwingsDown => (Code::Polarity, Error),
-            Self::Reads { cause: RestCause::Nothing, .. } => (Code::AcCoupled, Error),
-            Self::Reads { .. } => (Code::Scale, Error),
-            Self::OneValue => (Code::DeadChannel, Error),
-            Self::Unsteady | Self::Turning => (Code::Offset, Warning),
-            Self::Rate { reads_deg_s } if reads_deg_s.abs() > LARGE_DEG_S => (Code::Offset, Warning),
-            Self::Rate { .. } => (Code::Offset, Note),
-            Self::OpenOffset { .. } => (Code::Noise, Warning),
-            Self::Range { is_sure, .. } => (Code::Clipped, if *is_sure { Warning } else { Note }),
-            Self::ShortPretrigger { .. } => (Code::BeginsLate, Warning),
-            Self::ShortRecord { .. } => (Code::EndsEarly, Warning),
-            Self::Blows { .. } => (Code::NoImpact, Warning),
-            Self::OtherEnd { .. } => (Code::EndsExchanged, Error),
-            Self::ClocksApart { .. } => (Code::Skew, Warning),
-        }
     }
 }
