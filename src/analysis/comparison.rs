@@ -43,7 +43,13 @@ impl Measured {
             findings.extend(of_motion);
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
-                findings.extend(judge::judge_blows(impact.recorded(), flight, events, findings));
+                findings.extend(judge::judge_blows(
+                    impact.recorded(),
+                    flight,
+                    events,
+                    findings,
+                    file.cask.length_m,
+                ));
             }
         }
         let is_contradicted = findings.iter().any(judge::contradicts_motion);

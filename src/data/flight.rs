@@ -191,6 +191,25 @@ impl FlightFit {
             .count()
     }
 
+    /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go together,
+    /// and which of these it is; 0 where the cask swings.
+    #[must_use]
+    pub fn bending_orders(&self, signals: &[Signal]) -> Vec<u8> {
+        let (swinging, mut together) = (self.swinging(signals), 0);
+        let order = |mode: usize| {
+            let goes = mode >= swinging && self.goes_along(mode, signals) > 0.0;
+            together += u8::from(goes);
+            if mode < swinging {
+                0
+            } else if goes {
+                2 * together - 1
+            } else {
+                2
+            }
+        };
+        (0..self.modes.len()).map(order).collect()
+    }
+
     /// How many periods of its slowest mode it shows; infinite without modes.
     #[must_use]
     pub fn periods(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! A flight to the blows in it that its ringing does not foretell: loose contents that strike the cask, once
 //! or in a train.
 
+use super::turned::turned_m_s2;
 use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::as_f64;
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
@@ -18,6 +19,9 @@ const LIMIT: f64 = 9.5;
 /// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of
 /// v0.
 const LEAST_SPREAD: f64 = 3e-4;
+/// Nor is it less than this share of what bending makes an axial channel read in the mean: the RMS with which
+/// that swings about it, at twice the frequency.
+const TURNED_SPREAD: f64 = 0.7;
 /// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
 const FOOT_S: f64 = 1e-3;
 const FOOT: f64 = 0.06;
@@ -32,12 +36,14 @@ pub fn judge_blows(
     flight: &FlightFit,
     events: &Events,
     found: &[Finding],
+    length_m: f64,
 ) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
     let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
     let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
-    let struck = whole.map(|s| (s, blows(s, &span_s)));
+    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, length_m).abs();
+    let struck = whole.map(|s| (s, blows(s, &span_s, least_m_s2(s))));
     let (signal, blows) = struck.max_by(|a, b| hardest(&a.1).total_cmp(&hardest(&b.1)))?;
     let mut times_s: Vec<f64> = blows.iter().filter(|b| b.far > LIMIT).map(|b| b.time_s).collect();
     let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
@@ -71,13 +77,13 @@ fn hardest(all: &[Unforetold]) -> f64 {
 }
 
 /// How far each mean of a stretch is off; none where it is too short to say.
-fn blows(signal: &Signal, span_s: &Range<f64>) -> Vec<Unforetold> {
+fn blows(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetold> {
     let from = signal.index_from(span_s.start);
     let samples = signal.force_m_s2.get(from..signal.index_from(span_s.end)).unwrap_or_default();
     let block = block_of(RATE_HZ, signal.sample_rate_hz);
     let means = block_means(samples, block);
     let rounding_m_s2 = rounding_of_means(samples, block);
-    let least_m_s2 = (LEAST_SPREAD * peak(&means)).max(f64::MIN_POSITIVE);
+    let least_m_s2 = (LEAST_SPREAD * peak(&means)).max(least_m_s2).max(f64::MIN_POSITIVE);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio")]
     let pieces = ((span_s.end - span_s.start) / PIECE_S).round().max(1.0) as usize;
     let length = means.len().div_ceil(pieces).max(1);
@@ -135,7 +141,7 @@ mod tests {
     fn found(signal: &Signal, to_s: f64) -> Option<Finding> {
         let flight = example::flight(0.025, 0.1, vec![]);
         let events = example::events(0.02, to_s);
-        judge_blows(std::slice::from_ref(signal), &flight, &events, &[])
+        judge_blows(std::slice::from_ref(signal), &flight, &events, &[], 5.0)
     }
 
     #[test]

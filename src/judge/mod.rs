@@ -19,6 +19,7 @@ mod sampling;
 mod silent;
 mod skew;
 mod taps;
+mod turned;
 
 pub use at_rest::{LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, pulse_lengths_s};
 pub use blows::judge_blows;

@@ -1,5 +1,6 @@
 //! A reconstructed motion to what speaks against it.
 
+use super::turned::turned_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
     Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
@@ -14,6 +15,8 @@ const SMALL_SHIFT_M_S: f64 = 0.1;
 /// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well
 /// as of the sensor, m/s.
 const SMALL_BEND_M_S: f64 = 0.5;
+/// What bending makes an axial channel read is known to this share: the slope of a uniform beam's shape.
+const TURNED_SHARE: f64 = 0.2;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
@@ -48,7 +51,7 @@ pub fn judge_motion(
     quantities: &Quantities,
 ) -> Vec<Finding> {
     let mut findings = signs(signals, flight);
-    findings.extend(of_flight(signals, flight, quantities));
+    findings.extend(of_flight(signals, flight, quantities, cask_file.cask.length_m));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
@@ -141,7 +144,7 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .collect()
 }
 
-fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities) -> Vec<Finding> {
+fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, length_m: f64) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
     findings.extend(bends(flight, signals, v0_m_s));
@@ -149,7 +152,9 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities) ->
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
-        findings.extend(shifted(flight, plateau, quantities.duration.value));
+        let signal = signals.iter().find(|s| s.name == plateau.channel);
+        let turned_m_s2 = signal.map_or(0.0, |s| turned_m_s2(s, signals, flight, length_m));
+        findings.extend(shifted(flight, plateau, turned_m_s2, quantities.duration.value));
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
         let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
@@ -164,14 +169,16 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities) ->
     findings
 }
 
-/// A zero shift that was taken off, with what it does to the velocity over so many seconds.
-fn shifted(flight: &FlightFit, plateau: &Plateau, over_s: f64) -> Option<Finding> {
+/// A zero shift that was taken off, beyond what bending makes, with what it does to the velocity over so many
+/// seconds.
+fn shifted(flight: &FlightFit, plateau: &Plateau, turned_m_s2: f64, over_s: f64) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
-    let effect_m_s = shift_m_s2.abs() * over_s;
+    let beyond_m_s2 = (shift_m_s2 - turned_m_s2).abs();
+    let effect_m_s = beyond_m_s2 * over_s;
     let small_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, severity };
-    (flight.drift && shift_m_s2.abs() > 3.0 * u_m_s2)
+    (flight.drift && beyond_m_s2 > 3.0 * u_m_s2.hypot(TURNED_SHARE * turned_m_s2))
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
 }
 

@@ -1,0 +1,60 @@
+//! The bending of an axial channel's place to what it reads because that turns it.
+
+use crate::data::{Axis, FlightFit, Mode, Signal};
+use crate::numerics::free_beam::shape;
+use std::f64::consts::TAU;
+
+/// The slope of a shape is taken over this share of the length.
+const STEP: f64 = 1e-4;
+
+/// What a channel along the axis reads in the flight, in the mean, m/s²: the bending by w turns it by w′
+/// towards a force of ẅ across the axis; 0 of one across   (49)
+pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFit, length_m: f64) -> f64 {
+    let across = signals.iter().filter(|s| signal.axis == Axis::Axial && s.axis == Axis::Transverse);
+    let far_m = |s: &Signal| (s.position_m - signal.position_m).abs();
+    let nearest = across.min_by(|a, b| far_m(a).total_cmp(&far_m(b)));
+    let Some((near, plateau)) = nearest.and_then(|s| Some((s, flight.plateau(&s.name)?))) else { return 0.0 };
+    let share = signal.position_m / length_m;
+    let of_mode = |((mode, order), (a, b)): ((&Mode, u8), &(f64, f64))| {
+        let (here, there) = (shape(order, share), shape(order, near.position_m / length_m));
+        let slope = (shape(order, share + STEP) - shape(order, share - STEP)) / (2.0 * STEP * length_m);
+        let faded = 2.0 * mode.damping * TAU * mode.frequency_hz * (flight.to_s - flight.from_s);
+        let mean = if faded > 0.0 { -(-faded).exp_m1() / faded } else { 1.0 };
+        // Near a node of the shape the channel beside tells nothing of this place.
+        let is_told = order > 0 && there.abs() > 0.5;
+        if is_told { -0.5 * slope * here / (there * there) * (a * a + b * b) * mean } else { 0.0 }
+    };
+    flight.modes.iter().zip(flight.bending_orders(signals)).zip(&plateau.ringing_m_s).map(of_mode).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{End, Plateau, example};
+
+    #[test]
+    fn an_axial_channel_reads_the_square_of_the_bending_with_a_sign_for_each_end() {
+        let signal = |name: &str, end, axis, position_m| Signal {
+            name: name.into(),
+            end,
+            axis,
+            position_m,
+            ..example::signal(1e4, vec![])
+        };
+        let signals = [
+            signal("A1", End::First, Axis::Transverse, 0.25),
+            signal("A2", End::Second, Axis::Transverse, 4.75),
+            signal("X1", End::First, Axis::Axial, 0.25),
+            signal("X2", End::Second, Axis::Axial, 4.75),
+        ];
+        let plateau = |name: &str| Plateau { ringing_m_s: vec![(3.0, 4.0)], ..example::plateau(name, 0.0) };
+        let mode = Mode { frequency_hz: 80.0, damping: 0.0, amplitude_m_s: 5.0 };
+        let plateaus = vec![plateau("A1"), plateau("A2"), plateau("X1"), plateau("X2")];
+        let flight = FlightFit { modes: vec![mode], ..example::flight(0.0, 0.1, plateaus) };
+        let reads = |i: usize| turned_m_s2(&signals[i], &signals, &flight, 5.0);
+        // θ f = w′ ẅ with w = φ q: −φ′ φ (ω q)²/2 in the mean; φ = 1.536, φ′ = −9.25/5 m at 0.05 of the length.
+        let wanted = 0.5 * 9.25 / 5.0 / 1.536 * 25.0;
+        assert!((reads(2) / wanted - 1.0).abs() < 0.01, "{} {wanted}", reads(2));
+        assert!((reads(2) + reads(3)).abs() < 1e-9 && reads(0).abs() < f64::EPSILON);
+    }
+}
