@@ -1,21 +1,27 @@
 """Open the page that analyses recordings in a real browser, and hold it to the command.
 
-    python3 tests/browser/dropcheck_page.py dropcheck.html COMMAND [--short]
+    python3 tests/browser/dropcheck_page.py dropcheck.html COMMAND [--short | --browser firefox|webkit]
 
 COMMAND is the dropcheck of the same source; --short compares one recording a format. Needs Chromium with its driver,
 and selenium and axe-core-python from PyPI. Prints one line a check; the first that fails ends it with status 1.
+In another browser one drop is analysed by hand, and the numbers are compared: Firefox with geckodriver (`cargo install
+geckodriver`), or WebKit, Safari's engine, with WebKitWebDriver and MiniBrowser (webkit2gtk-driver, by `xvfb-run`).
 """
 
 import base64
 import json
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile
 
 from axe_core_python.selenium import Axe
 from page import held, opened
+from selenium import webdriver
 from selenium.webdriver import ActionChains, Keys
 from selenium.webdriver.common.by import By
 
@@ -47,9 +53,10 @@ def asked(driver, method, recording, cask=None):
     return driver.execute_async_script(ASKED, method, data, recording.name, cask and cask.read_text())
 
 
-def said(command, *words):
+def said(command, method, recording, *words):
     """What the command answers: its JSON, or the words of its refusal."""
-    done = subprocess.run([command, *words, "--json", "-"], cwd=EXAMPLES, capture_output=True, text=True, check=False)
+    call = [command, method, recording.name, *words, "--json", "-"]
+    done = subprocess.run(call, cwd=recording.parent, capture_output=True, text=True, check=False)
     return {"json": json.loads(done.stdout)} if done.stdout else {"refusal": done.stderr}
 
 
@@ -71,21 +78,41 @@ def differences(one, other, path="", u95=0.0):
     return [] if is_near else [f"{path}: {one} {other} (u95 {u95})"[:300]]
 
 
+def as_iso_mme(folder):
+    """The drop of `anf10-plain.csv` in ISO-MME as a zip, with its cask file."""
+    rows = [line.split(",") for line in (EXAMPLES / "anf10-plain.csv").read_text().splitlines()[1:]]
+    cask, index = (EXAMPLES / "anf10-plain.toml").read_text(), "Number of channels :2\n"
+    with ZipFile(folder / "T1.zip", "w", ZIP_DEFLATED) as files:
+        files.writestr("T1.mme", "Data format edition number :1.6\n")
+        for number, code in enumerate(["T0CASK00L100ACZ0", "T0CASK00R100ACZ0"], 1):
+            head = {"Channel code": code, "Unit": "g", "Sampling interval": 0.00008, "Time of first sample": 0,
+                    "Number of samples": len(rows)}
+            lines = [f"{name} :{value}" for name, value in head.items()] + [row[number] for row in rows]
+            files.writestr(f"Channel/T1.{number:03}", "\n".join(lines) + "\n")
+            index += f"Name of channel {number:03} :{code}\n"
+            cask = cask.replace(f'source = "A{number}"', f'source = "{code}"')
+        files.writestr("Channel/T1.chn", index)
+    (folder / "T1.toml").write_text(cask)
+    return folder / "T1.zip", folder / "T1.toml"
+
+
 def equal(driver, command, is_short):
+    """Every example, and one as ISO-MME, to the command's numbers."""
     casks = [c for c in sorted(EXAMPLES.glob("*.toml")) if not is_short or c.stem in SHORT]
-    for cask in casks:
-        for recording in [r for r in EXAMPLES.glob(f"{cask.stem}.*") if r != cask]:
-            pairs = {"inspect": (asked(driver, "inspect", recording), said(command, "inspect", recording.name)),
+    examples = [(r, cask) for cask in casks for r in EXAMPLES.glob(f"{cask.stem}.*") if r != cask]
+    with tempfile.TemporaryDirectory() as name:
+        for recording, cask in [*examples, as_iso_mme(Path(name))]:
+            pairs = {"inspect": (asked(driver, "inspect", recording), said(command, "inspect", recording)),
                      "analyze": (asked(driver, "analyze", recording, cask),
-                                 said(command, "analyze", recording.name, "--cask", cask.name))}
+                                 said(command, "analyze", recording, "--cask", cask.name))}
             for what, (page, here) in pairs.items():
                 found = differences(here, page)
                 held(f"{what} of {recording.name} as the command", "json" in page and not found, found[:9])
 
 
 def value(driver, path):
-    found = driver.find_elements(By.ID, f"field-{path}")
-    return found[0].get_attribute("value") if found else None
+    # In one step: the form may be drawn anew at any time.
+    return driver.execute_script("return document.getElementById(arguments[0])?.value", f"field-{path}")
 
 
 def told(driver, place):
@@ -221,6 +248,9 @@ def laid_on(driver):
     ActionChains(driver).click_and_hold(sensor).move_to_element(end).release().perform()
     soon("it is of the second end", lambda: value(driver, "channel.2.end") == "second")
     soon("its axis is still asked for", lambda: told(driver, "form-word").startswith("3 fields"))
+    driver.find_element(By.ID, "field-channel.2.axis").send_keys("r")
+    soon("a rate sensor has no place", lambda: not value(driver, "channel.2.position_m"))
+    soon("and is asked for none", lambda: told(driver, "form-word").startswith("2 fields"))
     driver.find_element(By.ID, "remove-2").click()
     soon("it goes without a trace", lambda: text_of(driver).strip() == whole.strip())
 
@@ -317,6 +347,42 @@ def closed(driver):
     held("the policy refused it", any("Content Security Policy" in line for line in log))
 
 
+def of_name(name):
+    """Another browser than Chromium, by the driver that is installed."""
+    if name == "firefox":
+        options = webdriver.FirefoxOptions()
+        options.add_argument("-headless")
+        return webdriver.Firefox(options, webdriver.FirefoxService(shutil.which("geckodriver")))
+    options = webdriver.WebKitGTKOptions()
+    options.binary_location = str(next(Path("/usr/lib").glob("*/webkit2gtk-*/MiniBrowser")))
+    options.add_argument("--automation")
+    # It takes the language C for a word that no number is written by.
+    service = webdriver.WebKitGTKService(shutil.which("WebKitWebDriver"), env={**os.environ, "LANG": "en_US.UTF-8"})
+    return webdriver.WebKitGTK(options, service)
+
+
+def elsewhere(page, command, name):
+    """One drop by hand in another browser, and the numbers of one recording a format."""
+    driver = of_name(name)
+    print(name, driver.capabilities.get("browserVersion"))
+    driver.set_script_timeout(120)
+    driver.get(page.resolve().as_uri())
+    soon("the page begins", lambda: told(driver, "form-word").startswith("4 fields"))
+    driver.find_element(By.ID, "cask").send_keys(str(EXAMPLES / "anf18-json.toml"))
+    soon("the cask file is in the form", lambda: value(driver, "drop.angle_deg") == "15")
+    chosen(driver, EXAMPLES / "anf18-json.mcap")
+    soon("the channels are listed", lambda: "/daq/a2.samples" in told(driver, "listing"))
+    driver.find_element(By.ID, "analyse").click()
+    soon("the report is there", driver.find_element(By.ID, "save-report").is_displayed)
+    driver.switch_to.frame("report-frame")
+    soon("with its curves", lambda: len(driver.find_elements(By.CSS_SELECTOR, ".uplot")) >= 8)
+    words = driver.find_element(By.TAG_NAME, "body").text
+    held("and its verdict", "DATA SOUND" in words and "20.62 ± 0.40 m/s" in words, words[:60])
+    driver.switch_to.default_content()
+    equal(driver, command, is_short=True)
+    driver.quit()
+
+
 def main(page, command, is_short):
     driver = opened(page)
     driver.set_script_timeout(120)
@@ -341,4 +407,7 @@ def main(page, command, is_short):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]).resolve(), "--short" in sys.argv[3:])
+    if sys.argv[3:4] == ["--browser"]:
+        elsewhere(Path(sys.argv[1]), Path(sys.argv[2]).resolve(), sys.argv[4])
+    else:
+        main(Path(sys.argv[1]), Path(sys.argv[2]).resolve(), "--short" in sys.argv[3:])
