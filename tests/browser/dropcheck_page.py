@@ -111,8 +111,8 @@ def equal(driver, command, is_short):
 
 
 def value(driver, path):
-    found = driver.find_elements(By.ID, f"field-{path}")
-    return found[0].get_attribute("value") if found else None
+    # In one step: the form may be drawn anew at any time.
+    return driver.execute_script("return document.getElementById(arguments[0])?.value", f"field-{path}")
 
 
 def told(driver, place):
@@ -248,6 +248,9 @@ def laid_on(driver):
     ActionChains(driver).click_and_hold(sensor).move_to_element(end).release().perform()
     soon("it is of the second end", lambda: value(driver, "channel.2.end") == "second")
     soon("its axis is still asked for", lambda: told(driver, "form-word").startswith("3 fields"))
+    driver.find_element(By.ID, "field-channel.2.axis").send_keys("r")
+    soon("a rate sensor has no place", lambda: not value(driver, "channel.2.position_m"))
+    soon("and is asked for none", lambda: told(driver, "form-word").startswith("2 fields"))
     driver.find_element(By.ID, "remove-2").click()
     soon("it goes without a trace", lambda: text_of(driver).strip() == whole.strip())
 
