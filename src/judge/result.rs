@@ -173,12 +173,14 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, le
 /// seconds.
 fn shifted(flight: &FlightFit, plateau: &Plateau, turned_m_s2: f64, over_s: f64) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
-    let beyond_m_s2 = (shift_m_s2 - turned_m_s2).abs();
+    // A sensor on a stiff block turns by less than its place.
+    let by_bending_m_s2 = shift_m_s2.clamp(turned_m_s2.min(0.0), turned_m_s2.max(0.0));
+    let beyond_m_s2 = (shift_m_s2 - by_bending_m_s2).abs();
     let effect_m_s = beyond_m_s2 * over_s;
     let small_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, severity };
-    (flight.drift && beyond_m_s2 > 3.0 * u_m_s2.hypot(TURNED_SHARE * turned_m_s2))
+    (flight.drift && beyond_m_s2 > 3.0 * u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2))
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
 }
 
