@@ -1,8 +1,8 @@
 //! The calls of the page `dropcheck.html`: a block of bytes with what is asked to the parts of the answer.
 //!
-//! A question is the length of a header (four bytes, the lowest first), the header (JSON) and the recording; an
-//! answer the number of its parts, then where each lies and how long it is: a header, and what the page shows or
-//! saves. The module imports nothing: it can reach no file and no network.
+//! A question is the length of a header (four bytes, the lowest first), the header (JSON) and the recording;
+//! an answer the number of its parts, then where each lies and how long it is: a header, and what the page
+//! shows or saves. The module imports nothing: it can reach no file and no network.
 
 mod cask_text;
 mod question;

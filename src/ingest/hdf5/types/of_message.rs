@@ -5,8 +5,8 @@ use crate::ingest::hdf5::answer::NumberType;
 use hdf5_reader::io::Cursor;
 use hdf5_reader::messages::datatype::parse_datatype_description;
 
-/// What stands behind the size of an IEEE 754 number of single and double precision: where its parts begin and
-/// how long they are, bits, and the bias of its exponent.
+/// What stands behind the size of an IEEE 754 number of single and double precision: where its parts begin
+/// and how long they are, bits, and the bias of its exponent.
 const IEEE: [[u8; 12]; 2] =
     [[0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0], [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0]];
 
