@@ -43,15 +43,15 @@ def main(work, program, seed):
     pictures = "".join((work / "acceptance" / f"{name}.svg").read_text() for name in ("speed", "failures"))
     chapters = {
         "Acceptance": f"<p>What the program is held against on this machine, the drops of the second simulation "
-        f"(tests/campaign, another author's equations and integration) among it.</p>{written(acceptance)}{pictures}"
+        f"(tests/campaign, another author's equations and integration) and finite elements (fixtures/reference/fe) among "
+        f"it.</p>{written(acceptance)}{pictures}"
         f"<pre>{html.escape((work / 'acceptance.txt').read_text())}</pre>",
         "Campaign": written((work / "campaign" / "campaign.md").read_text()),
         "Second simulation, as measured with damages": written(Path("docs/measured/second-simulation.md").read_text()),
         "Readers": f"<p>The tests of the readers, with files that other programs wrote (fixtures/README.md), damaged and "
         f"cut ones.</p><pre>{html.escape(readers)}</pre>{written(Path('docs/measured/fuzzing.md').read_text())}",
         "Published results": written(Path("docs/measured/table-3.md").read_text()),
-        "Not in this report": "<p>Finite elements: no such drops are shipped. Tests on a real target: by the site, with "
-        "<code>dropcheck validate --reference</code>.</p>",
+        "Not in this report": "<p>Tests on a real target: by the site, with <code>dropcheck validate --reference</code>.</p>",
     }
     body = "".join(f"<h1>{name}</h1>{text}" for name, text in chapters.items())
     print(f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>dropcheck: verification and validation</title>'

@@ -128,7 +128,7 @@ pub struct TrialLimit {
     pub most: Option<f64>,
     /// Why this much.
     pub reason: String,
-    /// Which of several did not hold; empty where they did.
+    /// Which of several did not hold, or was the furthest off; empty where they did.
     pub which: String,
 }
 
@@ -138,6 +138,12 @@ impl TrialLimit {
         let within =
             |v: f64| self.least.is_none_or(|least| v >= least) && self.most.is_none_or(|most| v <= most);
         self.value.is_some_and(within)
+    }
+
+    /// How far what was found lies from the middle, in halves of what is accepted; none where it was not found.
+    pub fn half_widths_off(&self) -> Option<f64> {
+        let (least, most) = (self.least?, self.most?);
+        Some((2.0 * self.value? - least - most).abs() / (most - least))
     }
 }
 

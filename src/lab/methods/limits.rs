@@ -1,7 +1,7 @@
 //! What was measured to what is accepted: each limit of the table beside what was found.
 
 use super::points::ALL_CLASSES;
-use super::references::{self, References};
+use super::references::{FINITE_ELEMENTS, OWN, References, built_in};
 use crate::data::Verdict;
 use crate::lab::campaign::{half_widths_off, is_missed};
 use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
@@ -23,11 +23,13 @@ pub fn limits(
     campaign: &Campaign,
     site: Option<&References>,
 ) -> Vec<TrialLimit> {
+    let finite_elements = built_in(FINITE_ELEMENTS).unwrap_or_default();
     let found = |name: &str| match name.split_once(": ") {
         Some(("campaign", measured)) => of_campaign(measured, campaign),
         Some(("map", measured)) => of_maps(measured, maps),
         Some(("filter", _)) => (passed_at_300_hz(), String::new()),
         Some(("recordings", _)) => of_own_recordings(),
+        Some(("finite elements", measured)) => of_finite_elements(measured, &finite_elements),
         Some((family, class)) => (of_points(family, class, points), String::new()),
         None => (None, String::new()),
     };
@@ -103,11 +105,32 @@ fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
 }
 
 fn of_own_recordings() -> Found {
-    let Some(limits) = references::own() else { return (None, String::new()) };
+    let Some(limits) = built_in(OWN) else { return (None, String::new()) };
     let lost = limits.into_iter().filter(|limit| !limit.is_kept());
     listed(lost.map(|limit| {
         if limit.which.is_empty() { limit.name } else { format!("{}: {}", limit.name, limit.which) }
     }))
+}
+
+/// What counts the drops of which no slap-down speed is stated.
+const NO_SPEED: &str = "no speed";
+
+/// Of drops of elastic bars: those without a slap-down speed, or by how many half-widths a quantity is off at
+/// most, and on which drop.
+fn of_finite_elements(measured: &str, limits: &[TrialLimit]) -> Found {
+    let quantity = if measured == NO_SPEED { "slap_down_speed_m_s" } else { measured };
+    let drops = limits.iter().filter_map(|limit| {
+        let drop = limit.name.strip_suffix(quantity)?.strip_suffix(": ")?;
+        Some((drop.to_owned(), limit.half_widths_off()))
+    });
+    if measured == NO_SPEED {
+        return listed(drops.filter(|(_, off)| off.is_none()).map(|(drop, _)| drop));
+    }
+    let told = drops.filter_map(|(drop, off)| Some((drop, off?)));
+    match told.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((drop, off)) => (Some(off), drop),
+        None => (None, String::new()),
+    }
 }
 
 /// Names that are said of those that do not hold.
@@ -138,6 +161,16 @@ mod tests {
         for limit in table() {
             assert!(limit.least.is_some() || limit.most.is_some(), "{}", limit.name);
             assert!(!limit.reason.is_empty() && !limit.unit.is_empty() && !limit.is_kept(), "{}", limit.name);
+        }
+    }
+
+    #[test]
+    fn drops_of_elastic_bars_are_told_as_accepted() {
+        let told = built_in(FINITE_ELEMENTS).expect("the recordings");
+        for limit in table() {
+            let Some(measured) = limit.name.strip_prefix("finite elements: ") else { continue };
+            let (value, which) = of_finite_elements(measured, &told);
+            assert!(TrialLimit { value, ..limit.clone() }.is_kept(), "{measured}: {value:?} on {which}");
         }
     }
 

@@ -14,47 +14,86 @@ use std::path::{Path, PathBuf};
 /// What a folder of reference recordings holds besides them.
 const NAME: &str = "reference.toml";
 
-/// What stands in it.
-const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", \
-                    findings = [\"clipped\"], k = 0.51 or k = { value = 0.51, within = 0.02 }, \
-                    slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, impact_velocity_m_s, \
-                    predicted_speed_m_s";
-
-/// Recordings of `fixtures/examples` and their cask files by their names.
+/// Recordings of a folder of the fixtures and their cask files by their names, and its `reference.toml`.
 macro_rules! fixtures {
-    ($($stem:literal $ending:literal),*) => {
-        [$(
-            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/examples/", $stem,
+    ($folder:literal, $($stem:literal $ending:literal),*) => {
+        &[
+            $((concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/", $folder, "/", $stem,
                 $ending)).as_slice()),
-            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/examples/", $stem,
-                ".toml")).as_slice()),
-        )*]
+            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/", $folder, "/", $stem,
+                ".toml")).as_slice()),)*
+            (NAME, include_bytes!(concat!("../../../fixtures/", $folder, "/reference.toml")).as_slice()),
+        ]
     };
 }
 
+/// Small files by their names.
+type Files = &'static [(&'static str, &'static [u8])];
+
 /// Small recordings that another program simulated, and what is expected of them.
-const OWN: [(&str, &[u8]); 22] = fixtures![
-    "anf10-plain" ".csv", "anf10-protobuf" ".mcap", "anf18-german" ".csv", "anf18-json" ".mcap",
+pub(super) const OWN: Files = fixtures![
+    "examples", "anf10-plain" ".csv", "anf10-protobuf" ".mcap", "anf18-german" ".csv", "anf18-json" ".mcap",
     "damaged-clipped" ".h5", "damaged-ends-early" ".csv", "damaged-gap" ".mcap", "damaged-truncated" ".mcap",
     "damaged-zero-shift" ".h5", "esbb-imu" ".mcap", "vhlw-rest" ".h5"
 ];
-const OWN_EXPECTED: &str = include_str!("../../../fixtures/examples/reference.toml");
 
-/// What is expected of a recording, as `reference.toml` says it.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Expected {
-    cask: Option<PathBuf>,
-    verdict: Option<String>,
-    /// Codes that must be named.
-    #[serde(default)]
-    findings: Vec<String>,
-    impact_velocity_m_s: Option<ExpectedValue>,
-    k: Option<ExpectedValue>,
-    angular_velocity_rad_s: Option<ExpectedValue>,
-    flight_time_s: Option<ExpectedValue>,
-    slap_down_speed_m_s: Option<ExpectedValue>,
-    predicted_speed_m_s: Option<ExpectedValue>,
+/// Drops of elastic bars by finite elements, and their truth.
+pub(super) const FINITE_ELEMENTS: Files = fixtures![
+    "reference/fe", "bare-5" ".h5", "pads-8" ".h5", "pads-12" ".h5", "bare-15" ".h5", "friction-20" ".h5",
+    "friction-30" ".h5"
+];
+
+/// Quantities that a reference may state, and where the result has each.
+macro_rules! expected {
+    ($($quantity:ident => $found:expr,)*) => {
+        /// What is expected of a recording, as `reference.toml` says it.
+        #[derive(Debug, Clone, Default, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Expected {
+            cask: Option<PathBuf>,
+            verdict: Option<String>,
+            /// Codes that must be named.
+            #[serde(default)]
+            findings: Vec<String>,
+            $($quantity: Option<ExpectedValue>,)*
+        }
+
+        /// What stands in `reference.toml`.
+        const FORM: &str = concat!("a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", \
+            verdict = \"pass\", findings = [\"clipped\"], k = 0.51 or k = { value = 0.51, within = 0.02 }",
+            $(", ", stringify!($quantity),)*);
+
+        impl Expected {
+            /// Each value that is stated, by its quantity, beside what was found.
+            fn limits(&self, result: Option<&DropResult>) -> Vec<TrialLimit> {
+                fn found(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
+                    of(result)
+                }
+                [$((stringify!($quantity), self.$quantity, result.and_then(|r| found($found, r)))),*]
+                    .into_iter()
+                    .filter_map(|(quantity, expected, found)| Some(expected?.limit(quantity, found)))
+                    .collect()
+            }
+        }
+    };
+}
+
+expected! {
+    impact_velocity_m_s => |r| r.first_impact.impact_velocity,
+    k => |r| r.k,
+    angular_velocity_rad_s => |r| r.first_impact.angular_velocity,
+    flight_time_s => |r| r.slap_down.flight_time,
+    slap_down_speed_m_s => |r| r.slap_down.speed,
+    predicted_speed_m_s => |r| {
+        r.comparison.as_ref().map(|c| Estimate::new(c.predicted, c.predicted_u95, "m/s"))
+    },
+    horizontal_velocity_m_s => |r| r.slap_down.horizontal_velocity,
+    local_speed_m_s => |r| r.slap_down.local_speed,
+    first_impulse_x_n_s => |r| r.impacts[0].numbers.impulse_x,
+    first_impulse_z_n_s => |r| r.impacts[0].numbers.impulse_z,
+    second_impulse_x_n_s => |r| r.impacts[1].numbers.impulse_x,
+    second_impulse_z_n_s => |r| r.impacts[1].numbers.impulse_z,
+    second_restitution => |r| r.impacts[1].numbers.restitution,
 }
 
 /// A value that the stated interval must hold, or one with a distance of its own.
@@ -63,6 +102,24 @@ struct Expected {
 enum ExpectedValue {
     Held(f64),
     Near { value: f64, within: f64 },
+}
+
+impl ExpectedValue {
+    fn limit(self, quantity: &str, found: Option<Estimate>) -> TrialLimit {
+        let (value, within) = match self {
+            Self::Held(value) => (value, found.map_or(f64::NAN, |found| found.u95)),
+            Self::Near { value, within } => (value, within),
+        };
+        TrialLimit {
+            name: quantity.to_owned(),
+            unit: found.map_or_else(String::new, |found| found.unit.to_owned()),
+            value: found.map(|found| found.value),
+            least: Some(value - within),
+            most: Some(value + within),
+            reason: format!("expected: {value}"),
+            ..TrialLimit::default()
+        }
+    }
 }
 
 /// Recordings of a folder, with what is expected of each.
@@ -110,34 +167,10 @@ impl References {
             let recording = analysis::read(&self.folder.join(name), &file, &|_| ());
             Ok(analyze(&recording.map_err(|error| error.to_string())?, &file).result)
         });
-        let mut limits = vec![words(name, expected, analyzed.as_ref())];
-        let result = analyzed.as_ref().ok();
-        let (first, second) = (result.map(|r| &r.first_impact), result.map(|r| &r.slap_down));
-        let predicted = result.and_then(|r| r.comparison.as_ref());
-        let predicted = predicted.map(|c| Estimate::new(c.predicted, c.predicted_u95, "m/s"));
-        let turning = first.and_then(|f| f.angular_velocity);
-        for (quantity, expected, found) in [
-            ("impact_velocity_m_s", expected.impact_velocity_m_s, first.and_then(|f| f.impact_velocity)),
-            ("k", expected.k, result.and_then(|r| r.k)),
-            ("angular_velocity_rad_s", expected.angular_velocity_rad_s, turning),
-            ("flight_time_s", expected.flight_time_s, second.and_then(|s| s.flight_time)),
-            ("slap_down_speed_m_s", expected.slap_down_speed_m_s, second.and_then(|s| s.speed)),
-            ("predicted_speed_m_s", expected.predicted_speed_m_s, predicted),
-        ] {
-            let Some(expected) = expected else { continue };
-            let (value, within) = match expected {
-                ExpectedValue::Held(value) => (value, found.map_or(f64::NAN, |found| found.u95)),
-                ExpectedValue::Near { value, within } => (value, within),
-            };
-            limits.push(TrialLimit {
-                name: format!("{}: {quantity}", name.display()),
-                unit: found.map_or_else(String::new, |found| found.unit.to_owned()),
-                value: found.map(|found| found.value),
-                least: Some(value - within),
-                most: Some(value + within),
-                reason: format!("expected: {value}"),
-                ..TrialLimit::default()
-            });
+        let mut limits = vec![words(expected, analyzed.as_ref())];
+        limits.extend(expected.limits(analyzed.as_ref().ok()));
+        for limit in &mut limits {
+            limit.name = format!("{}: {}", name.display(), limit.name);
         }
         limits
     }
@@ -149,7 +182,7 @@ fn cask_of(name: &Path, expected: &Expected) -> PathBuf {
 }
 
 /// Verdict and findings, or why the recording is refused.
-fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String>) -> TrialLimit {
+fn words(expected: &Expected, analyzed: Result<&DropResult, &String>) -> TrialLimit {
     let mut differs = Vec::new();
     match analyzed {
         Err(problem) => differs.push(problem.clone()),
@@ -167,7 +200,7 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
     let verdict = expected.verdict.iter().map(|verdict| format!("verdict {verdict}"));
     let wanted: Vec<String> = verdict.chain(expected.findings.iter().cloned()).collect();
     TrialLimit {
-        name: format!("{}: words", name.display()),
+        name: "words".to_owned(),
         unit: "that differ".to_owned(),
         value: u32::try_from(differs.len()).ok().map(f64::from),
         most: Some(0.0),
@@ -181,10 +214,10 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
     }
 }
 
-/// How many expected values of the program's own recordings are not given.
-pub(super) fn own() -> Option<Vec<TrialLimit>> {
+/// Every expected value of recordings that the program has built in.
+pub(super) fn built_in(files: Files) -> Option<Vec<TrialLimit>> {
     let folder = tempfile::tempdir().ok()?;
-    for (name, bytes) in OWN.into_iter().chain([(NAME, OWN_EXPECTED.as_bytes())]) {
+    for (name, bytes) in files {
         std::fs::write(folder.path().join(name), bytes).ok()?;
     }
     Some(References::of(folder.path()).ok()?.limits())
@@ -236,7 +269,10 @@ mod tests {
 
     #[test]
     fn our_own_are_whole() {
-        let expected: BTreeMap<PathBuf, Expected> = toml::from_str(OWN_EXPECTED).expect("whole");
-        assert_eq!(2 * expected.len(), OWN.len());
+        for files in [OWN, FINITE_ELEMENTS] {
+            let text = files.last().map(|(_, bytes)| String::from_utf8_lossy(bytes)).expect("reference.toml");
+            let expected: BTreeMap<PathBuf, Expected> = toml::from_str(&text).expect("whole");
+            assert_eq!(2 * expected.len() + 1, files.len());
+        }
     }
 }
