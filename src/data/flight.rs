@@ -150,15 +150,16 @@ impl FlightFit {
         first.max(second) > alone * first.min(second)
     }
 
-    /// How far the outermost channel on the first end goes along with that on the second in a mode, as a share
-    /// of it; negative where it goes the other way.
+    /// How far the outermost channel on the first end goes along with that on the second in a mode, as a
+    /// share of it; negative where it goes the other way.
     #[must_use]
     pub fn goes_along(&self, mode: usize, signals: &[Signal]) -> f64 {
         let across = || signals.iter().zip(&self.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
         let by_place =
             |a: &(&Signal, &Plateau), b: &(&Signal, &Plateau)| a.0.position_m.total_cmp(&b.0.position_m);
-        let of = |outermost: Option<(&Signal, &Plateau)>| outermost?.1.ringing_m_s.get(mode).copied();
-        let ends = (of(across().min_by(by_place)), of(across().max_by(by_place)));
+        let ringing_m_s =
+            |outermost: Option<(&Signal, &Plateau)>| outermost?.1.ringing_m_s.get(mode).copied();
+        let ends = (ringing_m_s(across().min_by(by_place)), ringing_m_s(across().max_by(by_place)));
         let (Some(first), Some(last)) = ends else { return 0.0 };
         let square = last.0 * last.0 + last.1 * last.1;
         if square > 0.0 { (last.0 * first.0 + last.1 * first.1) / square } else { 0.0 }
@@ -191,8 +192,8 @@ impl FlightFit {
             .count()
     }
 
-    /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go together,
-    /// and which of these it is; 0 where the cask swings.
+    /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
+    /// together, and which of these it is; 0 where the cask swings.
     #[must_use]
     pub fn bending_orders(&self, signals: &[Signal]) -> Vec<u8> {
         let (swinging, mut together) = (self.swinging(signals), 0);
@@ -273,12 +274,12 @@ mod tests {
         let signals = [signal(End::First, 0.3), signal(End::Second, 4.7)];
         // Of each mode the frequency and how the first end goes along.
         let swinging = |modes: &[(f64, f64)]| {
-            let of = |share: fn(f64) -> f64| Plateau {
+            let plateau = |share: fn(f64) -> f64| Plateau {
                 ringing_m_s: modes.iter().map(|mode| (0.0, share(mode.1))).collect(),
                 ..example::plateau("A", 0.0)
             };
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
-            let plateaus = vec![of(|along| along), of(|_| 1.0)];
+            let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
             FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals)
         };
         assert_eq!(swinging(&[(80.0, 1.0), (220.0, -1.0)]), 0, "a uniform beam");

@@ -121,7 +121,8 @@ tolerances! {
     /// What a sensor reads of the other body axis, as a share: cross-axis sensitivity and tilt.
     cross_axis: "cross_axis_percent" in Percent, 2.0,
         "cross axis of a channel", "what a sensor reads of the other body axis, tilt included";
-    /// What strain of its base, heat and its cable add to a sensor's reading in a contact, as a share of its peak.
+    /// What strain of its base, heat and its cable add to a sensor's reading in a contact, as a share of its
+    /// peak.
     base_strain: "base_strain_percent" in Percent, 0.5,
         "base strain of a sensor", "of its peak in a contact, heat and cable included";
     /// Place of a sensor along the axis, m.

@@ -44,8 +44,8 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
 }
 
-/// Standard uncertainty of what strain of its base adds to a channel's velocity step, m/s: half a sine over the
-/// contact, of the stated share of the channel's peak there.
+/// Standard uncertainty of what strain of its base adds to a channel's velocity step, m/s: half a sine over
+/// the contact, of the stated share of the channel's peak there.
 pub fn u_base_strain_m_s(measured: &FitData, channel: usize) -> f64 {
     let (signal, events) = (&measured.signals[channel], measured.events);
     let Some((contact_s, left_s)) = events.first_contact_s().zip(events.separation_s()) else { return 0.0 };

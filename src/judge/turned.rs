@@ -52,7 +52,7 @@ mod tests {
         let plateaus = vec![plateau("A1"), plateau("A2"), plateau("X1"), plateau("X2")];
         let flight = FlightFit { modes: vec![mode], ..example::flight(0.0, 0.1, plateaus) };
         let reads = |i: usize| turned_m_s2(&signals[i], &signals, &flight, 5.0);
-        // θ f = w′ ẅ with w = φ q: −φ′ φ (ω q)²/2 in the mean; φ = 1.536, φ′ = −9.25/5 m at 0.05 of the length.
+        // w′ ẅ of w = φ q: −φ′ φ (ω q)²/2 in the mean; φ = 1.536, φ′ = −9.25/5 m at 0.05 of the length.
         let wanted = 0.5 * 9.25 / 5.0 / 1.536 * 25.0;
         assert!((reads(2) / wanted - 1.0).abs() < 0.01, "{} {wanted}", reads(2));
         assert!((reads(2) + reads(3)).abs() < 1e-9 && reads(0).abs() < f64::EPSILON);

@@ -1,5 +1,5 @@
-//! `validate --campaign`: random scenes, one after the other, to lines and tables; and the shards of a campaign
-//! to the same tables.
+//! `validate --campaign`: random scenes, one after the other, to lines and tables; and the shards of a
+//! campaign to the same tables.
 
 use super::super::Ending;
 use super::super::lines::{self, LineOutput, LineRecord};

@@ -140,7 +140,8 @@ impl TrialLimit {
         self.value.is_some_and(within)
     }
 
-    /// How far what was found lies from the middle, in halves of what is accepted; none where it was not found.
+    /// How far what was found lies from the middle, in halves of what is accepted; none where it was not
+    /// found.
     pub fn half_widths_off(&self) -> Option<f64> {
         let (least, most) = (self.least?, self.most?);
         Some((2.0 * self.value? - least - most).abs() / (most - least))

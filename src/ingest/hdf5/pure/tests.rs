@@ -66,7 +66,8 @@ pub(in super::super) fn refused_of(path: &Path) -> Vec<String> {
     }
     assert_eq!(walked[0].len(), walked[1].len());
     let listings = [listed(path.into()), listed(memory)];
-    if refused.is_empty() {
+    // A filter that is not undone in memory leaves a channel without its rate and range.
+    if refused.is_empty() && listings[1].channels.iter().all(|channel| channel.unreadable.is_none()) {
         assert_eq!(listings[1], listings[0]);
     }
     for channel in &listings[1].channels {
