@@ -100,7 +100,9 @@ fn tabled(
     let mut tally = Tally::new(request.clone());
     // As they are written, so that a merge of shards counts the same numbers.
     work(&mut |line| {
-        campaign::read(line).iter().for_each(|row| tally.add(row));
+        if let Some(row) = campaign::read(line) {
+            tally.add(&row);
+        }
         Ok(())
     })?;
     let tables = campaign::markdown(&tally);
