@@ -69,6 +69,8 @@ impl Measured {
 fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
     let Flown { flight, motion, quantities, reconstruction, .. } = flown;
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
+    // An end whose channel was made of the other's does not show where it goes.
+    found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);
     found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
