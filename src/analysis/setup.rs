@@ -42,7 +42,6 @@ pub fn sticking(cask_file: &CaskFile) -> Setup {
         horizontal_velocity_m_s: cask_file.drop.horizontal_velocity_m_s,
         gravity_m_s2: cask_file.drop.gravity_m_s2,
         axial: AxialClosure::Sticking,
-        footprint: 0.0,
         second_s: 1.0,
         contact_steps: CONTACT_STEPS,
     }

@@ -47,8 +47,6 @@ pub struct Setup {
     pub gravity_m_s2: f64,
     /// How the axial velocity during contact is had.
     pub axial: AxialClosure,
-    /// How far the crushed corner's force lies inward of the corner, m for each of crush.
-    pub footprint: f64,
     /// How long a second of the recorder's clock lasts, s: 1 where its rate is as stated.
     pub second_s: f64,
     /// Steps that the contact is followed in.

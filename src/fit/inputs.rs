@@ -21,10 +21,6 @@ const MEASURE: &str = "measure between the edges that strike";
 const FILM: &str = "high-speed video of the fall";
 const GYRO: &str = "an angular-rate sensor and the rest before the release";
 
-/// Standard uncertainty of how far a crushed corner's force lies inward of the corner, m for each of crush:
-/// a flattened edge has up to (cot φ − tan φ) / 2, 1.7 at 15°, a limiter with a broad foot 5.
-const FOOTPRINT: f64 = 1.0;
-
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
 
@@ -111,7 +107,6 @@ pub(super) enum InputShift {
     CentreOfGravity { by_m: f64 },
     Inertia { share: f64 },
     Friction { ratio: f64, by: f64 },
-    Footprint { by: f64 },
     Clock { share: f64 },
     Length { by_m: f64 },
     Section { by_m: f64 },
@@ -142,9 +137,7 @@ impl InputShift {
             Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
         };
         match *self {
-            Self::Step { .. } | Self::Event { .. } | Self::Footprint { .. } | Self::OfSecondImpact { .. } => {
-                None
-            }
+            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } => None,
             Self::Scale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
             }
@@ -277,7 +270,6 @@ impl Inputs {
                 let most = MOST_FRICTION / self.setup.angle_rad.tan();
                 self.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
             }
-            InputShift::Footprint { by: u } => self.setup.footprint += by * u,
             InputShift::Clock { share } => self.setup.second_s += by * share,
             InputShift::Length { by_m } => self.setup.length_m += by * by_m,
             InputShift::Section { by_m } => self.setup.height_m += by * by_m,
@@ -333,8 +325,6 @@ pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput>
     if let Some(AssumedFriction { ratio, u }) = measured.friction {
         add("friction of the first contact", format!("{u:.3}"), InputShift::Friction { ratio, by: u });
     }
-    let footprint = InputShift::Footprint { by: FOOTPRINT };
-    add("footprint of the crushed corner", format!("{FOOTPRINT} m a metre of crush"), footprint);
     let by_m = known.length * measured.setup.length_m / 2.0;
     add("length", format!("{:.0} mm", 1e3 * by_m), InputShift::Length { by_m });
     let by_m = known.height * measured.setup.height_m / 2.0;

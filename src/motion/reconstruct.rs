@@ -130,11 +130,9 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
 }
 
 /// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of
-/// (1), less what the crushed corner's footprint takes off them   (32)
+/// (1)   (32)
 fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle: (f64, f64)) -> f64 {
-    let (corner_a_m, corner_b_m) = planar::arms_m(middle, setup.cog_m, setup.height_m);
-    let crush_m = (corner_b_m - f64::midpoint(before.height_m, after.height_m)).max(0.0);
-    let (a_m, b_m) = (corner_a_m - setup.footprint * crush_m, corner_b_m - setup.footprint * crush_m);
+    let (a_m, b_m) = planar::arms_m(middle, setup.cog_m, setup.height_m);
     let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
         + setup.gravity_m_s2 * (after.time_s - before.time_s);
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
@@ -232,11 +230,9 @@ impl OnTarget {
                 let gained = gained_m_s * (sin_m + friction * cos_m) / (cos_m - friction * sin_m);
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
             }
-            // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω b, of what is crushed a part of the crush above the corner   (18)
+            // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω b   (18)
             _ => {
-                let (_, corner_b_m) = planar::arms_m(self.angle_by, setup.cog_m, setup.height_m);
-                let crush_m = (corner_b_m - self.state.height_m).max(0.0);
-                let b_m = corner_b_m - setup.footprint * crush_m;
+                let (_, b_m) = planar::arms_m(self.angle_by, setup.cog_m, setup.height_m);
                 (self.transverse_m_s * sin - rotation_rad_s * b_m) / cos
             }
         };
@@ -308,7 +304,6 @@ mod tests {
             horizontal_velocity_m_s: 0.0,
             gravity_m_s2: 9.81,
             axial,
-            footprint: 0.0,
             second_s: 1.0,
             contact_steps: CONTACT_STEPS,
         };
