@@ -1,7 +1,8 @@
 //! A damage that shows in the samples alone to the samples that have it.
 
 use super::super::data::{SyntheticChannel, SyntheticRecording};
-use super::super::drawn::{DrawnDrop, unit_m_s2};
+use super::super::drawn::{DrawnDrop, DropPlan, unit_m_s2};
+use super::super::synth;
 use crate::data::{STANDARD_GRAVITY_M_S2, Unit};
 use crate::numerics::{as_count, as_f64, single};
 use std::f64::consts::TAU;
@@ -110,18 +111,15 @@ fn spikes(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
 
 /// Strain of the base, in step with the bending that the first end's force makes.
 fn base_strain(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    const DAMPING: f64 = 0.03;
-    let rate_hz = recording.channels[0].sample_rate_hz;
-    let frequency_hz = case.scene.modes.first().map_or(100.0, |mode| mode.frequency_hz);
-    let turn = TAU * frequency_hz / rate_hz;
-    let [from, to] = [0.0, case.contact_s()].map(|since_s| index(case, &recording.channels[0], since_s));
-    let first = recording.channels[0].samples.clone();
-    // q'' = f - 2 D w q' - w^2 q, in units of the step; a free beam bends so behind its own end.
-    let (mut bent, mut by_step) = (0.0, 0.0);
-    let bending = first.iter().enumerate().map(|(i, force)| {
-        let drive = if (from..to).contains(&i) { f64::from(*force) } else { 0.0 };
-        by_step += drive - 2.0 * DAMPING * turn * by_step - turn * turn * bent;
-        bent += by_step;
+    let first = &recording.channels[0];
+    let mode = DropPlan::mode(1, case.scene.modes.first().map_or(100.0, |mode| mode.frequency_hz));
+    let step_s = 1.0 / first.sample_rate_hz;
+    let pulse = index(case, first, 0.0)..index(case, first, case.contact_s());
+    let (mut bent, mut velocity) = (0.0, 0.0);
+    let bending = first.samples.iter().enumerate().map(|(i, force)| {
+        let drive = if pulse.contains(&i) { f64::from(*force) } else { 0.0 };
+        velocity += synth::bending_m_s2(&mode, drive, bent, velocity) * step_s;
+        bent += velocity * step_s;
         bent
     });
     let bending: Vec<f64> = bending.collect();
@@ -132,12 +130,13 @@ fn base_strain(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f
     channel.samples.iter_mut().zip(bending).for_each(|(x, bent)| *x += single(amplitude * bent / most));
 }
 
-/// What heat leaves in a channel from its peak on, which fades within 5 to 100 ms.
+/// What heat leaves in a channel from the peak of its first impact on, which fades within 5 to 100 ms.
 fn thermal(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let (share, fades_s) = (case.chance.sign() * size / 100.0, case.chance.log_even(5e-3, 0.1));
-    let (way_s, channel) = (case.way_s() / 2.0, case.chance.index(2));
-    let channel = &mut recording.channels[channel];
-    let (from, to) = (index(case, channel, 0.0), index(case, channel, way_s));
+    let half_way_s = case.way_s() / 2.0;
+    let which = case.chance.index(2);
+    let channel = &mut recording.channels[which];
+    let (from, to) = (index(case, channel, 0.0), index(case, channel, half_way_s));
     let struck = (from..to).max_by(|a, b| channel.samples[*a].abs().total_cmp(&channel.samples[*b].abs()));
     let (amplitude, fades) = (share * peak(channel), fades_s * channel.sample_rate_hz);
     for (i, sample) in channel.samples.iter_mut().skip(struck.unwrap_or(to)).enumerate() {

@@ -8,7 +8,7 @@ pub(super) use crate::numerics::free_beam::shape;
 ///
 /// The modes ride on the rigid motion and do not act back on the contact, so that k stays a property of the
 /// ends.
-pub(super) fn acceleration_m_s2(mode: &BendingMode, drive_m_s2: f64, q_m: f64, velocity_m_s: f64) -> f64 {
+pub fn bending_m_s2(mode: &BendingMode, drive_m_s2: f64, q_m: f64, velocity_m_s: f64) -> f64 {
     let omega = std::f64::consts::TAU * mode.frequency_hz;
     drive_m_s2 - 2.0 * mode.damping * omega * velocity_m_s - omega * omega * q_m
 }

@@ -244,7 +244,7 @@ impl<'a> SceneBody<'a> {
             let drive_m_s2 = across_n[0] * first + across_n[1] * second;
             let (q_m, velocity_m_s) = (y[6 + 2 * i], y[7 + 2 * i]);
             rates[6 + 2 * i] = velocity_m_s;
-            rates[7 + 2 * i] = beam::acceleration_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
+            rates[7 + 2 * i] = beam::bending_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
         }
         let cask = &self.scene.cask;
         for (i, loose) in self.loose() {

@@ -13,7 +13,7 @@ mod motion;
 mod sensor;
 mod truth;
 
-pub use beam::MOST_MODES;
+pub use beam::{MOST_MODES, bending_m_s2};
 pub use body::MOST_LOOSE;
 pub use chain::record;
 pub use crush::crushable_end;
