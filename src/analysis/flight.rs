@@ -78,6 +78,11 @@ fn fitted(
     // length.
     let is_uncertain = is_made(End::First) || events::transverse(signals, End::First).is_some_and(is_cut);
     let u_pulse_s = if is_uncertain { UNCERTAIN_PULSE * (left_s - contact_s) } else { 0.0 };
+    if let Some(overlap) = judge::judge_overlap(left_s - contact_s, &file.cask, &file.drop, &file.tolerances)
+    {
+        findings.push(overlap);
+        return None;
+    }
     let is_in_order = left_s > contact_s && found.slap_down.is_none_or(|struck| struck.time_s > left_s);
     if !is_in_order {
         findings.push(DropFinding::ShortFlight.into());

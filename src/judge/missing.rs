@@ -1,6 +1,6 @@
 //! What an analysis did not find to what that means: an impact, an end, a slap-down, a flight.
 
-use crate::data::{CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity};
+use crate::data::{Cask, CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity, Tolerances};
 
 /// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from
 /// 15° takes 65 ms.
@@ -42,6 +42,15 @@ pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
     found.into()
 }
 
+/// An impact of L that lasts until R is down, which no impulse of L delays: then no flight lies between both.
+#[must_use]
+pub fn judge_overlap(lasts_s: f64, cask: &Cask, drop: &Drop, tolerances: &Tolerances) -> Option<Finding> {
+    let down_m_s = drop.impact_velocity_m_s
+        + (drop.angular_velocity_rad_s - tolerances.angular_velocity_rad_s) * cask.length_m;
+    let strikes_by_s = cask.length_m * (drop.angle_rad + tolerances.angle_rad).sin() / down_m_s;
+    (down_m_s > 0.0 && lasts_s > strikes_by_s).then(|| DropFinding::Overlap { strikes_by_s, lasts_s }.into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +61,23 @@ mod tests {
         assert_eq!(code(0.2, true), IssueCode::EndsEarly);
         assert_eq!(code(0.2, false), IssueCode::NoSlapDown);
         assert_eq!(code(0.7, true), IssueCode::NoSlapDown);
+    }
+
+    #[test]
+    fn an_impact_overlaps_where_the_second_end_is_down_before_its_end() {
+        let cask = Cask::block("rod", 1000.0, 5.0, 0.5);
+        let overlaps = |lasts_s, angle_deg: f64| {
+            judge_overlap(
+                lasts_s,
+                &cask,
+                &Drop::of_height(9.0, angle_deg.to_radians()),
+                &Tolerances::default(),
+            )
+        };
+        // 5 m · sin 1.4° over 13.28 m/s less 1 °/s of 5 m: 9.3 ms.
+        assert!(overlaps(9.2e-3, 1.0).is_none());
+        assert_eq!(overlaps(9.4e-3, 1.0).expect("overlaps").code, IssueCode::SecondContact);
+        assert!(overlaps(9.4e-3, 5.0).is_none());
     }
 
     #[test]

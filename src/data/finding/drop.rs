@@ -36,6 +36,11 @@ pub enum DropFinding {
     /// The flight is too short to be fitted.
     #[error("the free flight between the impacts is too short to be separated from them and from ringing")]
     ShortFlight => (Code::FlightFit, Error);
+    /// R comes down before L's impact is over.
+    #[error("by the stated angle the second end strikes within {:.1} ms of the first, whose impact lasts \
+             {:.1} ms: contacts that overlap are not followed; check `angle_deg`", 1e3 * .strikes_by_s,
+            1e3 * .lasts_s)]
+    Overlap { strikes_by_s: f64, lasts_s: f64 } => (Code::SecondContact, Error);
     /// Another drop, so long after the one that was analysed.
     #[error(
         "the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and \
