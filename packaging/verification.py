@@ -39,8 +39,8 @@ def scored(limits):
             drops.setdefault(name, {})[quantity] = is_held
     without = [name for name, held in drops.items() if None in held.values()]
     beyond = [f"{name} ({quantity})" for name, held in drops.items() for quantity, is_held in held.items() if is_held is False]
-    return (f"<p>Of {len(drops)} drops {len(without)} get no number ({', '.join(without) or 'none'}). Of the others every interval "
-            f"holds speed, k and angular velocity, but for: {', '.join(beyond) or 'none'}.</p>")
+    return (f"<p>Of {len(drops)} drops {len(without)} get no number ({', '.join(without) or 'none'}). The intervals of the others hold "
+            f"speed, k and angular velocity; beyond: {', '.join(beyond) or 'none'}.</p>")
 
 
 def main(work, program, seed):
@@ -57,13 +57,14 @@ def main(work, program, seed):
     rows = "".join(f"<tr><th>{name}</th><td>{html.escape(value)}</td></tr>" for name, value in versions.items())
     readers = (work / "readers.txt").read_text()
     acceptance = (work / "acceptance" / "validation.md").read_text()
-    verdict = (work / "acceptance.txt").read_text().strip().rpartition("\n\n")[2]
+    told_of_it = re.sub("^Written: .*", "", (work / "acceptance.txt").read_text(), flags=re.M).strip()
+    verdict = told_of_it.rpartition("\n\n")[2]
     second = json.loads((work / "second" / "validation.json").read_text())["limits"]
     pictures = "".join((work / "acceptance" / f"{name}.svg").read_text() for name in ("speed", "failures"))
     chapters = {
         "Acceptance": f"<p>What the program is held against on this machine, finite elements "
         f"(fixtures/reference/fe) among it.</p>{written(acceptance)}{pictures}"
-        f"<pre>{html.escape((work / 'acceptance.txt').read_text())}</pre>",
+        f"<pre>{html.escape(told_of_it)}</pre>",
         "Campaign": written((work / "campaign" / "campaign.md").read_text()),
         "Second simulation": f"<p>Drops of tests/campaign, another author's equations and integration.</p>{scored(second)}"
         "<p>As measured before, with damages:</p>" + written(Path("docs/measured/second-simulation.md").read_text()),
