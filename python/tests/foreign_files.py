@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -95,6 +96,11 @@ def table(channels: Channels) -> pyarrow.Table:
     return pyarrow.table({"time_s": times_of(channels), **{f"{name} [g]": values for name, values in channels.items()}})
 
 
+def json_text(path: Path, channels: Channels) -> None:
+    rows = zip(times_of(channels).tolist(), *(values.tolist() for values in channels.values()), strict=True)
+    path.write_text(json.dumps([dict(zip(["timestamp", *channels], row, strict=True)) for row in rows]))
+
+
 def ide(path: Path, channels: Channels) -> None:
     """As an enDAQ recorder writes it, in blocks; idelib only reads."""
     schema = loadSchema(str(Path(idelib.__file__).parent / "schemata" / "mide_ide.xml"))
@@ -134,6 +140,7 @@ FORMATS: dict[str, tuple[Callable[[Path, Channels], None], tuple[str, str]]] = {
     "drop.wav": (wav, ("samples[0]", "samples[1]")),
     "drop.parquet": (lambda path, channels: pyarrow.parquet.write_table(table(channels), path), ("A1", "A2")),
     "drop.arrow": (lambda path, channels: pyarrow.feather.write_feather(table(channels), str(path)), ("A1", "A2")),
+    "drop.json": (json_text, ("A1", "A2")),
     "drop.npy": (npy, ("samples[0]", "samples[1]")),
 }
 # What the program reads itself.

@@ -9,6 +9,7 @@ const UFF: &str = include_str!("convert/uff.txt");
 const MATLAB: &str = include_str!("convert/matlab.txt");
 const IDE: &str = include_str!("convert/ide.txt");
 const ARROW: &str = include_str!("convert/arrow.txt");
+const JSON: &str = include_str!("convert/json.txt");
 const NETCDF: &str = include_str!("convert/netcdf.txt");
 
 /// The words for formats that a library of their field reads, by how to convert them.
@@ -113,6 +114,10 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Some(("a universal file (UFF)", UFF));
     }
+    let begin = format!("{first}{second}").replace(' ', "");
+    if begin.starts_with("{\"") || begin.starts_with("[{") {
+        return Some(("a JSON text", JSON));
+    }
     if OF_MME.iter().any(|name| first.starts_with(name) || text.contains(&format!("\n{name}"))) {
         return Some((
             "a file of a test in ISO-MME (ISO/TS 13499)",
@@ -140,6 +145,8 @@ mod tests {
         for (head, part) in [
             (b"RIFF\x24\0\0\0WAVEfmt ".to_vec(), "WAV"),
             (b"PAR1\x15\x04".to_vec(), "Parquet"),
+            (b"[\n { \"t\": 0,\n".to_vec(), "JSON"),
+            (b"{\"t\":0,\"A1\":[1,2,3]}\n{\"t\":1,\"A1\":[1,2,3]}\n".to_vec(), "JSON"),
             (b"    -1\n    58\nA1\n".to_vec(), "UFF"),
             (b"    -1\r\n   58b     1     2\r\n".to_vec(), "UFF"),
             (b"    -1\n   151\nmodel\n".to_vec(), "UFF"),

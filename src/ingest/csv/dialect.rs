@@ -70,6 +70,8 @@ impl Dialect {
         let mut score = 0;
         let (mut values, mut stamps) = (vec![0_usize; columns], vec![0_usize; columns]);
         let mut words = vec![0_i64; columns];
+        let is_number =
+            |cell: &str| b".,".iter().any(|&mark| number::of_cell(cell.as_bytes(), mark).is_some());
         for cells in &rows {
             for (column, cell) in cells.iter().enumerate() {
                 if self.is_value(cell) {
@@ -79,10 +81,8 @@ impl Dialect {
                 } else if number::is_grouped(cell, None) {
                     // A number too, though it is not read: other delimiters would cut it to pieces that are.
                     score += 1;
-                } else if number::of_cell(cell.as_bytes(), if self.decimal == b',' { b'.' } else { b',' })
-                    .is_some()
-                {
-                    // Of the other dialect.
+                } else if cell.split(';').all(is_number) {
+                    // Of the other decimal mark, or several in one cell.
                     score -= 2;
                 } else if !number::is_missing(cell.as_bytes()) {
                     words[column] += 1;

@@ -21,7 +21,7 @@ pub(super) struct TableColumn {
     pub is_numeric: bool,
     /// Whether its cells are date-time stamps or clock times.
     pub is_stamped: bool,
-    /// Its cell in the first row.
+    /// Its cell in the first row; of words, the first one that is a number with thousands marked.
     pub example: String,
 }
 

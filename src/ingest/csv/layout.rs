@@ -47,6 +47,11 @@ impl Layout {
         let rows: Vec<Vec<&str>> = lines[first..].iter().map(|line| delimiter.cells(&line.text)).collect();
         let header = header::header(&lines[..first], delimiter, &judged);
         let mut columns = header::columns(header.as_ref(), &judged, &rows[0]);
+        for (index, column) in columns.iter_mut().enumerate().filter(|(_, column)| !column.is_numeric) {
+            let mut cells = rows.iter().filter_map(|cells| cells.get(index));
+            let grouped = cells.find(|cell| number::is_grouped(cell, Some(dialect.decimal)));
+            column.example = grouped.map_or_else(|| column.example.clone(), |cell| (*cell).to_owned());
+        }
         // A pair of columns may have ended before the judged rows begin.
         let ended = (0..columns.len()).filter(|&column| judged.is_empty[column]);
         for column in ended {

@@ -2,6 +2,7 @@
 
 use super::super::clock::Claims;
 use super::super::error;
+use super::super::number;
 use super::super::refusal::Refusal;
 use super::super::times::Scale;
 use super::header::TableColumn;
@@ -128,7 +129,18 @@ pub(super) fn no_times(layout: &Layout) -> Option<String> {
     let TableColumn { header, example, .. } = column;
     match &column.unit {
         _ if !column.is_numeric && example.is_empty() => None,
-        _ if !column.is_numeric => Some(format!("{header:?} holds {example:?}, which is no time known here")),
+        _ if !column.is_numeric => {
+            let decimal = layout.dialect.decimal;
+            let why = if number::is_grouped(example, Some(decimal)) {
+                "a number whose thousands are marked too"
+            } else if number::of_cell(example.as_bytes(), if decimal == b',' { b'.' } else { b',' }).is_some()
+            {
+                "whose decimal mark is not that of the samples"
+            } else {
+                "which is no time known here"
+            };
+            Some(format!("{header:?} holds {example:?}, {why}"))
+        }
         Some(unit) if time_column::scale(column) == Scale::Unknown => Some(format!(
             "{header:?} is in {unit}, which is none of time known here ([s], [ms], [µs] and [ns] are)"
         )),

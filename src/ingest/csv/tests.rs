@@ -367,6 +367,8 @@ fn tables_that_cannot_be_read_say_why() {
             &["line 1 has 2 cells, the rows 4", "comma is the decimal mark too"],
         ),
         ("t;A1\n0.1;39\n0.2;15,892\n0.3;1.5\n0.4;1.25\n", &["15,892", "thousands"]),
+        ("t [ms],A1\n\"999.5\",1.5\n\"1,000.0\",2.5\n\"1,000.5\",1.5\n", &["1,000.0", "thousands"]),
+        ("t;A1;A2\n0.1;-3,5;1,5\n0.2;2,5;1,5\n", &["\"t\" holds \"0.1\"", "decimal mark"]),
         ("t,A1\n45234.50000000,1\n45234.50000001,2\n45234.50000002,1\n", &["are they in days", "[days]"]),
     ] {
         let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap_err());

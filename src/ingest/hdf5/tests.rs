@@ -85,6 +85,27 @@ fn every_number_type_filter_and_attribute_is_read() {
     }
 }
 
+#[test]
+fn whole_numbers_of_fewer_bits_than_their_bytes_keep_their_sign() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.h5");
+    // The older layout, whose headers have no check sum.
+    let made = File::with_options().with_fapl(|access| access.libver_earliest()).create(&path).unwrap();
+    let data = made.new_dataset_builder().with_data(&[5_i16, 0x0FFB, 0x0800]).create("a").unwrap();
+    number(&data, "sample_rate", 100.0).unwrap();
+    drop(data);
+    made.close().unwrap();
+    let mut bytes = std::fs::read(&path).unwrap();
+    // The type's class, sign, bytes, first bit, and bits: 16, of which 12 are left.
+    let stated = [0x10, 8, 0, 0, 2, 0, 0, 0, 0, 0, 16, 0];
+    let at = bytes.windows(stated.len()).position(|window| window == stated).unwrap();
+    bytes[at + 10] = 12;
+    std::fs::write(&path, bytes).unwrap();
+    let channels =
+        read(ReadRequest::silent(&path, Limits::default()), &cask_file(&["/a"])).unwrap().channels;
+    assert_eq!(values(&channels[0]), [5.0, -5.0, -2048.0]);
+}
+
 /// Two sensors in groups of their own, columns in g, the times of one drifting by 30 % of an interval.
 fn two_sensors() -> Made {
     made(|file| {

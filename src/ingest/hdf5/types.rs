@@ -56,6 +56,7 @@ pub(super) enum Order {
     None,
     Lowest,
     Highest,
+    /// Of several, or of numbers that are not stored as in memory.
     Mixed,
 }
 
@@ -89,7 +90,8 @@ impl ValueType {
 
     /// Whether values are stored as their [`Self::number`] is, the lowest byte first.
     fn is_plain(&self) -> bool {
-        matches!(self.kind, ValueKind::Number(_)) && (self.bytes == 1 || self.order == Order::Lowest)
+        matches!(self.kind, ValueKind::Number(_))
+            && (self.order == Order::Lowest || self.bytes == 1 && self.order != Order::Mixed)
     }
 
     /// A type for people: `int16`, big-endian where it is.

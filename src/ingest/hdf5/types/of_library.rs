@@ -7,7 +7,10 @@ use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
 
 pub(in crate::ingest) fn of(dtype: &Datatype) -> ValueType {
-    let kind = match dtype.to_descriptor() {
+    let descriptor = dtype.to_descriptor();
+    let in_memory =
+        descriptor.as_ref().ok().and_then(|descriptor| Datatype::from_descriptor(descriptor).ok());
+    let kind = match descriptor {
         Ok(descriptor) => kind(descriptor),
         // Half precision and odd widths have no name in Rust; the library converts them.
         Err(_) if dtype.conv_to::<f64>().is_some() => ValueKind::OddNumber,
@@ -15,6 +18,12 @@ pub(in crate::ingest) fn of(dtype: &Datatype) -> ValueType {
     };
     let order = match dtype.byte_order() {
         ByteOrder::None => Order::None,
+        // Whole numbers of 12 bits in two bytes: the library adds the bits of the sign.
+        ByteOrder::LittleEndian
+            if matches!(kind, ValueKind::Number(_)) && in_memory.is_none_or(|plain| plain != *dtype) =>
+        {
+            Order::Mixed
+        }
         ByteOrder::LittleEndian => Order::Lowest,
         ByteOrder::BigEndian => Order::Highest,
         ByteOrder::Vax | ByteOrder::Mixed => Order::Mixed,
