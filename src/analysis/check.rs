@@ -48,7 +48,9 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     found.extend(judge::judge_copies(&rest.channels));
     found.extend(rest.issues.iter().cloned());
     if has_blows {
-        found.extend(judge::judge_silent(&rest.channels));
+        // A blow from below need not reach an axial channel.
+        let across = felt.iter().map(|(channel, _)| (*channel).clone());
+        found.extend(judge::judge_silent(&across.collect::<Vec<_>>()));
         found.extend(judge::judge_taps(&felt));
     }
     Ok(gathered(&file.drop, &signals, &levels, found))
