@@ -39,8 +39,8 @@ pub enum RestFinding {
     Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error);
     /// All samples are equal.
     #[error(
-        "holds one value, without any noise: unplugged, stuck, or the wrong `source`; check cable and \
-             amplifier"
+        "holds one value, without any noise: unplugged, stuck, the wrong `source`, or steps of the \
+             converter above the noise; check cable, amplifier and range"
     )]
     OneValue => (Code::DeadChannel, Error);
     /// The level changes at rest.
