@@ -118,6 +118,7 @@ fn gathered(
             expected_g: is_dc.then(|| drop.weight_m_s2(channel.axis) / G),
             noise_g: signal.noise_m_s2 / G,
             findings,
+            open: judge::open_causes(channel, *level, drop),
         }
     };
     let channels = levels.iter().zip(signals).map(channel).collect();

@@ -50,12 +50,31 @@ pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
     all.iter().filter_map(found).collect()
 }
 
+/// What a channel that reads right would read the same with, but for an offset.
+#[must_use]
+pub fn open_causes(channel: &Channel, rest: AtRest, drop: &Drop) -> Vec<RestCause> {
+    let reads_g = rest.level_m_s2 / G;
+    let of_level = other_levels(channel.axis, drop).into_iter();
+    let open = of_level.filter(|(makes_g, _)| channel.coupling == Coupling::Dc && is_near(reads_g, *makes_g));
+    open.map(|(_, cause)| cause).collect()
+}
+
+/// What a channel reads with its sign turned, on the other axis, and without gravity, g.
+fn other_levels(axis: Axis, drop: &Drop) -> [(f64, RestCause); 3] {
+    let [own_g, across_g] = [axis, across(axis)].map(|axis| drop.weight_m_s2(axis) / G);
+    [(-own_g, RestCause::Sign), (across_g, RestCause::Axis), (0.0, RestCause::Nothing)]
+}
+
+fn across(axis: Axis) -> Axis {
+    if axis == Axis::Axial { Axis::Transverse } else { Axis::Axial }
+}
+
 fn is_near(reads_g: f64, expected_g: f64) -> bool {
     (reads_g - expected_g).abs() <= MOST_OFF_G
 }
 
 fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> RestCause {
-    let other_axis = if axis == Axis::Axial { Axis::Transverse } else { Axis::Axial };
+    let other_axis = across(axis);
     let [expected_g, across_g] = [axis, other_axis].map(|axis| drop.weight_m_s2(axis) / G);
     let is_exchanged = |(other, rest): &&(&Channel, AtRest)| {
         let theirs_g = rest.level_m_s2 / G;
@@ -77,9 +96,9 @@ fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> R
         let offset_g = (reads_g / factor - expected_g).abs();
         (offset_g / MOST_OFF_G.min(WITHIN * expected_g), cause)
     });
-    let others = [(-expected_g, RestCause::Sign), (across_g, RestCause::Axis), (0.0, RestCause::Nothing)];
     // An offset may be on top of what has no factor.
-    let others = others.map(|(makes_g, cause)| ((reads_g - makes_g).abs() / MOST_OFF_G, cause));
+    let others =
+        other_levels(axis, drop).map(|(makes_g, cause)| ((reads_g - makes_g).abs() / MOST_OFF_G, cause));
     let likeliest = factors.chain(others).min_by(|a, b| a.0.total_cmp(&b.0));
     likeliest.filter(|(off, _)| *off < 1.0).map_or(RestCause::Open, |(_, cause)| cause)
 }
