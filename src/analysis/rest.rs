@@ -3,7 +3,8 @@
 
 use crate::data::shown;
 use crate::data::{
-    CaskFile, Channel, Coupling, Recording, RestFile, RestLevel, RestReading, Signal, rate_unit_rad_s,
+    CaskFile, Channel, Coupling, Finding, Recording, RestFile, RestFinding, RestLevel, RestReading, Signal,
+    rate_unit_rad_s,
 };
 use crate::events;
 use crate::ingest::refusal::Refusal;
@@ -45,6 +46,13 @@ pub fn read_within<'a>(
 pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
     let Some(path) = &file.rest else { return Ok(()) };
     let rest = ingest::read_within(path, file, limits, &|_| ())?;
+    if rest.sha256 == recording.sha256 {
+        let mend = "name a file of the rest before the drop; rest in the recording itself needs no `rest`";
+        return Err(error::of_file(path, Refusal::new("this is the recording of the drop", mend)));
+    }
+    let found: Vec<Finding> =
+        rest.issues.iter().filter_map(|found| of_rest(found, path, recording)).collect();
+    recording.issues.extend(found);
     let refused = |channel: &Channel, (problem, mend): (String, &str)| {
         error::of_channel(path, &channel.name, Refusal::new(problem, mend))
     };
@@ -63,6 +71,14 @@ pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> 
     }
     recording.rest = Some(RestFile { path: path.clone(), sha256: rest.sha256 });
     Ok(())
+}
+
+/// What was found in the file of the rest, as a note on the drop; `None` of what its own recording has too.
+fn of_rest(found: &Finding, path: &Path, recording: &Recording) -> Option<Finding> {
+    let is_own = recording.issues.iter().any(|own| own.message == found.message);
+    let [file, message] = [path.display().to_string(), found.message.clone()];
+    let of_rest = RestFinding::InRestFile { file, found: message, what: found.code };
+    (!is_own).then(|| Finding { channel: found.channel.clone(), ..of_rest.into() })
 }
 
 /// What stands for gravity in the level at rest of an angular-rate sensor, in its unit: it rests within 2 %

@@ -84,6 +84,9 @@ pub enum RestFinding {
              record longer"
     )]
     ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning);
+    /// Of the file with the rest of a drop, which is not the drop's own record.
+    #[error("in the file of the rest, {file}: {found}")]
+    InRestFile { file: String, found: String, what: Code } => (*what, Note);
     /// Another number of blows than two.
     #[error(
         "{count} blows are seen where one on each end is expected: strike each end once, the first \
