@@ -119,17 +119,24 @@ fn reading(
 }
 
 /// What the channels read at rest by the file of its own, less what they read in the free fall.
-pub(super) fn levels(recording: &Recording, signals: &[Signal], file: &CaskFile) -> Vec<RestLevel> {
+pub(super) fn levels(
+    recording: &Recording,
+    signals: &[Signal],
+    file: &CaskFile,
+    contact_s: f64,
+) -> Vec<RestLevel> {
     let level = |channel: &Channel| {
         let rest = channel.rest?;
         let signal = signals.iter().find(|signal| signal.name == channel.name)?;
         let is_known = file.corrections.offset && signal.free_fall_s > 0.0;
-        is_known.then(|| RestLevel {
+        let by_offset = || RestLevel {
             channel: channel.name.clone(),
             axis: channel.axis,
             rest_m_s2: channel.scale_m_s2 * rest.level - signal.removed_offset_m_s2,
             u_m_s2: (channel.scale_m_s2 * rest.u).hypot(signal.u_offset_m_s2),
-        })
+        };
+        let level = || events::rest_over_fall(channel, rest, &file.drop, contact_s).unwrap_or_else(by_offset);
+        is_known.then(level)
     };
     recording.channels.iter().filter_map(level).collect()
 }
