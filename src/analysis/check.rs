@@ -36,6 +36,8 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     let first_blow_s = felt.iter().flat_map(|(_, blows)| blows).map(|blow| blow.at_s - BEFORE_BLOW_S);
     let quiet_to_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).chain(first_blow_s);
     let (signals, mut found) = quiet(rest, file, quiet_to_s.fold(f64::INFINITY, f64::min));
+    // What a copy reads is not its own.
+    found.extend(judge::judge_copies(&rest.channels));
     let level = |channel| Some((channel, events::at_rest(channel, file.drop.gravity_m_s2)?));
     let levels: Vec<(&Channel, AtRest)> = rest.channels.iter().filter_map(level).collect();
     found.extend(judge::judge_levels(&levels, &file.drop));
@@ -45,10 +47,11 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     }));
     found.extend(of_drop(rest, file, &signals));
     found.extend(judge::judge_places(&signals, file));
-    found.extend(judge::judge_copies(&rest.channels));
     found.extend(rest.issues.iter().cloned());
     if has_blows {
-        found.extend(judge::judge_silent(&rest.channels));
+        // A blow from below need not reach an axial channel.
+        let across = felt.iter().map(|(channel, _)| (*channel).clone());
+        found.extend(judge::judge_silent(&across.collect::<Vec<_>>()));
         found.extend(judge::judge_taps(&felt));
     }
     Ok(gathered(&file.drop, &signals, &levels, found))
@@ -115,6 +118,7 @@ fn gathered(
             expected_g: is_dc.then(|| drop.weight_m_s2(channel.axis) / G),
             noise_g: signal.noise_m_s2 / G,
             findings,
+            open: judge::open_causes(channel, *level, drop),
         }
     };
     let channels = levels.iter().zip(signals).map(channel).collect();

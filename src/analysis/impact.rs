@@ -94,7 +94,7 @@ impl Impact {
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (mut rests, fall_s) = before(recording, drop, contact.time_s);
         if rests.is_empty() {
-            rests = rest::levels(recording, &signals, file);
+            rests = rest::levels(recording, &signals, file, contact.time_s);
         }
         let impact = Self {
             signals,

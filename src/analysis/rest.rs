@@ -3,7 +3,8 @@
 
 use crate::data::shown;
 use crate::data::{
-    CaskFile, Channel, Coupling, Recording, RestFile, RestLevel, RestReading, Signal, rate_unit_rad_s,
+    CaskFile, Channel, Coupling, Finding, Recording, RestFile, RestFinding, RestLevel, RestReading, Signal,
+    rate_unit_rad_s,
 };
 use crate::events;
 use crate::ingest::refusal::Refusal;
@@ -45,6 +46,13 @@ pub fn read_within<'a>(
 pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
     let Some(path) = &file.rest else { return Ok(()) };
     let rest = ingest::read_within(path, file, limits, &|_| ())?;
+    if rest.sha256 == recording.sha256 {
+        let mend = "name a file of the rest before the drop; rest in the recording itself needs no `rest`";
+        return Err(error::of_file(path, Refusal::new("this is the recording of the drop", mend)));
+    }
+    let found: Vec<Finding> =
+        rest.issues.iter().filter_map(|found| of_rest(found, path, recording)).collect();
+    recording.issues.extend(found);
     let refused = |channel: &Channel, (problem, mend): (String, &str)| {
         error::of_channel(path, &channel.name, Refusal::new(problem, mend))
     };
@@ -63,6 +71,14 @@ pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> 
     }
     recording.rest = Some(RestFile { path: path.clone(), sha256: rest.sha256 });
     Ok(())
+}
+
+/// What was found in the file of the rest, as a note on the drop; `None` of what its own recording has too.
+fn of_rest(found: &Finding, path: &Path, recording: &Recording) -> Option<Finding> {
+    let is_own = recording.issues.iter().any(|own| own.message == found.message);
+    let [file, message] = [path.display().to_string(), found.message.clone()];
+    let of_rest = RestFinding::InRestFile { file, found: message, what: found.code };
+    (!is_own).then(|| Finding { channel: found.channel.clone(), ..of_rest.into() })
 }
 
 /// What stands for gravity in the level at rest of an angular-rate sensor, in its unit: it rests within 2 %
@@ -103,17 +119,24 @@ fn reading(
 }
 
 /// What the channels read at rest by the file of its own, less what they read in the free fall.
-pub(super) fn levels(recording: &Recording, signals: &[Signal], file: &CaskFile) -> Vec<RestLevel> {
+pub(super) fn levels(
+    recording: &Recording,
+    signals: &[Signal],
+    file: &CaskFile,
+    contact_s: f64,
+) -> Vec<RestLevel> {
     let level = |channel: &Channel| {
         let rest = channel.rest?;
         let signal = signals.iter().find(|signal| signal.name == channel.name)?;
         let is_known = file.corrections.offset && signal.free_fall_s > 0.0;
-        is_known.then(|| RestLevel {
+        let by_offset = || RestLevel {
             channel: channel.name.clone(),
             axis: channel.axis,
             rest_m_s2: channel.scale_m_s2 * rest.level - signal.removed_offset_m_s2,
             u_m_s2: (channel.scale_m_s2 * rest.u).hypot(signal.u_offset_m_s2),
-        })
+        };
+        let level = || events::rest_over_fall(channel, rest, &file.drop, contact_s).unwrap_or_else(by_offset);
+        is_known.then(level)
     };
     recording.channels.iter().filter_map(level).collect()
 }

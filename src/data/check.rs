@@ -1,6 +1,6 @@
 //! A set-up before the drop as `check` judges it by a recording at rest.
 
-use super::finding::Finding;
+use super::finding::{Finding, RestCause};
 use serde::Serialize;
 
 /// Whether a set-up is ready for its drop.
@@ -31,6 +31,9 @@ pub struct CheckedChannel {
     pub noise_g: f64,
     /// What was found, the most severe first.
     pub findings: Vec<Finding>,
+    /// What would read the same, but for an offset.
+    #[serde(skip)]
+    pub open: Vec<RestCause>,
 }
 
 /// A recording of rest alone, as one channel shows it.

@@ -2,7 +2,7 @@
 //! it.
 
 use super::block_means_m_s2;
-use crate::data::{AtRest, Channel, Drop, Samples};
+use crate::data::{AtRest, Channel, Drop, RestLevel, RestReading, Samples};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -74,6 +74,30 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .filter(|(_, length)| *length > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(fall, _)| fall)
+}
+
+/// What a channel reads in a file of the rest, less the level of the whole free fall before `contact_s`, as
+/// [`free_fall`] has it of a recording with both; `None` where the fall is shorter than two levels.
+pub fn rest_over_fall(
+    channel: &Channel,
+    rest: RestReading,
+    drop: &Drop,
+    contact_s: f64,
+) -> Option<RestLevel> {
+    let weight_m_s2 = drop.weight_m_s2(channel.axis);
+    let from = channel.index_at(contact_s - drop.impact_velocity_m_s / drop.gravity_m_s2);
+    let record = Record::new(channel, from..channel.index_at(contact_s), weight_m_s2)?;
+    let (end, most_m_s2) = (record.blocks.len() - 1, TOUCH * weight_m_s2);
+    let mut of_fall = record.levels(0..end);
+    // What lies before the fall is not of it.
+    let last = *of_fall.first()?;
+    of_fall.truncate(of_fall.iter().take_while(|level| (*level - last).abs() <= most_m_s2).count());
+    Some(RestLevel {
+        channel: channel.name.clone(),
+        axis: channel.axis,
+        rest_m_s2: channel.scale_m_s2 * rest.level - record.level(end - LEVEL * of_fall.len(), end),
+        u_m_s2: (channel.scale_m_s2 * rest.u).hypot(record.u_mean(&of_fall, most_m_s2)),
+    })
 }
 
 /// Whether gravity reads on a channel's axis at rest.

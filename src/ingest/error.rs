@@ -43,7 +43,7 @@ pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
 }
 
 /// A refusal of the file itself.
-pub(super) fn of_file(path: &Path, refusal: Refusal) -> IngestError {
+pub(crate) fn of_file(path: &Path, refusal: Refusal) -> IngestError {
     IngestError::Refused { path: path.display().to_string(), refusal }
 }
 

@@ -21,7 +21,9 @@ mod skew;
 mod taps;
 mod turned;
 
-pub use at_rest::{LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, pulse_lengths_s};
+pub use at_rest::{
+    LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
+};
 pub use blows::judge_blows;
 pub use channel_checks::{judge_noise, judge_places};
 pub use channels::{is_cut_off, judge_channels};

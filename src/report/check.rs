@@ -8,7 +8,8 @@ use super::rounding::{fixed, optional_fixed};
 use super::text::{Style, capital, counted, dropped};
 use super::{ReportError, as_html, json, pictures, record};
 use crate::data::{
-    CaskFile, Channel, Check, CheckedChannel, Finding, Program, Recording, STANDARD_GRAVITY_M_S2 as G,
+    CaskFile, Channel, Check, CheckedChannel, Finding, Program, Recording, RestCause,
+    STANDARD_GRAVITY_M_S2 as G,
 };
 
 /// Drawing and photographs leave room on the sheet for eight channels and the signatures.
@@ -119,7 +120,10 @@ fn chapters(setup: &CheckedSetup) -> Vec<Chapter> {
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     let found = (!found.is_empty()).then(|| quality(&found));
     let untold = UNTOLD.map(str::to_owned).into_iter();
-    let untold = untold.chain(open_ranges(setup)).chain((!setup.has_blows).then(|| BY_TAPS.to_owned()));
+    let untold = untold
+        .chain(open_levels(setup))
+        .chain(open_ranges(setup))
+        .chain((!setup.has_blows).then(|| BY_TAPS.to_owned()));
     let head = Chapter::new("").with(banner).with(title).with(channels);
     let foot = Chapter::new("Not told by rest").with_all(untold.map(ChapterPart::text));
     [head].into_iter().chain(found).chain([foot]).collect()
@@ -129,6 +133,28 @@ impl CheckedSetup<'_> {
     fn channel(&self, checked: &CheckedChannel) -> Option<&Channel> {
         self.rest.channels.iter().find(|channel| channel.name == checked.name)
     }
+}
+
+/// What an offset hides in the levels of which channels, and what tells it.
+fn open_levels(setup: &CheckedSetup) -> Option<String> {
+    let told = [
+        (RestCause::Sign, "the sign"),
+        (RestCause::Axis, "the axis"),
+        (RestCause::Nothing, "whether gravity is felt: coupling, scale, cable"),
+    ];
+    let line = |(cause, what): (RestCause, &str)| {
+        let is_open = |c: &&CheckedChannel| c.ready && c.open.contains(&cause);
+        let names: Vec<&str> = setup.check.channels.iter().filter(is_open).map(|c| &c.name[..]).collect();
+        (!names.is_empty()).then(|| format!("{what} (of {})", names.join(", ")))
+    };
+    let open: Vec<String> = told.into_iter().filter_map(line).collect();
+    (!open.is_empty()).then(|| {
+        format!(
+            "What an offset of 0.4 g hides at this angle: {}. Check once more at another `angle_deg`, of \
+             the cask or its sensors by hand: near level for transverse channels, near upright for axial ones.",
+            open.join("; ")
+        )
+    })
 }
 
 /// The channels whose range nobody states, and how much each needs.

@@ -39,8 +39,8 @@ pub enum RestFinding {
     Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error);
     /// All samples are equal.
     #[error(
-        "holds one value, without any noise: unplugged, stuck, or the wrong `source`; check cable and \
-             amplifier"
+        "holds one value, without any noise: unplugged, stuck, the wrong `source`, or steps of the \
+             converter above the noise; check cable, amplifier and range"
     )]
     OneValue => (Code::DeadChannel, Error);
     /// The level changes at rest.
@@ -84,6 +84,9 @@ pub enum RestFinding {
              record longer"
     )]
     ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning);
+    /// Of the file with the rest of a drop, which is not the drop's own record.
+    #[error("in the file of the rest, {file}: {found}")]
+    InRestFile { file: String, found: String, what: Code } => (*what, Note);
     /// Another number of blows than two.
     #[error(
         "{count} blows are seen where one on each end is expected: strike each end once, the first \

@@ -51,7 +51,8 @@ fn expected(plan: &MeasuringPlan) -> String {
     match plan.why_no_intervals {
         Some(why) => format!("Expected intervals: none, since {why}."),
         None => format!(
-            "Expected intervals by the tolerances, for k = {}, without noise and ringing:",
+            "Expected intervals by the tolerances, for k = {}, without noise and ringing: a guide. Sixteen \
+             drops had 0.7 to 1.0 times that of the speed, 0.8 to 1.2 times that of k:",
             plain(plan.k, 3)
         ),
     }
