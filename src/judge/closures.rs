@@ -4,6 +4,7 @@ use crate::data::{
     Closure, ClosureKind, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U,
     ReconstructionChoice, ReconstructionRung, Signal,
 };
+use crate::numerics::as_f64;
 
 /// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a
 /// scale is not as stated.
@@ -70,8 +71,7 @@ fn together(choice: &ReconstructionChoice) -> Option<Finding> {
 
 /// χ² that chance passes as often as one closure passes [`MISSED_U`] (Wilson & Hilferty 1931).
 fn most_chi_square(degrees: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "a few closures")]
-    let n = degrees as f64;
+    let n = as_f64(degrees);
     // A normal deviate is above 3.31 as often as it is beyond ± 3.5.
     let share = 2.0 / (9.0 * n);
     n * (1.0 - share + 3.31 * share.sqrt()).powi(3)

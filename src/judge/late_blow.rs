@@ -1,6 +1,7 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
 use crate::data::{ChannelFinding, DropFinding, Events, Finding, FlightFit, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::reduce::{block_means, block_of, peak};
 
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound
@@ -47,11 +48,9 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
         }
     }
     let again = peak(&means[longest.end..]) > AGAIN * peak(&means);
-    #[allow(clippy::cast_precision_loss, reason = "a contact's means")]
-    let is_long = longest.len() as f64 > LEAST_REST * means.len() as f64 && longest.len() >= LEAST_MEANS;
+    let is_long = as_f64(longest.len()) > LEAST_REST * as_f64(means.len()) && longest.len() >= LEAST_MEANS;
     (longest.start > 0 && is_long && again).then(|| {
-        #[allow(clippy::cast_precision_loss, reason = "a contact's samples")]
-        let at_s = |mean: usize| contact_s + (mean * block) as f64 / struck.sample_rate_hz;
+        let at_s = |mean: usize| contact_s + as_f64(mean * block) / struck.sample_rate_hz;
         let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
         let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
         found.on(&struck.name).between(from_s, to_s)
