@@ -30,7 +30,6 @@ const APART_S: f64 = 3e-3;
 
 /// The channel that is struck hardest in the flight, with the times; `found` says which channels are
 /// disturbed there.
-#[must_use]
 pub fn judge_blows(
     signals: &[Signal],
     flight: &FlightFit,

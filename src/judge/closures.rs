@@ -22,7 +22,6 @@ const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
 
 /// One finding a closure that is missed by more than noise and tolerances explain.
-#[must_use]
 pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
     let mut findings: Vec<Finding> = missed.map(|closure| self::missed(closure, drop, events)).collect();
@@ -37,7 +36,6 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
 ///
 /// A gap at the first contact hides the time that both closures count from. A closure that is missed though
 /// the lost steps are free to move says that more is wrong than the steps.
-#[must_use]
 pub fn tells_lost_steps(
     choice: &ReconstructionChoice,
     (k, speed): (Estimate, Option<Estimate>),

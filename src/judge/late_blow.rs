@@ -22,7 +22,6 @@ const LEAST_MEANS: usize = 5;
 const AGAIN: f64 = 0.05;
 
 /// A blow within the flight, which modes and drift bent around.
-#[must_use]
 pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && s.step_m_s.abs() > LEAST_STEP * v0_m_s)?;
     let found = DropFinding::Blow { step_m_s: strike.step_m_s, after_s: strike.time_s - flight.from_s };
@@ -31,7 +30,6 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
 
 /// A first end that no force reaches for a part of what was taken for one contact: it left the target before,
 /// and what came then is another blow.
-#[must_use]
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = super::struck(signals)?;
