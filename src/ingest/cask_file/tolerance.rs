@@ -32,8 +32,8 @@ pub(super) fn tolerances(
 
 /// `[corrections]`; what it leaves out is made.
 pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError> {
-    const UNQUOTED: &str = "without quotes; false leaves the samples as they are in this respect, and the report \
-                            says so";
+    const UNQUOTED: &str = "without quotes; false leaves the samples as they are in this respect, and the \
+                            report says so";
     let mut made = Corrections::default();
     for (key, made) in made.by_key() {
         *made = table.flag(key, UNQUOTED)?.unwrap_or(*made);
