@@ -19,7 +19,8 @@ impl Section<'_> {
         Ok(self.text(key)?.map(|text| text.value))
     }
 
-    /// As [`Section::text`]; `such_as` is what to write in place of what `dropcheck init` leaves to be filled in.
+    /// As [`Section::text`]; `such_as` is what to write in place of what `dropcheck init` leaves to be filled
+    /// in.
     fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
