@@ -35,7 +35,6 @@ struct Comparing<'a> {
 /// against it, a higher rung where it changes the speed; the finite pulse has the measured duration. Returns
 /// the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins
 /// whose own and all richer predictions agree, none of them further from it than the measured speed is known.
-#[must_use]
 pub fn compare(
     bodies: &[Body],
     cask_file: &CaskFile,
@@ -182,7 +181,6 @@ impl Comparing<'_> {
 }
 
 /// The contact law that the prediction goes by: the stated one, else the friction that was measured.
-#[must_use]
 pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
     match stated {
         Contact::Unknown => Contact::Coulomb(measured.friction.value.max(0.0)),

@@ -1,7 +1,7 @@
 //! A channel of a recording at rest to its answers to blows on the cask.
 
 use crate::data::{BlowAnswer, Channel};
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust};
 
 /// A blow passes this many spreads of the noise: none of ten million samples of noise does.
 const LOUD: f64 = 20.0;
@@ -25,8 +25,7 @@ pub fn blow_answers(channel: &Channel) -> Vec<BlowAnswer> {
         *f = if f.is_finite() { *f - centre } else { 0.0 };
     }
     let rate_hz = channel.sample_rate_hz;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let samples = |length_s: f64| (length_s * rate_hz).ceil() as usize;
+    let samples = |length_s: f64| as_count((length_s * rate_hz).ceil());
     let mut answers = Vec::new();
     let mut last = None;
     for i in (0..force.len()).filter(|&i| spread > 0.0 && force[i].abs() > LOUD * spread) {

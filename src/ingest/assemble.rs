@@ -8,7 +8,7 @@ use crate::data::{
     CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, OtherChannels, OtherSpec, Recording,
     RecordingFormat, SAMPLE_RATES_HZ, STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2, rate_unit_rad_s,
 };
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, nanoseconds};
 use std::path::Path;
 
 /// The recording: times from the earliest first sample, every channel with its unit and scale.
@@ -146,14 +146,6 @@ fn shifted(mut issue: Finding, first_s: f64) -> Finding {
     issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
     issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
     issue
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "a float-to-integer cast saturates; times of a recording fit"
-)]
-fn nanoseconds(time_s: f64) -> i64 {
-    (time_s * 1e9).round() as i64
 }
 
 /// What one unit of the samples is worth.

@@ -150,9 +150,9 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let root = document.root()?;
     let cask_table = root.required_table("cask")?;
     let cask = cask(&cask_table, path)?;
-    let scale = cask_table.number("scale")?.map(|scale| scale.value);
+    let scale = cask_table.given("scale")?;
     let contact_table = root.table("contact")?;
-    let contact_duration_s = contact_table.number("duration_s")?.map_or(0.0, |lasts| lasts.value);
+    let contact_duration_s = contact_table.given("duration_s")?.unwrap_or(0.0);
     let drop = Drop { contact_duration_s, ..drop(&root.required_table("drop")?, &cask)? };
     let contact = contact(&contact_table)?;
     let filter = filter(&root.table("filter")?)?;
@@ -160,7 +160,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let of_recording = root.table("recording")?;
-    let time = of_recording.text("time")?.map(|time| time.value);
+    let time = of_recording.words("time")?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let rest = of_recording.text("rest")?.map(|rest| folder.join(rest.value));
     let (channels, others) = channel::channels(&root, &cask)?;

@@ -30,7 +30,6 @@ const MOST_U_OFFSET_M_S2: f64 = 0.83;
 pub const LEAST_BEFORE_S: f64 = 0.1;
 
 /// Holds the levels at rest against gravity on each axis; an AC-coupled channel has none.
-#[must_use]
 pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
     let found = |(channel, rest): &(&Channel, AtRest)| {
         let (reads_g, expected_g) = (rest.level_m_s2 / G, drop.weight_m_s2(channel.axis) / G);
@@ -105,14 +104,12 @@ fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> R
 
 /// The longest and the shortest that a first impact may last, s: as stated, else with a limiter and of bare
 /// contact.
-#[must_use]
 pub fn pulse_lengths_s(drop: &Drop) -> (f64, f64) {
     let stated_s = drop.contact_duration_s;
     if stated_s > 0.0 { (stated_s, stated_s) } else { (LIMITER_S, BARE_S) }
 }
 
 /// The peaks of half sines that change the velocity by `step_m_s`, π/2 of the mean, the longest first   (47)
-#[must_use]
 pub fn expected_peaks(step_m_s: f64, drop: &Drop) -> Vec<ExpectedPeak> {
     let (longest_s, shortest_s) = pulse_lengths_s(drop);
     let peak = |lasts_s| ExpectedPeak { lasts_s, peak_g: PI / 2.0 * step_m_s / lasts_s / G };
@@ -120,7 +117,6 @@ pub fn expected_peaks(step_m_s: f64, drop: &Drop) -> Vec<ExpectedPeak> {
 }
 
 /// Holds offset, range and rate of a channel against the peaks of a first impact, the last one the shortest.
-#[must_use]
 pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) -> Vec<Finding> {
     let range_g = channel.range_m_s2().map(|range_m_s2| range_m_s2 / G);
     let too_small = |(i, peak): (usize, &ExpectedPeak)| {
@@ -137,7 +133,6 @@ pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) ->
 }
 
 /// Holds what a record keeps before and behind its trigger against free fall and flight.
-#[must_use]
 pub fn judge_record(before_s: Option<f64>, length_s: f64, needs_s: f64) -> Vec<Finding> {
     let Some(before_s) = before_s else { return Vec::new() };
     let after_s = length_s - before_s;

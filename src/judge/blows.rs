@@ -3,9 +3,9 @@
 
 use super::turned::turned_m_s2;
 use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
-use crate::numerics::as_f64;
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
 use crate::numerics::reduce::{block_means, block_of, converter_step, peak};
+use crate::numerics::{as_count, as_f64};
 use std::ops::Range;
 
 /// Samples are looked at in means over this rate, Hz: a blow lasts one to some milliseconds.
@@ -30,7 +30,6 @@ const APART_S: f64 = 3e-3;
 
 /// The channel that is struck hardest in the flight, with the times; `found` says which channels are
 /// disturbed there.
-#[must_use]
 pub fn judge_blows(
     signals: &[Signal],
     flight: &FlightFit,
@@ -84,8 +83,7 @@ fn blows(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetol
     let means = block_means(samples, block);
     let rounding_m_s2 = rounding_of_means(samples, block);
     let least_m_s2 = (LEAST_SPREAD * peak(&means)).max(least_m_s2).max(f64::MIN_POSITIVE);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio")]
-    let pieces = ((span_s.end - span_s.start) / PIECE_S).round().max(1.0) as usize;
+    let pieces = as_count(((span_s.end - span_s.start) / PIECE_S).round().max(1.0));
     let length = means.len().div_ceil(pieces).max(1);
     let of_piece = |i: usize| {
         // Each but the first begins within the one before, so that all of its own means are foretold.

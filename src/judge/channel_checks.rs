@@ -37,7 +37,6 @@ pub(super) fn judge_by_themselves(signals: &[Signal], events: &Events, cask_file
 }
 
 /// What the noise before first contact makes of the velocity.
-#[must_use]
 pub fn judge_noise(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
@@ -63,7 +62,6 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
 }
 
 /// Sensors beyond the ends of the cask, and ends that lie the other way round.
-#[must_use]
 pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     let length_m = cask_file.cask.length_m;
     let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);

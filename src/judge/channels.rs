@@ -6,7 +6,6 @@ use std::ops::Range;
 
 /// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found`
 /// is what is known of them already.
-#[must_use]
 pub fn judge_channels(
     signals: &[Signal],
     events: &Events,
@@ -31,7 +30,6 @@ pub fn judge_channels(
 }
 
 /// Whether clipping between two times takes more of the velocity than may be missing.
-#[must_use]
 pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
     signal.lost_to_clipping_m_s(from_s, to_s) > MOST_LOST_M_S
 }

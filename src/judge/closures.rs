@@ -4,6 +4,7 @@ use crate::data::{
     Closure, ClosureKind, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U,
     ReconstructionChoice, ReconstructionRung, Signal,
 };
+use crate::numerics::as_f64;
 
 /// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a
 /// scale is not as stated.
@@ -21,7 +22,6 @@ const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
 
 /// One finding a closure that is missed by more than noise and tolerances explain.
-#[must_use]
 pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
     let mut findings: Vec<Finding> = missed.map(|closure| self::missed(closure, drop, events)).collect();
@@ -36,7 +36,6 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
 ///
 /// A gap at the first contact hides the time that both closures count from. A closure that is missed though
 /// the lost steps are free to move says that more is wrong than the steps.
-#[must_use]
 pub fn tells_lost_steps(
     choice: &ReconstructionChoice,
     (k, speed): (Estimate, Option<Estimate>),
@@ -70,8 +69,7 @@ fn together(choice: &ReconstructionChoice) -> Option<Finding> {
 
 /// χ² that chance passes as often as one closure passes [`MISSED_U`] (Wilson & Hilferty 1931).
 fn most_chi_square(degrees: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "a few closures")]
-    let n = degrees as f64;
+    let n = as_f64(degrees);
     // A normal deviate is above 3.31 as often as it is beyond ± 3.5.
     let share = 2.0 / (9.0 * n);
     n * (1.0 - share + 3.31 * share.sqrt()).powi(3)

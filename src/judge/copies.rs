@@ -4,7 +4,6 @@ use crate::data::{Channel, ChannelFinding, Finding, Samples};
 
 /// Names each channel that holds the samples of one before it: a sensor that is told twice counts once, and
 /// two ends never read the same.
-#[must_use]
 pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     let copy = |at: usize| {
         let channel = &channels[at];

@@ -24,7 +24,6 @@ const AGREEMENT: f64 = 0.2;
 /// After a step s a first-order high-pass reads −s/T, s being what is left of the step: drift over step is
 /// −1/T on every channel   (Q4). A zero shift of one channel knows nothing of the step of another, so one
 /// channel alone tells nothing.
-#[must_use]
 pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Finding> {
     let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
     let declared_ac: Vec<&str> = stated.map(|c| c.name.as_str()).collect();

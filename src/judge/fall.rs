@@ -15,7 +15,6 @@ const MOST_LAG: f64 = 0.02;
 const CLEAR_FALL: f64 = 3.0;
 
 /// Checks the fall, where the recording shows it from its release on.
-#[must_use]
 pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
     events.release_s?;
     let (end_s, contact_s) = events.fall_end_s.zip(events.first_contact_s())?;
@@ -26,7 +25,6 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
 
 /// Holds the length of the recorded fall against v0 where no motion could be had that does so with everything
 /// else   (35)
-#[must_use]
 pub fn judge_fall_time(
     found: &[Finding],
     drop: &Drop,
@@ -61,7 +59,6 @@ pub fn judge_fall_time(
 ///
 /// What takes the share q of g off the fall, a guide, a rope or a brake, leaves (1 − q) g cos φ of every step
 /// from rest to fall, and the time √(2 h / (1 − q) g).
-#[must_use]
 pub fn judge_slowed(
     mut found: Vec<Finding>,
     drop: &Drop,
@@ -121,7 +118,6 @@ fn slowed_share(
 }
 
 /// Says that another drop follows the one at `event`.
-#[must_use]
 pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Finding {
     let (from_s, to_s) = (another.near_s, another.near_s + another.spread_s);
     let found = DropFinding::SeveralDrops {

@@ -1,6 +1,7 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
 use crate::data::{ChannelFinding, DropFinding, Events, Finding, FlightFit, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::reduce::{block_means, block_of, peak};
 
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound
@@ -21,7 +22,6 @@ const LEAST_MEANS: usize = 5;
 const AGAIN: f64 = 0.05;
 
 /// A blow within the flight, which modes and drift bent around.
-#[must_use]
 pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && s.step_m_s.abs() > LEAST_STEP * v0_m_s)?;
     let found = DropFinding::Blow { step_m_s: strike.step_m_s, after_s: strike.time_s - flight.from_s };
@@ -30,7 +30,6 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
 
 /// A first end that no force reaches for a part of what was taken for one contact: it left the target before,
 /// and what came then is another blow.
-#[must_use]
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = super::struck(signals)?;
@@ -47,11 +46,9 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
         }
     }
     let again = peak(&means[longest.end..]) > AGAIN * peak(&means);
-    #[allow(clippy::cast_precision_loss, reason = "a contact's means")]
-    let is_long = longest.len() as f64 > LEAST_REST * means.len() as f64 && longest.len() >= LEAST_MEANS;
+    let is_long = as_f64(longest.len()) > LEAST_REST * as_f64(means.len()) && longest.len() >= LEAST_MEANS;
     (longest.start > 0 && is_long && again).then(|| {
-        #[allow(clippy::cast_precision_loss, reason = "a contact's samples")]
-        let at_s = |mean: usize| contact_s + (mean * block) as f64 / struck.sample_rate_hz;
+        let at_s = |mean: usize| contact_s + as_f64(mean * block) / struck.sample_rate_hz;
         let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
         let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
         found.on(&struck.name).between(from_s, to_s)

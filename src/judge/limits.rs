@@ -3,7 +3,6 @@
 use crate::data::{DropResult, Estimate, ImpactTable, Limit, LimitState, STANDARD_GRAVITY_M_S2 as G};
 
 /// A limit beside what was measured; of what both impacts have, that which may be the larger.
-#[must_use]
 pub fn beside_limit(limit: &Limit, result: &DropResult) -> Limit {
     let larger = |of: fn(&ImpactTable) -> Option<Estimate>| {
         let [first, second] = result.impacts.each_ref().map(of);

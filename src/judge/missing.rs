@@ -13,7 +13,6 @@ const LONGEST_PULSE_S: f64 = 0.025;
 
 /// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found
 /// so far may say why, or the rate at which the struck end is sampled.
-#[must_use]
 pub fn judge_no_impact(
     found: &[Finding],
     drop: &Drop,
@@ -32,7 +31,6 @@ pub fn judge_no_impact(
 
 /// The second end shows no slap-down in the time that was looked at after the first one left; the record may
 /// end with that time.
-#[must_use]
 pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
     let found = if is_record_end && after_s < LONG_ENOUGH_S {
         DropFinding::EndsEarly { after_s }

@@ -81,7 +81,6 @@ pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
 
 /// Whether an error takes away what was read off the motion; a missing slap-down leaves the first impact as
 /// it is, and a velocity step that a channel lost may be one that `is_told` by the rest of the motion.
-#[must_use]
 pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
     let is_kept = match finding.code {
         IssueCode::EndsEarly | IssueCode::NoSlapDown | IssueCode::MissingChannel => true,
@@ -95,7 +94,6 @@ pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
 /// show it: then no number is stated, and the motion tells no velocity step either.
 ///
 /// Of 741 simulated drops with such a warning the intervals held 74 %, of 410 with other warnings 91 %.
-#[must_use]
 pub fn contradicts_motion(finding: &Finding) -> bool {
     let is_of_motion = matches!(
         finding.code,
@@ -111,7 +109,6 @@ pub fn contradicts_motion(finding: &Finding) -> bool {
 
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a
 /// review.
-#[must_use]
 pub fn verdict(findings: &mut [Finding]) -> Verdict {
     findings.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
     match findings.first().map(|f| f.severity) {

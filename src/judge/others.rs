@@ -12,7 +12,6 @@ const NOTABLE_NOISE: f64 = 0.05;
 /// clips or lacks samples about the impacts.
 ///
 /// They change no number of the motion.
-#[must_use]
 pub fn judge_other(
     channel: &Channel,
     issues: &[Finding],

@@ -42,7 +42,6 @@ const LARGE_U_SHARE: f64 = 0.1;
 const LARGE_BEND: f64 = 0.01;
 
 /// Checks the motion against what a dropped cask can do.
-#[must_use]
 pub fn judge_motion(
     cask_file: &CaskFile,
     signals: &[Signal],
@@ -78,7 +77,6 @@ pub fn judge_motion(
 
 /// A first end that is still pressed on the target as the second one strikes: what was taken for a flight
 /// bends more slowly than a cask, and what it says of the motion is contradicted.
-#[must_use]
 pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Finding> {
     let periods = flight.periods();
     let frequency_hz = periods / (flight.to_s - flight.from_s);
@@ -94,7 +92,6 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
 ///
 /// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
 /// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
-#[must_use]
 pub fn judge_touch(
     motion: &Motion,
     quantities: &Quantities,
@@ -219,7 +216,6 @@ fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Option<Finding
 }
 
 /// What was observed otherwise beside the same of a result.
-#[must_use]
 pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
     let (first, second) = (&result.first_impact, &result.slap_down);
     let (of, unit) = match seen.name {
@@ -252,7 +248,6 @@ pub fn judge_observed(observed: &[ObservedBeside]) -> impl Iterator<Item = Findi
 }
 
 /// What a comparison that does not agree amounts to.
-#[must_use]
 pub fn judge_comparison(comparison: &Comparison) -> Option<Finding> {
     let &Comparison { predicted, predicted_u95, measured, measured_u95, .. } = comparison;
     let e_n = (measured - predicted).abs() / measured_u95.hypot(predicted_u95);

@@ -36,7 +36,6 @@ struct Reading<'a> {
 ///
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
 /// named.
-#[must_use]
 pub fn judge_rigid<'a>(
     transverse: impl Iterator<Item = TransversePlace<'a>>,
     flight: &FlightFit,

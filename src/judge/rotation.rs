@@ -11,7 +11,6 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// What is wrong with a sensor by the share of the rotation that it has the first impact give; it takes no
 /// part in the motion then.
-#[must_use]
 pub fn judge_rotation(read: &MeasuredRotation, gained_rad_s: f64) -> Option<ChannelFinding> {
     if gained_rad_s.abs() < LEAST_RAD_S {
         return None;
@@ -28,7 +27,6 @@ pub fn judge_rotation(read: &MeasuredRotation, gained_rad_s: f64) -> Option<Chan
 }
 
 /// What an angular-rate sensor reads at rest, where it must read 0; `unit_rad_s` is that of its level.
-#[must_use]
 pub fn judge_rate_level(channel: &Channel, rest: AtRest, unit_rad_s: f64) -> Finding {
     let found = match () {
         () if rest.least_step_m_s2 == 0.0 => RestFinding::OneValue,

@@ -33,7 +33,6 @@ const LONGEST_S: f64 = 0.05;
 /// Checks how each channel samples the first impact: enough samples, and nothing up to half the sample rate.
 ///
 /// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
-#[must_use]
 pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Finding> {
     let struck = super::struck(signals);
     let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s()) else { return Vec::new() };
@@ -76,13 +75,11 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
 }
 
 /// A sample rate that a pulse of this length asks for, Hz: twice the least, which leaves 0.2 % of its area.
-#[must_use]
 pub fn fit_rate_hz(length_s: f64) -> f64 {
     2.0 * LEAST_SAMPLES / length_s
 }
 
 /// From which frequency on a filter before the sampling leaves nothing, Hz.
-#[must_use]
 pub fn nothing_from_hz(sample_rate_hz: f64) -> f64 {
     BAND * sample_rate_hz
 }

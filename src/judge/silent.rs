@@ -23,7 +23,6 @@ struct Excursion {
 }
 
 /// Names each channel that stays within its noise over the whole recording while another does not.
-#[must_use]
 pub fn judge_silent(channels: &[Channel]) -> Vec<Finding> {
     let reaches: Vec<Excursion> = channels.par_iter().map(reach).collect();
     let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;

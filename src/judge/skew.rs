@@ -10,7 +10,6 @@ const NOTABLE_S: f64 = 3e-4;
 
 /// Holds a delay against what a body can do: answer at once, or as late as a bending wave, never before it is
 /// struck.
-#[must_use]
 pub fn judge_skew(onset: &Onset, signals: &[Signal], cask: &Cask, is_shifted: bool) -> Option<Finding> {
     let &Onset { delay_s, u_s, .. } = onset;
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);

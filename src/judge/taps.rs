@@ -13,7 +13,6 @@ const APART_S: f64 = 1e-3;
 /// A channel of the first end answers the first blow early and the second late, so that the time between
 /// them is longest there, whatever its clock. What two channels are apart by both blows alike is their
 /// clocks.
-#[must_use]
 pub fn judge_taps(felt: &[(&Channel, Vec<BlowAnswer>)]) -> Vec<Finding> {
     if let Some((_, blows)) = felt.iter().find(|(_, blows)| blows.len() != 2) {
         return vec![RestFinding::Blows { count: blows.len() }.into()];

@@ -15,7 +15,7 @@ use crate::lab::data::{
 use crate::lab::drawn;
 use crate::lab::synth;
 use std::path::Path;
-use values::{contradicts, flag, given, needs, value, whole};
+use values::{contradicts, flag, needs, value, whole};
 
 /// The scene file.
 const SCENE_FILE: Kind = Kind { name: "the scene file", root: &keys::ROOT, tables: &keys::TABLES };
@@ -67,8 +67,8 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let falling_speed_m_s = value(&contact_table, "falling_speed_m_s")?;
     let extras = SceneExtras {
         contents: loose.iter().map(|table| loose_mass(table, &cask)).collect::<Result<_, _>>()?,
-        falling_friction: given(&contact_table, "falling_friction")?.map(|fast| (fast, falling_speed_m_s)),
-        returning_friction: given(&contact_table, "returning_friction")?,
+        falling_friction: contact_table.given("falling_friction")?.map(|fast| (fast, falling_speed_m_s)),
+        returning_friction: contact_table.given("returning_friction")?,
         guided,
         roll_rad_s: value(&drop_table, "roll_deg_s")?.to_radians(),
         rates,
@@ -88,14 +88,14 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         ..by_pulses
     };
     let usual_s = if scene.rest { scene.fall_s() + AT_REST_S } else { scene.before_s };
-    scene.before_s = given(&recording, "before_s")?.unwrap_or(usual_s);
+    scene.before_s = recording.given("before_s")?.unwrap_or(usual_s);
     affordable(&root, &tables, &scene)?;
     let defaults = cask_file::assumed(&root, &["cask", "drop", "contact"]);
     let stated = CaskFile {
         path: path.to_owned(),
         channels: specs,
         others,
-        scale: given(&root.table("cask")?, "scale")?,
+        scale: root.table("cask")?.given("scale")?,
         ..drawn::cask_file(cask, stated_drop(&drop_table, free)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })
@@ -117,9 +117,9 @@ fn loose_mass(table: &Section, cask: &Cask) -> Result<LooseMass, CaskFileError> 
 }
 
 fn stated_drop(table: &Section, drop: Drop) -> Result<Drop, CaskFileError> {
-    let angle_rad = given(table, "stated_angle_deg")?.map(f64::to_radians);
+    let angle_rad = table.given("stated_angle_deg")?.map(f64::to_radians);
     Ok(Drop {
-        height_m: given(table, "stated_height_m")?.unwrap_or(drop.height_m),
+        height_m: table.given("stated_height_m")?.unwrap_or(drop.height_m),
         angle_rad: angle_rad.unwrap_or(drop.angle_rad),
         ..drop
     })
@@ -128,9 +128,9 @@ fn stated_drop(table: &Section, drop: Drop) -> Result<Drop, CaskFileError> {
 /// What `[first_end]` or `[second_end]` asks for by its pulse.
 fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFileError> {
     Ok(WantedImpact {
-        duration_s: given(table, "pulse_ms")?.map_or(usual.duration_s, |ms| ms * 1e-3),
-        restitution: given(table, "k")?.unwrap_or(usual.restitution),
-        yield_share: given(table, "yield_share")?,
+        duration_s: table.given("pulse_ms")?.map_or(usual.duration_s, |ms| ms * 1e-3),
+        restitution: table.given("k")?.unwrap_or(usual.restitution),
+        yield_share: table.given("yield_share")?,
     })
 }
 
@@ -138,13 +138,13 @@ fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFile
 fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, CaskFileError> {
     needs(table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
     let by_pulse = CrushableEnd {
-        lock_up: given(table, "lock_up_m")?.zip(given(table, "lock_up_n_m")?),
+        lock_up: table.given("lock_up_m")?.zip(table.given("lock_up_n_m")?),
         footprint: value(table, "footprint")?,
         ..by_pulse
     };
     let any_of = |keys: &[&'static str]| keys.iter().copied().find(|key| table.value(key).is_some());
-    let (yield_n, unloading_n_m) = (given(table, "yield_n")?, given(table, "unloading_n_m")?);
-    let Some(loading_n_m) = given(table, "loading_n_m")? else {
+    let (yield_n, unloading_n_m) = (table.given("yield_n")?, table.given("unloading_n_m")?);
+    let Some(loading_n_m) = table.given("loading_n_m")? else {
         return any_of(&["unloading_n_m", "yield_n"]).map_or(Ok(by_pulse), |key| {
             Err(contradicts(table, key, "needs loading_n_m", "give loading_n_m beside it, or pulse_ms and k"))
         });

@@ -4,6 +4,7 @@
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{MotionState, Setup, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use std::f64::consts::PI;
 
@@ -36,8 +37,7 @@ impl ContactCourse {
     pub fn of(measured: &[MotionState], setup: &Setup, by: ForceCourse) -> Option<Self> {
         let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
         let ends = [*states.first()?, *states.last()?];
-        #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
-        let step_s = (ends[1].time_s - ends[0].time_s) / (states.len().checked_sub(1)? as f64);
+        let step_s = (ends[1].time_s - ends[0].time_s) / as_f64(states.len().checked_sub(1)?);
         let steps = states.windows(2).map(|pair| (pair[0], pair[1]));
         let force = |(a, b): (MotionState, MotionState)| {
             let along = (b.horizontal_velocity_m_s - a.horizontal_velocity_m_s) / step_s;
@@ -190,8 +190,7 @@ fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<Cha
     // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a
     // higher level is passed.
     let passed = |below: usize, beside: usize| {
-        #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-        let (from, step) = (below as f64, beside as f64 - below as f64);
+        let (from, step) = (as_f64(below), as_f64(beside) - as_f64(below));
         let rise_m_s2 = above(beside) - above(below);
         [from - step * above(below) / rise_m_s2, step / rise_m_s2]
     };

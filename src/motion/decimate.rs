@@ -2,7 +2,7 @@
 
 use crate::data::Signal;
 use crate::numerics::reduce::{block_means, block_of};
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust};
 use std::borrow::Cow;
 
 /// Rate that the motion is taken from at the least, Hz: a pulse with a kink in it is integrated to below 1e-6
@@ -31,12 +31,7 @@ fn of_means(signal: &Signal, block: usize) -> Signal {
     let means = block_means(&signal.force_m_s2, block);
     let sample_rate_hz = signal.sample_rate_hz / as_f64(block);
     let middle_s = as_f64(block - 1) / 2.0 / signal.sample_rate_hz;
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a positive count, cut to what there is"
-    )]
-    let quiet = &means[..((signal.free_fall_s * sample_rate_hz) as usize).min(means.len())];
+    let quiet = &means[..as_count(signal.free_fall_s * sample_rate_hz).min(means.len())];
     // White noise is taken where too little is seen of what its means still hold.
     let noise_m_s2 = if quiet.len() < FEWEST {
         signal.noise_m_s2 / as_f64(block).sqrt()

@@ -6,7 +6,7 @@ use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
-use crate::numerics::robust;
+use crate::numerics::{as_count, as_f64, robust};
 use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
@@ -133,8 +133,7 @@ fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<
     if length_s <= 0.0 || fewest < 8 {
         return Vec::new();
     }
-    #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
-    let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
+    let highest_hz = (0.2 * as_f64(fewest) / length_s).min(1500.0);
     let band_hz = |periods: f64| ((periods / length_s).max(LOWEST_HZ), highest_hz);
     let drifts = if window.drift { &[false, true][..] } else { &[false] };
     let chains = |drive: Option<&Drive>, periods: f64| -> Vec<Vec<Fit>> {
@@ -315,20 +314,11 @@ fn series_of(
 ) -> Series {
     let centrifugal_m_s2 = centrifugal_m_s2(signal, window, cog_m);
     let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "a positive count of samples, cut to POINTS"
-    )]
-    let (points, bin_s) = {
-        let points = ((length_s * signal.sample_rate_hz) as usize).min(POINTS);
-        (points, length_s / points.max(1) as f64)
-    };
+    let points = as_count(length_s * signal.sample_rate_hz).min(POINTS);
+    let bin_s = length_s / as_f64(points.max(1));
     let (mut time_s, mut value) = (Vec::with_capacity(points), Vec::with_capacity(points));
     for i in 0..points {
-        #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
-        let from_s = i as f64 * bin_s;
+        let from_s = as_f64(i) * bin_s;
         let (a, b) = (window.from_s + from_s, window.from_s + from_s + bin_s);
         if signal.touches(&signal.gaps, a, b) {
             continue;

@@ -28,7 +28,7 @@ pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 
 use crate::data::Signal;
 use crate::numerics::quadrature::running_integral;
-use crate::numerics::reduce;
+use crate::numerics::{as_count, as_f64, reduce};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -109,21 +109,18 @@ impl Velocity {
     }
 
     /// Index of the first sample at or after a time, cut to what there is.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut at 0 first")]
     fn index_from(&self, time_s: f64) -> usize {
         let position = (time_s - self.start_s) * self.sample_rate_hz;
-        (position.ceil().max(0.0) as usize).min(self.values_m_s.len())
+        as_count(position.ceil()).min(self.values_m_s.len())
     }
 
     /// Velocity at a time, m/s, linear between samples and constant beyond the ends.
     fn at(&self, time_s: f64) -> f64 {
         let Some(last) = self.values_m_s.len().checked_sub(1) else { return 0.0 };
         let position = (time_s - self.start_s) * self.sample_rate_hz;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against 0 first")]
-        let index = if position > 0.0 { (position as usize).min(last) } else { return self.values_m_s[0] };
+        let index = if position > 0.0 { as_count(position).min(last) } else { return self.values_m_s[0] };
         let next = (index + 1).min(last);
-        #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-        let share = (position - index as f64).min(1.0);
+        let share = (position - as_f64(index)).min(1.0);
         self.values_m_s[index] + share * (self.values_m_s[next] - self.values_m_s[index])
     }
 
@@ -135,8 +132,6 @@ impl Velocity {
         if inside.is_empty() {
             return self.at(f64::midpoint(from_s, to_s));
         }
-        #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-        let n = inside.len() as f64;
-        reduce::sum(inside) / n
+        reduce::sum(inside) / as_f64(inside.len())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::curves::shown_s;
 use crate::data::{Channel, Events, OtherCurve, SpectralLine};
+use crate::numerics::as_f64;
 use crate::numerics::spectrum::magnitude;
 
 /// A line has so many periods in what is shown: what has fewer is the shape of a pulse.
@@ -16,8 +17,7 @@ pub fn other_curve(channel: &Channel, events: &Events) -> Option<OtherCurve> {
     let shown = channel.index_at(from_s - step_s)..channel.index_at(to_s + 2.0 * step_s);
     let values = channel.force_m_s2(shown.start, shown.end);
     let numbers = || values.iter().filter(|value| value.is_finite());
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let mean = numbers().sum::<f64>() / numbers().count() as f64;
+    let mean = numbers().sum::<f64>() / as_f64(numbers().count());
     let about_mean = |value: &f64| if value.is_finite() { value - mean } else { 0.0 };
     let (frequency_hz, magnitude) = magnitude(values.iter().map(about_mean), channel.sample_rate_hz);
     Some(OtherCurve {

@@ -2,6 +2,7 @@
 
 use super::flight::{centrifugal_arm_m, oscillation};
 use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::damped_modes::uniform_ringing;
 use std::ops::Range;
 
@@ -125,8 +126,7 @@ pub fn rotation_by<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &Fligh
     let points: Vec<(f64, f64)> = across
         .filter_map(|(name, position_m)| Some((position_m, fit.plateau(name)?.velocity_step_m_s)))
         .collect();
-    #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-    let n = points.len().max(1) as f64;
+    let n = as_f64(points.len().max(1));
     let mean = points.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
     let (square, product) = points
         .iter()

@@ -61,7 +61,7 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
     if let Some(inertia) = &inertia {
         inertia_is_possible(table, inertia, mass_kg, [length_m, height_m, cog_m])?;
     }
-    let width_m = table.number("width_m")?.map(|width| width.value);
+    let width_m = table.given("width_m")?;
     let box_m3 = length_m * height_m * width_m.unwrap_or(height_m);
     if mass_kg < LEAST_DENSITY_KG_M3 * box_m3 {
         return Err(table.wrong(
@@ -120,9 +120,9 @@ fn inertia_is_possible(
 
 /// `[drop]`, whose ranges hold of the height and the velocity that it leaves out too.
 pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> {
-    let gravity_m_s2 = table.number("gravity_m_s2")?.map_or(DEFAULT_GRAVITY_M_S2, |gravity| gravity.value);
-    let velocity = table.number("impact_velocity_m_s")?.map(|velocity| velocity.value);
-    let height = table.number("height_m")?.map(|height| height.value);
+    let gravity_m_s2 = table.given("gravity_m_s2")?.unwrap_or(DEFAULT_GRAVITY_M_S2);
+    let velocity = table.given("impact_velocity_m_s")?;
+    let height = table.given("height_m")?;
     let height_m = match (&velocity, height) {
         (_, Some(height_m)) => height_m,
         // h = v0² / (2 g).
@@ -131,9 +131,8 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
     };
     let angle = table.required_number("angle_deg")?;
     let angle_rad = angle.value.to_radians();
-    let angular_velocity_rad_s =
-        table.number("angular_velocity_deg_s")?.map_or(0.0, |turning| turning.value.to_radians());
-    let horizontal_velocity_m_s = table.number("horizontal_velocity_m_s")?.map_or(0.0, |along| along.value);
+    let angular_velocity_rad_s = table.given("angular_velocity_deg_s")?.map_or(0.0, f64::to_radians);
+    let horizontal_velocity_m_s = table.given("horizontal_velocity_m_s")?.unwrap_or(0.0);
     // v0 = √(2 g h) − ω a   (3)
     let a_m = first_arm_m(cask.cog_m, cask.height_m, angle_rad);
     let of_fall_m_s = (2.0 * gravity_m_s2 * height_m).sqrt() - angular_velocity_rad_s * a_m;

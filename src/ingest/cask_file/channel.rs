@@ -75,7 +75,7 @@ pub(super) fn channels(
         lines.push(table.line(name_span.start));
         let rate = rate(&table)?;
         if rate.is_some() || end_or_none(&table)?.is_none() {
-            let unit = table.text("unit")?.map(|unit| unit.value);
+            let unit = table.words("unit")?;
             others.push(OtherSpec { read: channel.clone(), unit, rate });
         }
         channels.push(channel);
@@ -105,16 +105,16 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         source,
         unit,
         position_m,
-        offset_m: table.number("offset_m")?.map_or(0.0, |offset| offset.value),
+        offset_m: table.given("offset_m")?.unwrap_or(0.0),
         polarity: polarity(table)?,
-        full_scale: table.number("full_scale")?.map(|limit| limit.value),
-        sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
+        full_scale: table.given("full_scale")?,
+        sample_rate_hz: table.given("sample_rate_hz")?,
         rows: rows(table)?,
-        time: table.text("time")?.map(|time| time.value),
+        time: table.words("time")?,
         coupling: coupling(table)?,
-        calibration: table.number("calibration_percent")?.map(|percent| percent.value / 100.0),
-        reference: table.text("reference")?.map(|reference| reference.value),
-        lateral_m: table.number("lateral_m")?.map_or(0.0, |lateral| lateral.value),
+        calibration: table.given("calibration_percent")?.map(|percent| percent / 100.0),
+        reference: table.words("reference")?,
+        lateral_m: table.given("lateral_m")?.unwrap_or(0.0),
         sensor: sensor(table)?,
     };
     Ok((spec, name.span))
@@ -154,7 +154,7 @@ fn rate(table: &Section) -> Result<Option<RateSpec>, CaskFileError> {
     for key in ["position_m", "offset_m", "lateral_m"] {
         table.number(key)?;
     }
-    let calibration = table.number("calibration_percent")?.map(|percent| percent.value / 100.0);
+    let calibration = table.given("calibration_percent")?.map(|percent| percent / 100.0);
     Ok(Some(RateSpec { polarity: polarity(table)?, calibration }))
 }
 
@@ -162,10 +162,10 @@ fn rate(table: &Section) -> Result<Option<RateSpec>, CaskFileError> {
 fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
     Ok(ChannelSpec {
         source: source(table)?,
-        full_scale: table.number("full_scale")?.map(|limit| limit.value),
-        sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
+        full_scale: table.given("full_scale")?,
+        sample_rate_hz: table.given("sample_rate_hz")?,
         rows: rows(table)?,
-        time: table.text("time")?.map(|time| time.value),
+        time: table.words("time")?,
         sensor: sensor(table)?,
         ..ChannelSpec::plain(name, End::First, "", 0.0)
     })
@@ -173,8 +173,8 @@ fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
 
 fn sensor(table: &Section) -> Result<SensorRecord, CaskFileError> {
     Ok(SensorRecord {
-        serial: table.text("serial")?.map(|serial| serial.value),
-        certificate: table.text("certificate")?.map(|certificate| certificate.value),
+        serial: table.words("serial")?,
+        certificate: table.words("certificate")?,
         calibrated: table.date("calibrated")?,
     })
 }
@@ -212,7 +212,7 @@ fn source(table: &Section) -> Result<Source, CaskFileError> {
             clippy::cast_sign_loss,
             reason = "the key's row bounds it"
         )]
-        channel: parts.number("channel")?.map(|channel| channel.value as u16),
+        channel: parts.given("channel")?.map(|channel| channel as u16),
     })
 }
 

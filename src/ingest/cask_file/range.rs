@@ -19,6 +19,11 @@ impl Section<'_> {
         Ok(number)
     }
 
+    /// The same without its place.
+    pub(crate) fn given(&self, key: &str) -> Result<Option<f64>, CaskFileError> {
+        Ok(self.number(key)?.map(|number| number.value))
+    }
+
     /// Whether the range of `key` holds `number`, of which the refusal says `what`.
     pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
         let Some(Takes::Number(allowed)) = self.row(key).map(|row| row.takes) else { return Ok(()) };
@@ -37,7 +42,7 @@ impl Section<'_> {
         Err(self.wrong(number.span.clone(), format!("{what}{must}"), expected, mend))
     }
 
-    /// The same of a key that must be there.
+    /// A number within what its row allows, of a key that must be there.
     pub(crate) fn required_number(&self, key: &str) -> Result<Placed<f64>, CaskFileError> {
         self.number(key)?.ok_or_else(|| self.without(key))
     }

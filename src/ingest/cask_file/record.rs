@@ -24,20 +24,19 @@ const HEAD_OF_SVG: u64 = 4096;
 
 /// `[test]`; its photographs are looked for in `folder`, and known by name alone where there is none.
 pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord, CaskFileError> {
-    let text = |key: &str| table.text(key).map(|text| text.map(|text| text.value));
     let mut left_bytes = ALL_PHOTOS_MIB << 20;
     let photos = table.texts("photos")?.into_iter().map(|name| picture(table, name, folder, &mut left_bytes));
     Ok(TestRecord {
-        id: text("id")?,
-        title: text("title")?,
-        place: text("place")?,
-        operator: text("operator")?,
-        customer: text("customer")?,
-        specimen: text("specimen")?,
-        target: text("target")?,
-        remarks: text("remarks")?,
+        id: table.words("id")?,
+        title: table.words("title")?,
+        place: table.words("place")?,
+        operator: table.words("operator")?,
+        customer: table.words("customer")?,
+        specimen: table.words("specimen")?,
+        target: table.words("target")?,
+        remarks: table.words("remarks")?,
         date: table.date("date")?,
-        temperature_c: table.number("temperature_c")?.map(|temperature| temperature.value),
+        temperature_c: table.given("temperature_c")?,
         photos: photos.collect::<Result<_, _>>()?,
         signatures: table.texts("signatures")?.into_iter().map(|who| who.value).collect(),
         more: table.table("more")?.own_names()?,
@@ -46,9 +45,8 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
 
 /// `[report]`; its logo is looked for in `folder`, as the photographs.
 pub(super) fn letterhead(table: &Section, folder: Option<&Path>) -> Result<Letterhead, CaskFileError> {
-    let text = |key: &str| table.text(key).map(|text| text.map(|text| text.value));
     let logo = table.text("logo")?.map(|name| picture(table, name, folder, &mut (LARGEST_PHOTO_MIB << 20)));
-    Ok(Letterhead { header: text("header")?, footer: text("footer")?, logo: logo.transpose()? })
+    Ok(Letterhead { header: table.words("header")?, footer: table.words("footer")?, logo: logo.transpose()? })
 }
 
 /// A photograph or a logo, of which only the beginning is looked at; it takes its share of `left_bytes`.
@@ -107,7 +105,7 @@ pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> 
         let observation = || {
             let seen = table.table_as(key, "observation")?;
             let number = |part| seen.required_number(part).map(|number| number.value);
-            let by = seen.text("by")?.map(|by| by.value);
+            let by = seen.words("by")?;
             Ok(Observed { name: key, value: number("value")?, u95: number("u95")?, by })
         };
         Some(observation())
@@ -119,8 +117,7 @@ pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> 
 pub(super) fn limits(table: &Section) -> Result<Vec<Limit>, CaskFileError> {
     let limit = |name: &'static str| {
         let bounds = table.table_as(name, "limit")?;
-        let bound = |key| bounds.number(key).map(|bound| bound.map(|bound| bound.value));
-        let (least, most) = (bound("least")?, bound("most")?);
+        let (least, most) = (bounds.given("least")?, bounds.given("most")?);
         if least.or(most).is_some_and(|least| least <= most.unwrap_or(f64::INFINITY)) {
             return Ok(Limit { name, least, most, measured: None, state: LimitState::Undecided });
         }

@@ -14,7 +14,13 @@ impl Section<'_> {
         self.text_such_as(key, &self.example(key))
     }
 
-    /// The same; `such_as` is what to write in place of what `dropcheck init` leaves to be filled in.
+    /// The same without its place.
+    pub(crate) fn words(&self, key: &str) -> Result<Option<String>, CaskFileError> {
+        Ok(self.text(key)?.map(|text| text.value))
+    }
+
+    /// As [`Section::text`]; `such_as` is what to write in place of what `dropcheck init` leaves to be filled
+    /// in.
     fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
@@ -56,6 +62,16 @@ impl Section<'_> {
         let message = format!("{key} is \"{FILL_IN}\": what it is only you know");
         let label = "this line is still to be filled in".to_owned();
         self.wrong(self.place(key), message, label, &format!("write what it is, such as {such_as}"))
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn flag(&self, key: &str, mend: &str) -> Result<Option<bool>, CaskFileError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let told = value.get_ref().as_bool().ok_or_else(|| {
+            let message = format!("{key} is neither true nor false");
+            self.wrong(value.span(), message, "true or false".into(), mend)
+        })?;
+        Ok(Some(told))
     }
 
     /// A date, or a date and a time, as TOML writes it.

@@ -32,18 +32,11 @@ pub(super) fn tolerances(
 
 /// `[corrections]`; what it leaves out is made.
 pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError> {
+    const UNQUOTED: &str = "without quotes; false leaves the samples as they are in this respect, and the \
+                            report says so";
     let mut made = Corrections::default();
     for (key, made) in made.by_key() {
-        let Some(value) = table.value(key) else { continue };
-        *made = value.get_ref().as_bool().ok_or_else(|| {
-            table.wrong(
-                value.span(),
-                format!("{key} is neither true nor false"),
-                "true or false".into(),
-                "without quotes; false leaves the samples as they are in this respect, and the report says \
-                 so",
-            )
-        })?;
+        *made = table.flag(key, UNQUOTED)?.unwrap_or(*made);
     }
     Ok(made)
 }

@@ -155,6 +155,22 @@ pub(super) enum Filter {
     Other(String),
 }
 
+impl Filter {
+    /// By its number in the file, and the level of one that deflates.
+    pub(super) fn of(number: i32, level: u8) -> Self {
+        match number {
+            1 => Self::Deflate(level),
+            2 => Self::Shuffle,
+            3 => Self::Fletcher32,
+            4 => Self::Other("SZIP".into()),
+            5 => Self::Other("N-bit".into()),
+            6 => Self::Other("scale-offset".into()),
+            32_000 => Self::Lzf,
+            number => Self::Other(format!("number {number}")),
+        }
+    }
+}
+
 impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
@@ -221,6 +237,21 @@ pub(super) enum NumberType {
 }
 
 impl NumberType {
+    /// An integer of so many bytes; `None` where Rust has none.
+    pub(super) fn integer(bytes: usize, is_signed: bool) -> Option<Self> {
+        Some(match (bytes, is_signed) {
+            (1, true) => Self::I8,
+            (2, true) => Self::I16,
+            (4, true) => Self::I32,
+            (8, true) => Self::I64,
+            (1, false) => Self::U8,
+            (2, false) => Self::U16,
+            (4, false) => Self::U32,
+            (8, false) => Self::U64,
+            _ => return None,
+        })
+    }
+
     /// Whether it is an integer.
     pub(super) fn is_whole(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)

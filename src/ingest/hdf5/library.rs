@@ -199,17 +199,8 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
 }
 
 fn filter(filter: &hdf5_metno::filters::Filter) -> Filter {
-    use hdf5_metno::filters::Filter as Known;
-    match filter {
-        Known::Shuffle => Filter::Shuffle,
-        Known::Deflate(level) => Filter::Deflate(*level),
-        Known::Fletcher32 => Filter::Fletcher32,
-        Known::LZF => Filter::Lzf,
-        Known::SZip(..) => Filter::Other("SZIP".into()),
-        Known::NBit => Filter::Other("N-bit".into()),
-        Known::ScaleOffset(_) => Filter::Other("scale-offset".into()),
-        Known::User(id, _) => Filter::Other(format!("number {id}")),
-    }
+    let level = if let hdf5_metno::filters::Filter::Deflate(level) = filter { *level } else { 0 };
+    Filter::of(filter.id(), level)
 }
 
 /// Where the chunks lie that this program unpacks itself; `None` where only the library can.

@@ -98,7 +98,7 @@ fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
     let (layout, chunks) = match &dataset.storage {
         // Addresses count from behind a user block in some versions of the library and from the file's start
         // in others.
-        _ if file.user_block != 0 => return None,
+        _ if file.opened.user_block != 0 => return None,
         Storage::Contiguous(from) => layout.in_one_piece(column, (*from)?)?,
         Storage::Chunked { shape, chunks } => layout.in_chunks(dataset, shape, chunks.as_ref()?)?,
         _ => return None,

@@ -2,7 +2,6 @@
 //! has in place of the C library. What this one cannot tell it refuses.
 
 mod attributes;
-mod filters;
 mod number;
 mod places;
 mod words;
@@ -12,13 +11,15 @@ use super::answer::{
     StoredChunk, receive, send,
 };
 use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
+use crate::numerics::single;
 use hdf5_reader::chunk_index::ChunkEntry;
 use hdf5_reader::error::Error;
 use hdf5_reader::messages::HdfMessage;
 use hdf5_reader::messages::dataspace::DataspaceType;
+use hdf5_reader::messages::filter_pipeline::FilterDescription;
 use hdf5_reader::messages::layout::DataLayout;
 use hdf5_reader::object_header::ObjectHeader;
-use hdf5_reader::{Hdf5File, OpenOptions};
+use hdf5_reader::{FilterRegistry, Hdf5File, OpenOptions};
 use number::{NumberIn, type_of};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -43,7 +44,7 @@ pub(super) struct InMemory {
 /// # Errors
 /// The library does not open it, or might read it wrong.
 pub(super) fn opened(bytes: &Arc<[u8]>) -> Result<(InMemory, u64), Vec<Bytes>> {
-    let options = OpenOptions::default().with_filter_registry(filters::registry()).with_chunk_cache_bytes(0);
+    let options = OpenOptions::default().with_filter_registry(filters()).with_chunk_cache_bytes(0);
     let file =
         Hdf5File::from_shared_bytes_with_options(bytes.clone(), options).map_err(|error| match error {
             Error::InvalidMagic => vec![b"file signature not found".to_vec()],
@@ -70,6 +71,20 @@ pub(super) fn opened(bytes: &Arc<[u8]>) -> Result<(InMemory, u64), Vec<Bytes>> {
     let root = store.file.root_group().map_err(words)?.address();
     store.links.of(&store.file, root).map_err(words)?;
     Ok((store, user_block))
+}
+
+/// Those filters that are undone: the library's but SZIP, which was compared with nothing; LZF it lacks.
+fn filters() -> FilterRegistry {
+    let mut registry = FilterRegistry::new();
+    for (number, name) in [(4, "SZIP"), (32_000, "LZF")] {
+        registry.register(number, Box::new(move |_, _, _| Err(Error::UnsupportedFilter(name.into()))));
+    }
+    registry
+}
+
+fn filter(filter: &FilterDescription) -> Filter {
+    let level = filter.client_data.first().map_or(0, |level| u8::try_from(*level).unwrap_or(9));
+    Filter::of(filter.id.into(), level)
 }
 
 /// A dataset as the library has it open.
@@ -126,7 +141,7 @@ impl InMemory {
                     told.shape = (space.dataspace_type != DataspaceType::Null).then_some(shape);
                 }
                 HdfMessage::FilterPipeline(pipeline) => {
-                    told.filters = pipeline.filters.iter().map(filters::named).collect();
+                    told.filters = pipeline.filters.iter().map(filter).collect();
                 }
                 HdfMessage::DataLayout(stated) => layout = Some(&stated.layout),
                 HdfMessage::FillValue(value) => fill = value.value.as_ref().or(fill),
@@ -302,11 +317,10 @@ impl Numbers {
             let places = first..self.count.min(first + FRAME_NUMBERS);
             let numbers = places
                 .map(|i| self.number.value(&self.values[self.from + i * self.step..][..self.number.bytes()]));
-            #[allow(clippy::cast_possible_truncation, reason = "short numbers alone are asked for so")]
             let reply = if is_wide {
                 Reply::Wide(numbers.collect())
             } else {
-                Reply::Narrow(numbers.map(|number| number as f32).collect())
+                Reply::Narrow(numbers.map(single).collect())
             };
             send(to, &reply)?;
         }

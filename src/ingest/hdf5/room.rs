@@ -61,11 +61,7 @@ pub(super) struct File {
     /// All of it, where it is not on disk.
     pub in_memory: Option<Arc<[u8]>>,
     pub bytes: u64,
-    pub user_block: u64,
-    /// The library and its version.
-    pub library: String,
-    /// Whether the system keeps the process from every other file.
-    pub is_walled: bool,
+    pub opened: Opened,
     pub limits: Limits,
     link: RefCell<Link>,
     known: RefCell<HashMap<String, Rc<Object>>>,
@@ -85,15 +81,13 @@ impl File {
     ) -> Result<Rc<Self>, IngestError> {
         let file = file.into();
         let bytes = file.length().unwrap_or(0);
-        let opened = Link::opened(file).map_err(|refusal| fault::of_file(file.path, bytes, refusal))?;
-        let OpenedLink { link, user_block, library, is_walled } = opened;
+        let (link, opened) =
+            Link::opened(file).map_err(|refusal| fault::of_file(file.path, bytes, refusal))?;
         Ok(Rc::new(Self {
             path: file.path.to_owned(),
             in_memory: file.in_memory.cloned(),
             bytes,
-            user_block,
-            library,
-            is_walled,
+            opened,
             limits,
             link: RefCell::new(link),
             known: RefCell::default(),
@@ -203,12 +197,14 @@ impl File {
     }
 }
 
-/// A link, and what was said of the file when it was opened.
-struct OpenedLink {
-    link: Link,
-    user_block: u64,
-    library: String,
-    is_walled: bool,
+/// What was said of a file when it was opened.
+pub(super) struct Opened {
+    /// Bytes before its beginning.
+    pub user_block: u64,
+    /// The library and its version.
+    pub library: String,
+    /// Whether the system keeps the process from every other file.
+    pub is_walled: bool,
 }
 
 /// The way to the library and back.
@@ -219,19 +215,19 @@ struct Link {
 }
 
 impl Link {
-    fn opened(file: RecordingFile) -> Result<OpenedLink, Refusal> {
+    fn opened(file: RecordingFile) -> Result<(Self, Opened), Refusal> {
         #[cfg(any(not(feature = "native"), test, fuzzing))]
         if let Some(bytes) = file.in_memory {
             let (store, user_block) = pure::opened(bytes).map_err(|words| fault::of_words(&words))?;
             let (to, from) = pure::OnTheSpot::of(store);
             let link = Self { to: Box::new(to), from: Box::new(from), process: None };
-            return Ok(OpenedLink { link, user_block, library: pure::READER.into(), is_walled: true });
+            return Ok((link, Opened { user_block, library: pure::READER.into(), is_walled: true }));
         }
         let mut link = Self::to(file.path).map_err(|refusal| unstarted(&refusal))?;
         match link.answer() {
             Ok((Reply::Opened { user_block, library: (major, minor, patch), is_walled }, _)) => {
                 let library = format!("HDF5 library {major}.{minor}.{patch}");
-                Ok(OpenedLink { link, user_block, library, is_walled })
+                Ok((link, Opened { user_block, library, is_walled }))
             }
             Ok((Reply::Refused(words), _)) => Err(fault::of_words(&words)),
             _ => Err(link.end_before_answer()),

@@ -6,6 +6,7 @@ use super::plan::{
 };
 use super::ros_type::{RosField, Type};
 use crate::data::Samples;
+use crate::numerics::single;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
 use re_ros_msg::message_spec::BuiltInType;
 use std::sync::Arc;
@@ -214,8 +215,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             Type::Plain(BuiltInType::Int32) => Samples::F64(self.converted::<i32, f64>(count)?),
             other => {
                 let wide = (0..count).map(|_| self.number(other)).collect::<Result<Vec<f64>, _>>()?;
-                #[allow(clippy::cast_possible_truncation, reason = "f32 holds every value of a narrow type")]
-                let narrow = || wide.iter().map(|value| *value as f32).collect();
+                let narrow = || wide.iter().copied().map(single).collect();
                 if other.is_narrow() { Samples::F32(narrow()) } else { Samples::F64(wide) }
             }
         })

@@ -12,16 +12,15 @@ use std::path::Path;
 
 /// No topic of the file fits the source.
 pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scanned: &Scanned) -> Refusal {
-    let fault = |problem: String, mend: String| Refusal::new(problem, mend);
     let wanted = match &spec.source {
         Source::Path(text) | Source::TopicField { topic: text, .. } => text,
     };
     if topics.is_empty() {
         let problem = format!("the recording holds no topics, so none for {}", spec.source);
-        return fault(problem, lost(scanned, "take the original from the logger again"));
+        return Refusal::new(problem, lost(scanned, "take the original from the logger again"));
     }
     if topics.iter().any(|topic| topic.trim_start_matches('/') == wanted.trim_start_matches('/')) {
-        return fault(
+        return Refusal::new(
             format!("the source {wanted} names a topic but no field of its messages"),
             format!(
                 "write `source = \"{wanted}.FIELD\"`; `dropcheck inspect {}` lists the fields",
@@ -35,7 +34,7 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
         Source::TopicField { topic, .. } => topic,
     };
     let mend = with_loss(scanned, error::near_names(path, meant, "topic", topics));
-    fault(format!("the recording has no topic for the source {}", spec.source), mend)
+    Refusal::new(format!("the recording has no topic for the source {}", spec.source), mend)
 }
 
 /// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that
@@ -95,22 +94,21 @@ pub(super) fn no_samples(
     scanned: &Scanned,
 ) -> Refusal {
     let gathered = &channels[0].1;
-    let fault = |problem: String, mend: &str| Refusal::new(problem, mend);
     let Topic { name, leaves, unreadable, .. } = topic;
     let Gathered { messages, malformed, first_problem, leaves: seen, .. } = gathered;
     let field = path::field_in(&spec.source, name).unwrap_or_default().to_string();
     if let Some(reason) = unreadable {
-        return fault(
+        return Refusal::new(
             format!("the topic {name} cannot be read: {reason}"),
             "convert the recording, or record it again, in a form that is read",
         );
     }
     if *messages == 0 {
         let mend = lost(scanned, "check that the sensor was recorded");
-        return fault(format!("the topic {name} has no messages"), &mend);
+        return Refusal::new(format!("the topic {name} has no messages"), &mend);
     }
     if let (true, Some(problem)) = (malformed == messages, first_problem) {
-        return fault(
+        return Refusal::new(
             format!("none of the {messages} messages of {name} decodes; the first: {problem}"),
             "check that the source names the samples, and that the topic's schema is the one its messages \
              were written with",
@@ -124,13 +122,13 @@ pub(super) fn no_samples(
         }
     }
     if there.contains(&field) {
-        return fault(
+        return Refusal::new(
             format!("the field {field} holds no samples in any of the {messages} messages of {name}"),
             "check that the sensor was recorded",
         );
     }
     let mend = error::near_names(path, &field, "numeric field in this topic", &there);
-    fault(format!("the messages of {name} have no numeric field {field}"), &mend)
+    Refusal::new(format!("the messages of {name} have no numeric field {field}"), &mend)
 }
 
 /// The samples are there, and find no time base.

@@ -1,12 +1,12 @@
 //! Numbers of either precision to one run of samples.
 
 use crate::data::Samples;
+use crate::numerics::single;
 
 /// One more number; single precision as long as all are narrow.
 pub(super) fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
     match samples {
-        #[allow(clippy::cast_possible_truncation, reason = "f32 holds every narrow value")]
-        Samples::F32(narrow) if is_narrow => narrow.push(value as f32),
+        Samples::F32(narrow) if is_narrow => narrow.push(single(value)),
         Samples::F32(_) => append(samples, &mut Samples::F64(vec![value])),
         Samples::F64(wide) => wide.push(value),
     }

@@ -27,14 +27,13 @@ pub(super) struct Counts {
     pub(super) unpacked_bytes: u64,
 }
 
-impl std::ops::AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
+impl Counts {
+    /// Adds those of other records.
+    pub(super) fn append(&mut self, other: &Self) {
         self.of.iter_mut().zip(other.of).for_each(|(own, more)| *own += more);
         self.unpacked_bytes += other.unpacked_bytes;
     }
-}
 
-impl Counts {
     /// Counts one record of a chunk.
     pub(super) fn add_unpacked(&mut self, opcode: u8, body: &[u8]) {
         self.unpacked_bytes += RECORD_HEADER_BYTES + body.len() as u64;

@@ -305,7 +305,7 @@ impl Walk<'_> {
             }
             None => {}
         }
-        scanned.counts += counts;
+        scanned.counts.append(&counts);
         taken.append(&mut chunk.part);
         if let Some((count, why)) = chunk.unusable {
             scanned.losses.push_records(op::MESSAGE, at, count, why);

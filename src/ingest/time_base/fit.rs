@@ -2,7 +2,7 @@
 
 use super::error::{self, TimeBaseError};
 use crate::ingest::clock::RATE_TOLERANCE;
-use crate::numerics::{as_count, as_f64, robust};
+use crate::numerics::{as_count, as_f64, robust, single};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -247,8 +247,7 @@ fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
         .collect();
     let largest_s = looked_at.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
     let held_s = 2.0 * largest_s * f64::EPSILON;
-    #[allow(clippy::cast_possible_truncation, reason = "the loss is what is tested")]
-    if looked_at.iter().all(|&t| f64::from(t as f32).total_cmp(&t).is_eq()) {
+    if looked_at.iter().all(|&t| f64::from(single(t)).total_cmp(&t).is_eq()) {
         return largest_s * f64::from(f32::EPSILON);
     }
     for digits in 0..=9 {

@@ -1,7 +1,7 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state
 //! it.
 
-use super::values::{flag, given, needs, spans_s, value, whole};
+use super::values::{flag, needs, spans_s, value, whole};
 use crate::data::{
     Axis, Cask, ChannelSpec, Coupling, End, OtherSpec, RateSpec, STANDARD_GRAVITY_M_S2, Source, Unit,
 };
@@ -55,7 +55,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
-    let full_scale = given(table, "full_scale")?;
+    let full_scale = table.given("full_scale")?;
     let coupling = coupling(table)?;
     let channel = SceneChannel {
         name: table.required_text("name")?.value,
@@ -75,7 +75,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         polarity: polarity(table)?,
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
-        lateral_m: given(table, "stated_lateral_m")?.unwrap_or(channel.lateral_m),
+        lateral_m: table.given("stated_lateral_m")?.unwrap_or(channel.lateral_m),
         ..stated(&channel)
     };
     Ok((channel, stated))
@@ -125,17 +125,17 @@ fn chain(table: &Section, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFil
     Ok(Chain {
         tilt_rad: value("tilt_deg")?.to_radians(),
         cross_axis: value("cross_axis_percent")? / 100.0,
-        resonance: given(table, "resonance_hz")?.map(|hz| (hz, damping)),
-        ac_time_constant_s: given(table, "time_constant_s")?,
-        anti_alias_hz: given(table, "anti_alias_hz")?,
+        resonance: table.given("resonance_hz")?.map(|hz| (hz, damping)),
+        ac_time_constant_s: table.given("time_constant_s")?,
+        anti_alias_hz: table.given("anti_alias_hz")?,
         scale: value("scale")?,
         offset_m_s2: in_g("offset_g")?,
         zero_shift_m_s2: in_g("zero_shift_g")?,
         white_noise_m_s2: in_g("white_noise_g")?,
         pink_noise_m_s2: in_g("pink_noise_g")?,
-        hum: given(table, "hum_g")?.map(|hum_g| (hum_g * STANDARD_GRAVITY_M_S2, hum_hz)),
+        hum: table.given("hum_g")?.map(|hum_g| (hum_g * STANDARD_GRAVITY_M_S2, hum_hz)),
         cable_noise_m_s2: in_g("cable_noise_g")?,
-        whip: given(table, "whip_g")?.map(|whip_g| (whip_g * STANDARD_GRAVITY_M_S2, whip_hz)),
+        whip: table.given("whip_g")?.map(|whip_g| (whip_g * STANDARD_GRAVITY_M_S2, whip_hz)),
         full_scale_m_s2,
         bits: whole(table, "bits")?,
         dropouts_s: spans_s(table, "dropouts_s")?,

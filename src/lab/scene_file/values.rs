@@ -6,28 +6,15 @@ use crate::ingest::cask_file::section::Section;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 
-/// A number; none where the key is left out.
-pub(super) fn given(table: &Section, key: &str) -> Result<Option<f64>, CaskFileError> {
-    Ok(table.number(key)?.map(|number| number.value))
-}
-
 /// A number, the key's default where it is left out.
 pub(super) fn value(table: &Section, key: &str) -> Result<f64, CaskFileError> {
     let default = || table.row(key).and_then(|row| row.default.parse().ok()).unwrap_or(0.0);
-    Ok(given(table, key)?.unwrap_or_else(default))
+    Ok(table.given(key)?.unwrap_or_else(default))
 }
 
 /// `true` or `false`; false where the key is missing.
 pub(super) fn flag(table: &Section, key: &str) -> Result<bool, CaskFileError> {
-    let Some(value) = table.value(key) else { return Ok(false) };
-    value.get_ref().as_bool().ok_or_else(|| {
-        table.wrong(
-            value.span(),
-            format!("{key} is neither true nor false"),
-            "true or false".into(),
-            &format!("write {key} = true, or delete the line"),
-        )
-    })
+    Ok(table.flag(key, &format!("write {key} = true, or delete the line"))?.unwrap_or(false))
 }
 
 /// A whole number of 0 or more, within the key's range.

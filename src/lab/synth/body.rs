@@ -1,10 +1,10 @@
 //! State of the cask to its rates: a rigid body in the plane with two corners, the bending modes that ride on
 //! it, and what is loose in it.
 
-use super::beam::{self, MOST_MODES};
 use super::contact::CrushingCorner;
 use crate::data::Contact;
-use crate::lab::data::{LooseMass, Scene};
+use crate::lab::data::{BendingMode, LooseMass, Scene};
+use crate::numerics::free_beam::{MOST_MODES, shape};
 use std::f64::consts::PI;
 
 /// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.
@@ -76,7 +76,7 @@ impl<'a> SceneBody<'a> {
         let mass_kg = scene.cask.mass_kg;
         let mut driven_per_kg = [[0.0; 2]; MOST_MODES];
         for (driven, mode) in driven_per_kg.iter_mut().zip(&scene.modes) {
-            *driven = [0.0, 1.0].map(|end| beam::shape(mode.order, end) / mass_kg);
+            *driven = [0.0, 1.0].map(|end| shape(mode.order, end) / mass_kg);
         }
         Self {
             scene,
@@ -244,7 +244,7 @@ impl<'a> SceneBody<'a> {
             let drive_m_s2 = across_n[0] * first + across_n[1] * second;
             let (q_m, velocity_m_s) = (y[6 + 2 * i], y[7 + 2 * i]);
             rates[6 + 2 * i] = velocity_m_s;
-            rates[7 + 2 * i] = beam::bending_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
+            rates[7 + 2 * i] = bending_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
         }
         let cask = &self.scene.cask;
         for (i, loose) in self.loose() {
@@ -254,7 +254,7 @@ impl<'a> SceneBody<'a> {
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
             for (q, mode) in self.scene.modes.iter().take(MOST_MODES).enumerate() {
                 let share = (xi_m + cask.cog_m) / cask.length_m;
-                rates[7 + 2 * q] -= force_n * beam::shape(mode.order, share) / cask.mass_kg;
+                rates[7 + 2 * q] -= force_n * shape(mode.order, share) / cask.mass_kg;
             }
         }
         rates
@@ -267,4 +267,13 @@ impl<'a> SceneBody<'a> {
         let pads = self.loose().map(|(_, loose)| PI / loose.pulse_s);
         modes.chain(corners).chain(pads).fold(0.0, f64::max)
     }
+}
+
+/// q̈ = F/m − 2 ζ ω q̇ − ω² q: acceleration of the mode's coordinate, m/s², `drive_m_s2` being F/m.
+///
+/// The modes ride on the rigid motion and do not act back on the contact, so that k stays a property of the
+/// ends.
+pub fn bending_m_s2(mode: &BendingMode, drive_m_s2: f64, q_m: f64, velocity_m_s: f64) -> f64 {
+    let omega = std::f64::consts::TAU * mode.frequency_hz;
+    drive_m_s2 - 2.0 * mode.damping * omega * velocity_m_s - omega * omega * q_m
 }

@@ -4,7 +4,6 @@
 //! The motion comes from forces alone: a rigid body in the plane on two corners that crush. Nothing here is
 //! taken from the impact formulas of the analysis, so that either can be held against the other.
 
-mod beam;
 mod body;
 mod chain;
 mod contact;
@@ -13,8 +12,7 @@ mod motion;
 mod sensor;
 mod truth;
 
-pub use beam::{MOST_MODES, bending_m_s2};
-pub use body::MOST_LOOSE;
+pub use body::{MOST_LOOSE, bending_m_s2};
 pub use chain::record;
 pub use crush::crushable_end;
 pub use motion::{simulate, simulate_one_flight};

@@ -58,7 +58,7 @@ fn is_upright(y: &[f64]) -> bool {
 /// Follows the drop from first contact to `after_s` past the slap-down.
 ///
 /// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
-/// [`super::MOST_MODES`] are left out. The result is the same to the bit at every run.
+/// `MOST_MODES` are left out. The result is the same to the bit at every run.
 pub fn simulate(scene: &Scene) -> SimulatedMotion {
     follow(scene, TOLERANCE, usize::MAX)
 }

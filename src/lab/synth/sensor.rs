@@ -1,8 +1,8 @@
 //! A simulated motion to the specific force at a point of the cask.
 
-use super::beam::{self, MOST_MODES};
 use crate::data::Axis;
 use crate::lab::data::{BendingMode, MotionStep, Scene, SceneChannel, SimulatedMotion};
+use crate::numerics::free_beam::{MOST_MODES, shape};
 
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
@@ -31,7 +31,7 @@ pub fn specific_force_m_s2(
         .modes
         .iter()
         .take(MOST_MODES)
-        .map(|mode| mode.strength * beam::shape(mode.order, channel.position_m / scene.cask.length_m))
+        .map(|mode| mode.strength * shape(mode.order, channel.position_m / scene.cask.length_m))
         .collect();
     let before = |time_s: f64| {
         let hanging = if scene.rest { (0.5 - (time_s - release_s) / RELEASE_S).clamp(0.0, 1.0) } else { 0.0 };
@@ -60,7 +60,7 @@ pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, 
     const STEP: f64 = 1e-4;
     let share = position_m / scene.cask.length_m;
     let tilt_1_m = |mode: &BendingMode| {
-        let [above, below] = [share + STEP, share - STEP].map(|at| beam::shape(mode.order, at));
+        let [above, below] = [share + STEP, share - STEP].map(|at| shape(mode.order, at));
         mode.strength * (above - below) / (2.0 * STEP * scene.cask.length_m)
     };
     let tilts_1_m: Vec<f64> = scene.modes.iter().take(MOST_MODES).map(tilt_1_m).collect();

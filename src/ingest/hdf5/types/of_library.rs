@@ -32,15 +32,12 @@ pub(in crate::ingest) fn of(dtype: &Datatype) -> ValueType {
 }
 
 fn kind(descriptor: TypeDescriptor) -> ValueKind {
+    let integer = |size: IntSize, is_signed| {
+        NumberType::integer(size as usize, is_signed).map_or(ValueKind::OddNumber, ValueKind::Number)
+    };
     match descriptor {
-        TypeDescriptor::Integer(IntSize::U1) => ValueKind::Number(NumberType::I8),
-        TypeDescriptor::Integer(IntSize::U2) => ValueKind::Number(NumberType::I16),
-        TypeDescriptor::Integer(IntSize::U4) => ValueKind::Number(NumberType::I32),
-        TypeDescriptor::Integer(IntSize::U8) => ValueKind::Number(NumberType::I64),
-        TypeDescriptor::Unsigned(IntSize::U1) => ValueKind::Number(NumberType::U8),
-        TypeDescriptor::Unsigned(IntSize::U2) => ValueKind::Number(NumberType::U16),
-        TypeDescriptor::Unsigned(IntSize::U4) => ValueKind::Number(NumberType::U32),
-        TypeDescriptor::Unsigned(IntSize::U8) => ValueKind::Number(NumberType::U64),
+        TypeDescriptor::Integer(size) => integer(size, true),
+        TypeDescriptor::Unsigned(size) => integer(size, false),
         TypeDescriptor::Float(FloatSize::U4) => ValueKind::Number(NumberType::F32),
         TypeDescriptor::Float(_) => ValueKind::Number(NumberType::F64),
         TypeDescriptor::FixedAscii(_) | TypeDescriptor::FixedUnicode(_) => ValueKind::Text,

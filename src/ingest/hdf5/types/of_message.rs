@@ -19,7 +19,8 @@ pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
     match class & 15 {
         0 => {
             let is_whole = rest.get(..2)? == [0, 0] && rest.get(2..4)? == [s0.checked_mul(8)?, 0];
-            known(whole(bytes, flags & 8 != 0).filter(|_| is_whole).unwrap_or(ValueKind::OddNumber), stated)
+            let number = NumberType::integer(bytes, flags & 8 != 0).filter(|_| is_whole);
+            known(number.map_or(ValueKind::OddNumber, ValueKind::Number), stated)
         }
         1 => {
             // The highest bit of the mantissa is not stored, the sign is the last bit, no VAX order.
@@ -56,20 +57,6 @@ pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
         }
         _ => None,
     }
-}
-
-fn whole(bytes: usize, is_signed: bool) -> Option<ValueKind> {
-    Some(ValueKind::Number(match (bytes, is_signed) {
-        (1, true) => NumberType::I8,
-        (2, true) => NumberType::I16,
-        (4, true) => NumberType::I32,
-        (8, true) => NumberType::I64,
-        (1, false) => NumberType::U8,
-        (2, false) => NumberType::U16,
-        (4, false) => NumberType::U32,
-        (8, false) => NumberType::U64,
-        _ => return None,
-    }))
 }
 
 /// A record of `count` fields.

@@ -1,7 +1,7 @@
 //! The scene as stated to a cask file that `analyze` reads with the recording.
 
 use super::place::SyntheticPlace;
-use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, End, OtherSpec, Unit};
+use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, OtherSpec, Unit};
 use crate::lab::chance::round;
 use std::fmt::{Display, Write};
 
@@ -57,26 +57,29 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     whole
 }
 
+/// What every table of a channel begins with.
+fn head(text: &mut String, read: &ChannelSpec, place: &SyntheticPlace, axis: &str, unit: &str) {
+    *text += "\n[[channel]]\n";
+    let end = read.end.to_string();
+    for (key, word) in
+        [("name", &read.name[..]), ("end", &end), ("axis", axis), ("source", &place.source), ("unit", unit)]
+    {
+        line(text, key, quoted(word));
+    }
+}
+
 /// An angular-rate sensor.
 fn rate(text: &mut String, spec: &OtherSpec, place: &SyntheticPlace) {
-    *text += "\n[[channel]]\n";
-    line(text, "name", quoted(&spec.read.name));
-    line(text, "end", quoted(&spec.read.end.to_string()));
-    line(text, "axis", quoted("rate"));
-    line(text, "source", quoted(&place.source));
-    line(text, "unit", quoted(spec.unit.as_deref().unwrap_or_default()));
+    head(text, &spec.read, place, "rate", spec.unit.as_deref().unwrap_or_default());
     if let Some(time) = &place.time {
         line(text, "time", quoted(time));
     }
 }
 
 fn channel(text: &mut String, spec: &ChannelSpec, place: &SyntheticPlace) {
-    *text += "\n[[channel]]\n";
-    line(text, "name", quoted(&spec.name));
-    line(text, "end", quoted(if spec.end == End::First { "first" } else { "second" }));
-    line(text, "axis", quoted(if spec.axis == Axis::Transverse { "transverse" } else { "axial" }));
-    line(text, "source", quoted(&place.source));
-    line(text, "unit", quoted(if spec.unit == Some(Unit::MetrePerSecondSquared) { "m/s^2" } else { "g" }));
+    let axis = if spec.axis == Axis::Transverse { "transverse" } else { "axial" };
+    let unit = if spec.unit == Some(Unit::MetrePerSecondSquared) { "m/s^2" } else { "g" };
+    head(text, spec, place, axis, unit);
     line(text, "position_m", spec.position_m);
     given(text, "offset_m", Some(spec.offset_m).filter(|offset_m| offset_m.abs() > 0.0));
     given(text, "lateral_m", Some(spec.lateral_m).filter(|lateral_m| lateral_m.abs() > 0.0));
