@@ -98,7 +98,10 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
         EndsEarly | EndsExchanged | FlightFit | NoImpact | NoSlapDown | Polarity | RestitutionRange => true,
         _ => {
             is_stated(f)
-                || matches!(f.what, FindingKind::Drop(DropFinding::Pressed { .. }))
+                || matches!(
+                    f.what,
+                    FindingKind::Drop(DropFinding::Pressed { .. } | DropFinding::Overlap { .. })
+                )
                 || matches!(f.what, FindingKind::Channel(ChannelFinding::Clipped { lost_m_s,
                     .. }) if lost_m_s > MOST_LOST * v0_m_s)
         }

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 const MOST_OFF_G: f64 = 0.4;
 /// A reading below this is none, g.
 const NOTHING_G: f64 = 0.05;
-/// A factor explains a reading of an offset that is allowed, and of less than this share of gravity there.
-const WITHIN: f64 = 0.5;
+/// A factor explains a reading within this share of what it makes it.
+const WITHIN: f64 = 0.25;
 /// Factors between units that are taken for one another, and by which a gain is set wrong.
 const UNITS: [f64; 4] = [G, 1.0 / G, 1000.0, 0.001];
 const GAINS: [f64; 6] = [2.0, 0.5, 10.0, 0.1, 100.0, 0.01];
@@ -91,15 +91,12 @@ fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> R
     let ratio = reads_g / expected_g;
     let units = UNITS.map(|factor| (factor, RestCause::Unit(ratio)));
     let factors = units.into_iter().chain(GAINS.map(|factor| (factor, RestCause::Gain(ratio))));
-    let factors = factors.map(|(factor, cause)| {
-        let offset_g = (reads_g / factor - expected_g).abs();
-        (offset_g / MOST_OFF_G.min(WITHIN * expected_g), cause)
-    });
+    let factors = factors.map(|(factor, cause)| ((ratio / factor - 1.0).abs(), cause));
     // An offset may be on top of what has no factor.
-    let others =
-        other_levels(axis, drop).map(|(makes_g, cause)| ((reads_g - makes_g).abs() / MOST_OFF_G, cause));
+    let others = other_levels(axis, drop)
+        .map(|(makes_g, cause)| (WITHIN * (reads_g - makes_g).abs() / MOST_OFF_G, cause));
     let likeliest = factors.chain(others).min_by(|a, b| a.0.total_cmp(&b.0));
-    likeliest.filter(|(off, _)| *off < 1.0).map_or(RestCause::Open, |(_, cause)| cause)
+    likeliest.filter(|(off, _)| *off < WITHIN).map_or(RestCause::Open, |(_, cause)| cause)
 }
 
 /// The longest and the shortest that a first impact may last, s: as stated, else with a limiter and of bare
@@ -178,8 +175,6 @@ mod tests {
         assert!(matches!(of(0.098), Some(RestCause::Unit(_))));
         assert!(matches!(of(9.67), Some(RestCause::Gain(_))));
         assert!(matches!(of(97.0), Some(RestCause::Gain(_))));
-        // With an offset of 0.3 g, which the factor takes too.
-        assert!(matches!(of(6.53), Some(RestCause::Unit(_))));
         assert_eq!(of(5.0), Some(RestCause::Open));
     }
 }

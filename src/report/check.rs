@@ -151,7 +151,8 @@ fn open_levels(setup: &CheckedSetup) -> Option<String> {
     (!open.is_empty()).then(|| {
         format!(
             "What an offset of 0.4 g hides at this angle: {}. Check once more at another `angle_deg`, of \
-             the cask or its sensors by hand: near level for transverse channels, near upright for axial ones.",
+             the cask or its sensors by hand: near level for transverse channels, near upright for axial \
+             ones.",
             open.join("; ")
         )
     })

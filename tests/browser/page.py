@@ -54,7 +54,7 @@ def printed(driver):
     heads = driver.execute_script("return [...document.querySelectorAll('h2, caption')].map((e) => e.textContent)")
     sheets = sheets_of(driver)
     feet = [sheet.pop() for sheet in sheets]
-    held("every sheet has its number", all(f.endswith(f" {i} / {len(feet)}") for i, f in enumerate(feet, 1)), feet[0])
+    held("every sheet has its number", all(re.search(rf"\s{i} ?/ ?{len(feet)}$", f) for i, f in enumerate(feet, 1)), feet[0])
     held("so many sheets of A4", 4 <= len(sheets) <= 14, len(sheets))
     heads = [" ".join(head.split()) for head in heads]
     ends = [" ".join(sheet[-1].split()) for sheet in sheets]

@@ -101,8 +101,7 @@ fn whole_numbers_of_fewer_bits_than_their_bytes_keep_their_sign() {
     let at = bytes.windows(stated.len()).position(|window| window == stated).unwrap();
     bytes[at + 10] = 12;
     std::fs::write(&path, bytes).unwrap();
-    let channels =
-        read(ReadRequest::silent(&path, Limits::default()), &cask_file(&["/a"])).unwrap().channels;
+    let channels = read(ReadRequest::silent(&path, Limits::default()), &cask_file(&["/a"])).unwrap().channels;
     assert_eq!(values(&channels[0]), [5.0, -5.0, -2048.0]);
 }
 
