@@ -19,7 +19,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// A file as the library has it open.
-struct OpenFile<'a> {
+struct LibraryFile<'a> {
     file: File,
     /// Told how many bytes come next, and how many are held at a time.
     grant: &'a mut dyn FnMut(u64, u64),
@@ -47,7 +47,7 @@ pub(super) fn answer(
     let (user_block, library) = (file.userblock(), hdf5_metno::library_version());
     send(to, &Reply::Opened { user_block, library, is_walled })?;
     to.flush()?;
-    let mut tree = Tree::of(OpenFile { file, grant }, is_walled);
+    let mut tree = Tree::of(LibraryFile { file, grant }, is_walled);
     while let Ok((request, _)) = receive(from) {
         tree.answer(request, to)?;
     }
@@ -65,7 +65,7 @@ fn words(error: &hdf5_metno::Error) -> Vec<Bytes> {
     }
 }
 
-impl Store for OpenFile<'_> {
+impl Store for LibraryFile<'_> {
     type Token = LocationToken;
 
     fn token(&mut self, path: &str) -> Option<LocationToken> {
@@ -102,7 +102,7 @@ impl Store for OpenFile<'_> {
     }
 }
 
-impl OpenFile<'_> {
+impl LibraryFile<'_> {
     fn opened(&self, path: &str) -> hdf5_metno::Result<Object> {
         let kind = if path == "/" { LocationType::Group } else { self.file.loc_type_by_name(path)? };
         let own = self.file.filename();
