@@ -50,7 +50,7 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     found.extend(rest.issues.iter().cloned());
     if has_blows {
         // A blow from below need not reach an axial channel.
-        let across = felt.iter().map(|(channel, _)| (*channel).clone());
+        let across = felt.iter().map(|(channel, _)| *channel);
         found.extend(judge::judge_silent(&across.collect::<Vec<_>>()));
         found.extend(judge::judge_taps(&felt));
     }

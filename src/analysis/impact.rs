@@ -49,7 +49,7 @@ impl Impact {
     ) -> Option<Self> {
         let drop = &file.drop;
         let (silent, changes) = rayon::join(
-            || judge::judge_silent(&recording.channels),
+            || judge::judge_silent(&recording.channels.iter().collect::<Vec<_>>()),
             || events::Changes::of(&recording.channels),
         );
         findings.extend(silent);

@@ -23,8 +23,8 @@ struct Excursion {
 }
 
 /// Names each channel that stays within its noise over the whole recording while another does not.
-pub fn judge_silent(channels: &[Channel]) -> Vec<Finding> {
-    let reaches: Vec<Excursion> = channels.par_iter().map(reach).collect();
+pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
+    let reaches: Vec<Excursion> = channels.par_iter().map(|channel| reach(channel)).collect();
     let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
     let is_silent = |r: &Excursion| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
@@ -88,32 +88,32 @@ mod tests {
         move |i| noise(i) + if (5000..5050).contains(&i) { size } else { 0.0 }
     }
 
-    fn silent(beside: Channel) -> Vec<Option<String>> {
-        judge_silent(&[channel("A1", pulse(300.0)), beside]).into_iter().map(|i| i.channel).collect()
+    fn silent(beside: &Channel) -> Vec<Option<String>> {
+        judge_silent(&[&channel("A1", pulse(300.0)), beside]).into_iter().map(|i| i.channel).collect()
     }
 
     #[test]
     fn noise_hum_and_a_rail_are_dead_on_any_axis() {
         let dead = [Some("A2".to_owned())];
-        assert_eq!(silent(channel("A2", noise)), dead);
-        assert_eq!(silent(channel("A2", |_| 500.0)), dead);
-        assert_eq!(silent(channel("A2", |_| 0.0)), dead);
-        assert_eq!(silent(channel("A2", |_| f64::NAN)), dead);
-        assert_eq!(silent(channel("A2", |i| 4.0 * (f64::from(i) * 0.0314).sin() + noise(i))), dead);
+        assert_eq!(silent(&channel("A2", noise)), dead);
+        assert_eq!(silent(&channel("A2", |_| 500.0)), dead);
+        assert_eq!(silent(&channel("A2", |_| 0.0)), dead);
+        assert_eq!(silent(&channel("A2", |_| f64::NAN)), dead);
+        assert_eq!(silent(&channel("A2", |i| 4.0 * (f64::from(i) * 0.0314).sin() + noise(i))), dead);
     }
 
     #[test]
     fn ringing_through_most_of_a_record_is_not_noise() {
         let rings = |i: u32| noise(i) + if i > 3000 { 200.0 * (f64::from(i) * 0.06).sin() } else { 0.0 };
-        assert!(silent(channel("A2", rings)).is_empty());
-        let both = [channel("A1", rings), channel("A2", noise)];
+        assert!(silent(&channel("A2", rings)).is_empty());
+        let both = [&channel("A1", rings), &channel("A2", noise)];
         assert_eq!(judge_silent(&both).len(), 1);
     }
 
     #[test]
     fn a_weak_answer_is_not_dead_and_a_quiet_record_names_nobody() {
-        assert!(silent(channel("A2", pulse(6.0))).is_empty());
-        assert!(judge_silent(&[channel("A1", noise), channel("A2", noise)]).is_empty());
+        assert!(silent(&channel("A2", pulse(6.0))).is_empty());
+        assert!(judge_silent(&[&channel("A1", noise), &channel("A2", noise)]).is_empty());
         assert!(judge_silent(&[]).is_empty());
     }
 }
