@@ -165,7 +165,7 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
         figure(
             "Slap-down speed, measured",
             Some(interval(speed)),
-            of_corner(result).map_or_else(String::new, |local| format!("corner: {local}")),
+            of_corner(result).map_or_else(String::new, |local| format!("of the rigid cask; corner: {local}")),
         ),
         figure(
             "Slap-down speed, predicted",

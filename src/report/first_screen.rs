@@ -131,13 +131,18 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let head = styled_lines(Style::Bold, &clamped(&title, width, 0, 1))
         + &format!("{}{}", styled(verdict_style(result.verdict), word), &said[word.len()..]);
     let speed = result.slap_down.speed.as_ref();
-    let holds = if speed.is_some() { "  (± holds 95 %)" } else { "" };
+    let corner = of_corner(result);
+    let holds = match (speed, &corner) {
+        (None, _) => "",
+        (_, None) => "  (± holds 95 %)",
+        (_, Some(_)) => " of the rigid cask (± holds 95 %)",
+    };
     let interval_by = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
     let is_number = result.k.is_some() || speed.is_some();
     let limits = result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state)));
     let rows = [
         ("Slap-down speed", Some(determined(interval(speed)) + holds), 1),
-        ("Speed of corner", of_corner(result), 1),
+        ("Speed of corner", corner, 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
         ("Predicted speed", compared(result), 1),
         ("Interval", Some(interval_by).filter(|_| is_number), 2),

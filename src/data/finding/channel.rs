@@ -179,15 +179,15 @@ pub enum ChannelFinding {
     )]
     Polarity => (Code::Polarity, Error);
     /// The offset in the flight is another than before the impact; taken off.
-    #[error("reads {:+.2} ± {:.2} g more in the flight than before the impact (zero shift or droop); it was \
-             taken off, which moves the velocity by up to {effect_m_s:.2} \
+    #[error("reads {:+.2} ± {:.2} g more between the impacts than before the first (zero shift or droop); it \
+             was taken off, which moves the velocity by up to {effect_m_s:.2} \
              m/s", .shift_m_s2 / G, 2.0 * .u_m_s2 / G)]
     ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, severity: Severity }
         => (Code::ZeroShift, *severity);
     /// The velocity is off its flight by the time R strikes.
     #[error(
-        "is {mismatch_m_s:+.2} m/s off its flight by the time the second end strikes: the first end touched \
-         again, or the sensor drifts"
+        "is {mismatch_m_s:+.2} m/s off its flight between the impacts by the time the second end strikes: \
+         the first end touched again, or the sensor drifts"
     )]
     LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning);
     /// Plateau and modes leave too much of the flight.

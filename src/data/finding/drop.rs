@@ -105,7 +105,7 @@ pub enum DropFinding {
     #[error(
         "an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is none of the cask's bending: contents \
          or mounts move in it; the slap-down speed and k are those of cask and contents together, \
-         `local_speed` is that of the corner that strikes"
+         the speed of the corner is that of what strikes"
     )]
     Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning);
     /// L is still pressed as R strikes; an error, to stand before what follows from it.

@@ -129,7 +129,7 @@ fn chunk_end(never_closed: bool) -> &'static str {
 
 fn kept_of_chunk(messages: u64, bytes: u64) -> String {
     match messages {
-        0 => "no whole message is in it".into(),
+        0 => "no whole message is left of it".into(),
         _ => format!(
             "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes \
              could not be used"
