@@ -145,8 +145,7 @@ fn searched(
     };
     let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
     let mut ends = (first?, second?);
-    let struck =
-        events::slap_down(ends.1.signal(), search.earliest_s..search.record_end_s, search.least_m_s, false);
+    let struck = search.slap_down(&ends.1, search.earliest_s, false);
     let mut best: Option<(f64, FoundFlight)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
@@ -225,6 +224,12 @@ impl Search<'_> {
         self.conclude(ends, attempt)
     }
 
+    /// Where the signal of R shows it to strike after `from_s`.
+    fn slap_down(&self, second: &motion::RingingRemoved, from_s: f64, is_calm: bool) -> Option<At> {
+        let between_s = from_s..self.record_end_s;
+        events::slap_down(second.signal(), self.file.cask.length_m, between_s, self.least_m_s, is_calm)
+    }
+
     /// Where R strikes; where nothing shows that, where the record ends, s.
     fn flight_end_s(&self, struck: Option<At>) -> f64 {
         struck.map_or(self.record_end_s, |s| s.time_s)
@@ -280,8 +285,7 @@ impl Search<'_> {
         // A well-explained flight hides no slap-down in its ringing, and a poorly fitted one can imitate a
         // slap-down.
         if is_explained {
-            let between_s = self.earliest_s.max(attempt.free_s)..self.record_end_s;
-            attempt.slap_down = events::slap_down(second.signal(), between_s, self.least_m_s, true);
+            attempt.slap_down = self.slap_down(second, self.earliest_s.max(attempt.free_s), true);
         }
         attempt.separation =
             events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.separation);
