@@ -50,6 +50,11 @@ const TURNED: f64 = 0.1;
 /// The contact's force after separation is sought this long beyond a window, s.
 const BEYOND_S: f64 = 0.02;
 
+/// A blow on L this soon after separation, as a share of the contact, is the contact's last stage …
+const STAGE: f64 = 0.25;
+/// … and over so long after its peak, s.
+const STAGE_FADES_S: f64 = 1e-3;
+
 /// The search starts this long before first contact, s: half the width of the moving mean by which a
 /// slap-down is found.
 const BEFORE_S: f64 = 0.05;
@@ -166,7 +171,7 @@ fn searched(
             break;
         }
     }
-    best.map(|(_, found)| found)
+    best.map(|(_, found)| search.beyond_last_stage(found))
 }
 
 /// Where the first fit begins that ends at `end_s`, if nothing tells a longer contact, s.
@@ -304,6 +309,44 @@ impl Search<'_> {
         }
         let seat_s = events::seat_s(first.signal(), contact_s, separation.time_s);
         self.best_of(FoundFlight { separation, seat_s, slap_down, flight, window }, others)
+    }
+
+    /// The flight from behind a blow that L has so soon after it left the target that its contact was not
+    /// over.
+    fn beyond_last_stage(&self, found: FoundFlight) -> FoundFlight {
+        let Some(stage_s) = self.last_stage_s(&found) else { return found };
+        let FoundFlight { separation, slap_down, flight, window, .. } = &found;
+        let attempt = Attempt {
+            separation: At { u_s: separation.u_s.hypot(stage_s - separation.time_s), ..*separation },
+            slap_down: *slap_down,
+            free_s: stage_s + STAGE_FADES_S,
+            end_s: self.flight_end_s(*slap_down),
+            fitted: flight.clone().zip(*window),
+            others: Vec::new(),
+        };
+        let (window, fits) = self.fit(&attempt);
+        match fits.into_iter().next().filter(is_explained) {
+            Some(flight) => {
+                let separation = attempt.separation;
+                FoundFlight { separation, flight: Some(flight), window: Some(window), ..found }
+            }
+            None => found,
+        }
+    }
+
+    fn last_stage_s(&self, found: &FoundFlight) -> Option<f64> {
+        let &Integrated { ref signals, contact_s, .. } = self.integrated;
+        let times = Events {
+            first_contact: Some(At { time_s: contact_s, u_s: 0.0 }),
+            slap_down: found.slap_down,
+            ..Events::default()
+        };
+        let length_m = self.file.cask.length_m;
+        let blows = judge::judge_blows(signals, found.flight.as_ref()?, &times, &[], length_m)?;
+        let struck = signals.iter().find(|s| blows.channel.as_ref() == Some(&s.name))?;
+        let left_s = found.separation.time_s;
+        let is_stage = |at_s: &f64| *at_s - left_s < STAGE * (left_s - contact_s);
+        blows.to_s.filter(|at_s| struck.end == End::First && is_stage(at_s))
     }
 
     /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the

@@ -278,11 +278,11 @@ fn chain(series: &[Series], seeds: &Seeds, form: Form) -> Vec<Fit> {
             break;
         }
         let start: Vec<Oscillation> = last.modes.clone();
-        match fit(series, &start, Some(seeds), form) {
-            Some(next) if is_sound(series, &next) => fits.push(next),
-            _ => break,
-        }
+        let Some(next) = fit(series, &start, Some(seeds), form) else { break };
+        fits.push(next);
     }
+    // What too few modes leave makes them know no plateau, which one more may know.
+    fits.retain(|fit| fit.modes.is_empty() || is_sound(series, fit));
     fits
 }
 

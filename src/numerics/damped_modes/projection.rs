@@ -104,7 +104,7 @@ impl<T> SharedByTimes<T> {
 }
 
 /// The normal equations of the linear problem, its columns scaled to length 1.
-struct Normal {
+pub(super) struct Normal {
     columns: DMatrix<f64>,
     scales: Vec<f64>,
     cholesky: Cholesky<f64, Dyn>,
@@ -134,17 +134,36 @@ impl Normal {
         (solution, residual)
     }
 
-    /// What the columns do not explain of these.
-    fn unexplained(&self, slopes: DMatrix<f64>) -> DMatrix<f64> {
-        let explained = self.cholesky.solve(&self.columns.tr_mul(&slopes));
-        slopes - &self.columns * explained
+    /// Slopes to what the columns explain of them, in units of the coefficients, and what they leave.
+    fn parted(&self, slopes: DMatrix<f64>) -> Slopes {
+        let mut explained = self.cholesky.solve(&self.columns.tr_mul(&slopes));
+        let left = slopes - &self.columns * &explained;
+        for (mut row, scale) in explained.row_iter_mut().zip(&self.scales) {
+            row /= *scale;
+        }
+        Slopes { explained, left }
     }
+
+    /// Variance of a coefficient where the noise of the values is 1 and the modes are known.
+    pub fn variance(&self, coefficient: usize) -> f64 {
+        let mut unit = DVector::zeros(self.scales.len());
+        unit[coefficient] = 1.0;
+        self.cholesky.solve_mut(&mut unit);
+        unit[coefficient] / self.scales[coefficient].powi(2)
+    }
+}
+
+/// What a series changes by with ln f and the damping of each mode, a column each: the coefficients that
+/// explain a part of it, and the part that is left.
+pub(super) struct Slopes {
+    pub explained: DMatrix<f64>,
+    pub left: DMatrix<f64>,
 }
 
 /// The linear problem at given modes, solved.
 pub(super) struct Projected {
     modes: Vec<Oscillation>,
-    normals: SharedByTimes<Normal>,
+    pub normals: SharedByTimes<Normal>,
     /// Best linear coefficients of each series and what they leave.
     pub solved: Vec<(DVector<f64>, DVector<f64>)>,
 }
@@ -156,6 +175,55 @@ impl Projected {
         let solved = series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect();
         Some(Self { modes, normals, solved })
     }
+
+    /// The slopes of each series; those with the same times share what does not depend on its amplitudes.
+    pub fn slopes(&self, series: &[Series], form: Form) -> Vec<Slopes> {
+        let mut solved = self.solved.iter();
+        let sharing = self.normals.groups(series).flat_map(|(normal, sharing)| {
+            let fixed = fixed_columns(sharing[0], form.drift);
+            let parted = normal.parted(unit_slopes(sharing[0], &self.modes, form));
+            let own = solved.by_ref().take(sharing.len()).map(|(solution, _)| {
+                let mixing = mixing(&form.amplitudes(&self.modes, &solution.as_slice()[fixed..]));
+                Slopes { explained: &parted.explained * &mixing, left: &parted.left * mixing }
+            });
+            own.collect::<Vec<_>>()
+        });
+        sharing.collect()
+    }
+}
+
+/// What e^((−ζ + i) ω t) of each mode changes by with ln f and with its damping: real and imaginary
+/// part of the one, then of the other.
+fn unit_slopes(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
+    let mut slopes = DMatrix::zeros(series.time_s.len(), 4 * modes.len());
+    for (i, mode) in modes.iter().enumerate() {
+        let omega = std::f64::consts::TAU * mode.frequency_hz;
+        // Both rates of e^((−ζ + i) ω t) are t times a number.
+        let rates = [Complex::new(-mode.damping * omega, omega), Complex::from(-omega)];
+        let age_s = form.drive.map_or(Complex::from(0.0), |drive| drive.age_s(*mode));
+        // Its size is one by definition: only the phase of a driven mode goes with the rates.
+        let turns = rates.map(|rate| Complex::new(0.0, (rate * age_s).im));
+        for (row, (value, t)) in Ringing::new(*mode, &series.time_s).zip(&series.time_s).enumerate() {
+            for (j, (rate, turn)) in rates.iter().zip(turns).enumerate() {
+                let slope = value * (rate * *t + turn);
+                slopes[(row, 4 * i + 2 * j)] = slope.re;
+                slopes[(row, 4 * i + 2 * j + 1)] = slope.im;
+            }
+        }
+    }
+    slopes
+}
+
+/// The unit slopes to those of modes of these amplitudes: A cos + B sin = Re((A − iB) e^(iωt)).
+fn mixing(amplitudes: &[(f64, f64)]) -> DMatrix<f64> {
+    let mut mixing = DMatrix::zeros(4 * amplitudes.len(), 2 * amplitudes.len());
+    for (i, (a, b)) in amplitudes.iter().enumerate() {
+        for j in 2 * i..2 * i + 2 {
+            mixing[(2 * j, j)] = *a;
+            mixing[(2 * j + 1, j)] = *b;
+        }
+    }
+    mixing
 }
 
 pub(super) fn rms(residual: &DVector<f64>) -> f64 {
@@ -200,25 +268,6 @@ impl<'a> Projection<'a> {
         let project = || Projected::new(self.series, to_modes(&self.parameters), self.form);
         self.here.get_or_init(project).as_ref()
     }
-
-    /// What a mode of these amplitudes changes by with ln f and with the logit of its damping.
-    fn mode_slopes(&self, series: &Series, mode: Oscillation, (a, b): (f64, f64)) -> DMatrix<f64> {
-        let omega = std::f64::consts::TAU * mode.frequency_hz;
-        let by_logit = mode.damping * (1.0 - mode.damping / MAX_DAMPING);
-        // A cos + B sin = Re((A − iB) e^(iωt)); both rates of e^((−ζ + i) ω t) are t times a number.
-        let size = Complex::new(a, -b);
-        let rates = [Complex::new(-mode.damping * omega, omega), Complex::from(-omega * by_logit)];
-        let age_s = self.form.drive.map_or(Complex::from(0.0), |drive| drive.age_s(mode));
-        // Its size is one by definition: only the phase of a driven mode goes with the rates.
-        let turns = rates.map(|rate| Complex::new(0.0, (rate * age_s).im));
-        let mut slopes = DMatrix::zeros(series.time_s.len(), 2);
-        for (row, (value, t)) in Ringing::new(mode, &series.time_s).zip(&series.time_s).enumerate() {
-            for (column, (rate, turn)) in rates.iter().zip(turns).enumerate() {
-                slopes[(row, column)] = (size * value * (rate * *t + turn)).re;
-            }
-        }
-        slopes
-    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
@@ -245,19 +294,20 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is
     /// left.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let Projected { modes, normals, solved } = self.here()?;
-        let rows: usize = self.series.iter().map(|s| s.value.len()).sum();
+        let here = self.here()?;
+        let slopes = here.slopes(self.series, self.form);
+        let rows: usize = slopes.iter().map(|s| s.left.nrows()).sum();
         let mut jacobian = DMatrix::zeros(rows, self.parameters.len());
         let mut row = 0;
-        let each = self.series.iter().zip(&self.weights).zip(solved).zip(normals.each());
-        for (((series, weight), (solution, _)), normal) in each {
-            let fixed = fixed_columns(series, self.form.drift);
-            let amplitudes = self.form.amplitudes(modes, &solution.as_slice()[fixed..]);
-            for (i, (mode, amplitude)) in modes.iter().zip(amplitudes).enumerate() {
-                let unexplained = normal.unexplained(self.mode_slopes(series, *mode, amplitude)) * -*weight;
-                jacobian.view_mut((row, 2 * i), unexplained.shape()).copy_from(&unexplained);
-            }
-            row += series.value.len();
+        for (Slopes { left, .. }, weight) in slopes.into_iter().zip(&self.weights) {
+            let points = left.nrows();
+            jacobian.rows_mut(row, points).copy_from(&(left * -*weight));
+            row += points;
+        }
+        // From the damping to its logit.
+        for (i, mode) in here.modes.iter().enumerate() {
+            let by_logit = mode.damping * (1.0 - mode.damping / MAX_DAMPING);
+            jacobian.column_mut(2 * i + 1).scale_mut(by_logit);
         }
         jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
     }
