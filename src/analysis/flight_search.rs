@@ -334,6 +334,7 @@ impl Search<'_> {
         }
     }
 
+    /// When L has that blow, s.
     fn last_stage_s(&self, found: &FoundFlight) -> Option<f64> {
         let &Integrated { ref signals, contact_s, .. } = self.integrated;
         let times = Events {
