@@ -12,6 +12,10 @@ use std::cell::OnceCell;
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
 
+/// Weights beside one another that change by more than this factor are taken anew, at most so many times.
+const WEIGHS_ANEW: f64 = 2.0;
+const MOST_ROUNDS: usize = 3;
+
 /// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or
 /// their driven sum.
 pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
@@ -313,23 +317,44 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 }
 
-pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
-    let projected = Projected::new(series, modes.to_vec(), form)?;
+/// One over what the linear problem leaves of each series, its floor included.
+fn weights(series: &[Series], projected: &Projected) -> Vec<f64> {
     let weight = |(s, (_, left)): (&Series, &(_, DVector<f64>))| 1.0 / rms(left).hypot(s.floor).max(1e-300);
-    let weights = series.iter().zip(&projected.solved).map(weight).collect();
-    let problem = Projection::new(series, weights, form, modes);
-    let (solved, report) = LevenbergMarquardt::new()
-        .with_patience(8)
-        .with_ftol(1e-9)
-        .with_xtol(1e-7)
-        .with_gtol(1e-9)
-        .minimize(problem);
-    let refined = to_modes(&solved.parameters);
-    // A fit that stopped for lack of patience still stands at its best point; only numbers that are none are
-    // useless.
-    let usable = report.objective_function.is_finite()
-        && refined.iter().all(|m| m.frequency_hz.is_finite() && m.damping.is_finite());
-    usable.then_some(refined)
+    series.iter().zip(&projected.solved).map(weight).collect()
+}
+
+/// Whether some series weigh more than [`WEIGHS_ANEW`] times as much beside the others as before.
+fn weigh_anew(before: &[f64], after: &[f64]) -> bool {
+    let changes = || before.iter().zip(after).map(|(before, after)| after / before);
+    changes().fold(0.0, f64::max) > WEIGHS_ANEW * changes().fold(f64::INFINITY, f64::min)
+}
+
+/// Better frequencies and dampings; each series weighs by what the fit leaves of it, so that a series of
+/// which the first guess left much is not passed over for one of which it left little.
+pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
+    let mut by_weight = weights(series, &Projected::new(series, modes.to_vec(), form)?);
+    let mut refined = modes.to_vec();
+    for _ in 0..MOST_ROUNDS {
+        let problem = Projection::new(series, by_weight, form, &refined);
+        let (solved, report) = LevenbergMarquardt::new()
+            .with_patience(8)
+            .with_ftol(1e-9)
+            .with_xtol(1e-7)
+            .with_gtol(1e-9)
+            .minimize(problem);
+        // A fit that stopped for lack of patience still stands at its best point; only numbers that are none
+        // are useless.
+        refined = Some(to_modes(&solved.parameters)).filter(|refined| {
+            report.objective_function.is_finite()
+                && refined.iter().all(|m| m.frequency_hz.is_finite() && m.damping.is_finite())
+        })?;
+        let anew = weights(series, solved.here()?);
+        if !weigh_anew(&solved.weights, &anew) {
+            break;
+        }
+        by_weight = anew;
+    }
+    Some(refined)
 }
 
 #[cfg(test)]
@@ -389,5 +414,32 @@ mod tests {
         let impulses = (0..40).map(|i| (std::f64::consts::PI * (f64::from(i) + 0.5) / 40.0).sin()).collect();
         let drive = Drive { age_s: 6e-3, step_s: 1e-4, impulses };
         slopes_are_those_of_the_residuals(Form { drift: false, drive: Some(&drive) });
+    }
+
+    #[test]
+    fn a_quiet_series_does_not_tell_the_modes_of_loud_ones() {
+        // A cask rings on two transverse channels; an axial one has little of it, and a hum of its own.
+        let rings = |t: f64, mode: Oscillation| {
+            let turned = std::f64::consts::TAU * mode.frequency_hz * t;
+            (-mode.damping * turned).exp() * (turned + 0.7).cos()
+        };
+        let series: Vec<Series> = [(13.0, -4.0, 0.0, 0.03), (4.0, 3.0, 0.0, 0.01), (3e-3, 1e-3, 1e-4, 8e-5)]
+            .into_iter()
+            .map(|(first, second, hum, floor)| {
+                let time_s: Vec<f64> = (0..240).map(|i| f64::from(i) * 0.0165 / 240.0).collect();
+                let value = time_s.iter().map(|&t| {
+                    let hums = hum * (std::f64::consts::TAU * 90.0 * t).sin();
+                    first * rings(t, MODES[0]) + second * rings(t, MODES[1]) + hums
+                });
+                Series { value: value.collect(), time_s, steps_s: vec![], floor }
+            })
+            .collect();
+        let start = [(70.0, 0.09), (180.0, 0.03)]
+            .map(|(frequency_hz, damping)| Oscillation { frequency_hz, damping });
+        let refined = refine(&series, &start, Form::free(true)).expect("modes");
+        for (own, truth) in refined.iter().zip(MODES) {
+            assert!((own.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-3, "{refined:?}");
+            assert!((own.damping - truth.damping).abs() < 1e-3, "{refined:?}");
+        }
     }
 }
