@@ -100,7 +100,11 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
             is_stated(f)
                 || matches!(
                     f.what,
-                    FindingKind::Drop(DropFinding::Pressed { .. } | DropFinding::Overlap { .. })
+                    FindingKind::Drop(
+                        DropFinding::Pressed { .. }
+                            | DropFinding::Overlap { .. }
+                            | DropFinding::NoFlight { .. }
+                    )
                 )
                 || matches!(f.what, FindingKind::Channel(ChannelFinding::Clipped { lost_m_s,
                     .. }) if lost_m_s > MOST_LOST * v0_m_s)
@@ -159,8 +163,8 @@ fn of_skin(channels: &[Channel], section_m: f64) -> Vec<Vec<Slip>> {
     let names: Vec<String> = channels.iter().map(|c| c.name.clone()).collect();
     let on_skin = |right, offset_m| vec![slip("offset_m", names.clone(), right, [offset_m, 0.0])];
     let half_m = section_m / 2.0;
-    let above = on_skin("as half the section, on the upper skin", half_m);
-    vec![above, on_skin("as minus half the section, on the lower skin", -half_m)]
+    let above = on_skin("as half the section (upper skin)", half_m);
+    vec![above, on_skin("as minus half the section (lower skin)", -half_m)]
 }
 
 fn slip(key: &'static str, names: Vec<String>, right: &'static str, [from, by]: [f64; 2]) -> Slip {

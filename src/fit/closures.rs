@@ -121,7 +121,7 @@ impl Observable {
             }
             Self::SecondTurning { .. } => {
                 let turned_rad_s = measured.second.and_then(|second| second.turned_rad_s).unwrap_or(f64::NAN);
-                format!("{:+.1} % of the rotation that it gives", 100.0 * miss / turned_rad_s.abs())
+                format!("{:+.1} %", 100.0 * miss / turned_rad_s.abs())
             }
             Self::Rest { is_axial, rest_m_s2, .. } => {
                 let function = if *is_axial { "sin" } else { "cos" };

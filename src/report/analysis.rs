@@ -105,7 +105,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
 /// What no reader of the first page should miss.
 const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals \
                             were tested on simulated drops of known \
-                            truth; no recording with a certified slap-down velocity was at hand.";
+                            truth; no recording with a certified slap-down velocity was available.";
 
 /// Lines to sign, where the cask file names who does.
 fn signed(test: &TestRecord) -> Chapter {
@@ -165,7 +165,7 @@ fn figures(result: &DropResult) -> Vec<[String; 3]> {
         figure(
             "Slap-down speed, measured",
             Some(interval(speed)),
-            of_corner(result).map_or_else(String::new, |local| format!("of the rigid cask; corner: {local}")),
+            of_corner(result).map_or_else(String::new, |local| format!("of the rigid cask; {local}")),
         ),
         figure(
             "Slap-down speed, predicted",

@@ -145,7 +145,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         ("Speed of corner", corner, 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
         ("Predicted speed", compared(result), 1),
-        ("Interval", Some(interval_by).filter(|_| is_number), 2),
+        ("Interval", Some(interval_by).filter(|_| is_number), 3),
         ("Limits", Some(limits.collect::<Vec<_>>().join(", ")), 1),
     ];
     let said = rows.into_iter().filter_map(|(name, words, most)| Some((name, words?, most)));
@@ -156,9 +156,12 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         // A path is whole, however long.
         + &report.map_or_else(String::new, |page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
     let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
-        let remedies = row("To test them", &remedies, width, 2);
-        let taken = [&before, &remedies, &foot].map(|text| text.lines().count()).iter().sum();
-        row("Untested here", &named, width, MOST_LINES.saturating_sub(taken).max(1)) + &remedies
+        let named = format!("± covers tolerances; larger errors show nowhere: {named}");
+        let lines = |text: &str| text.lines().count();
+        let left = MOST_LINES.saturating_sub(lines(&before) + lines(&foot));
+        let free = left.saturating_sub(lines(&row("", &named, width, left)));
+        let remedies = row("To test them", &remedies, width, free.max(2));
+        row("Untested here", &named, width, left.saturating_sub(lines(&remedies)).max(1)) + &remedies
     });
     before + &tested + &foot
 }

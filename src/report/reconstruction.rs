@@ -3,7 +3,7 @@
 use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::settings::to_state;
-use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
+use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
 /// Moves of the joint fit that are listed; the smaller ones say nothing.
@@ -198,42 +198,44 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
 }
 
 /// A default that carries more than a tenth of the variance of the speed, or of k where there is no speed.
-pub(super) struct WeightyDefault<'a> {
-    share: VarianceShare<'a>,
-    /// What to state in its place.
-    key: String,
+pub(super) struct WeightyDefault {
+    /// The default as a cask file states it.
+    stated: String,
+    percent: f64,
 }
 
 /// The defaults that a formal report must not rest on, the largest share first.
-pub(super) fn weighty_defaults<'a>(result: &'a DropResult, file: &CaskFile) -> Vec<WeightyDefault<'a>> {
+pub(super) fn weighty_defaults(result: &DropResult, file: &CaskFile) -> Vec<WeightyDefault> {
     const WEIGHS_PERCENT: f64 = 10.0;
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
-    let mut all = shares(&result.budget, change);
-    all.retain(|share| share.percent > WEIGHS_PERCENT);
+    let mut all: Vec<WeightyDefault> = Vec::new();
+    for VarianceShare { of, percent } in shares(&result.budget, change) {
+        let Some(stated) = to_state(file, of) else { continue };
+        match all.iter_mut().find(|known| known.stated == stated) {
+            Some(known) => known.percent += percent,
+            None => all.push(WeightyDefault { stated, percent }),
+        }
+    }
+    all.retain(|default| default.percent > WEIGHS_PERCENT);
     all.sort_by(|a, b| b.percent.total_cmp(&a.percent));
-    all.into_iter()
-        .filter_map(|share| Some(WeightyDefault { key: to_state(file, share.of)?, share }))
-        .collect()
+    all
 }
 
-/// Those defaults, and what to state in their place; `None` where there is none.
+/// Those defaults, each with its share; `None` where there is none.
 pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
-    let all = weighty_defaults(result, file);
-    let named: Vec<String> =
-        all.iter().map(|d| format!("{} {:.0} %", d.share.of.input, d.share.percent)).collect();
-    let of_what = if result.slap_down.speed.is_some() { "the speed" } else { "k" };
-    // Keys of one table stand behind its name once.
-    let mut keys: Vec<&str> = Vec::new();
+    let mut of_what =
+        if result.slap_down.speed.is_some() { " of the speed's variance" } else { " of k's variance" };
+    let mut named = Vec::new();
     let mut before = "";
-    for key in distinct(all.iter().map(|d| d.key.as_str())) {
-        let (table, name) = key.split_once(' ').unwrap_or(("", key));
-        keys.push(if table == before { name } else { key });
-        before = table;
+    let all = weighty_defaults(result, file);
+    for WeightyDefault { stated, percent } in &all {
+        // Keys of one table stand behind its name once.
+        let (table, key) = stated.split_once(' ')?;
+        let shown = if table == before { key } else { stated };
+        named.push(format!("{shown} ({percent:.0} %{of_what})"));
+        (before, of_what) = (table, "");
     }
-    let keys = keys.join(", ");
-    (!named.is_empty()).then(|| {
-        format!("variance of {of_what} by assumed tolerances: {}; enter yours: {keys}", named.join(", "))
-    })
+    (!named.is_empty()).then(|| format!("by default {}; enter yours", named.join(", ")))
 }
 
 /// An input, and how much of the variance of a quantity it carries.

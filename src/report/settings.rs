@@ -8,15 +8,16 @@ pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
 }
 
-/// The key to state in place of a default that an input of the budget rests on; `None` where it rests on
-/// none.
+/// The default that an input of the budget rests on, as a cask file states it, such as "[tolerance]
+/// `angle_deg` = 0.4"; `None` where it rests on none.
 pub(super) fn to_state(file: &CaskFile, input: &Contribution) -> Option<String> {
     let key = input.tolerance?;
     // Nobody knows a part of a friction that nobody states.
     if key == "friction_percent" && file.contact == Contact::Unknown {
         return Some("[contact] friction".to_owned());
     }
-    is_default(file, key).then(|| format!("[tolerance] {key}"))
+    let row = TOLERANCES.iter().find(|row| row.key == key && is_default(file, key))?;
+    Some(format!("[tolerance] {key} = {}", plain(row.in_file(file.tolerances, &file.cask), 3)))
 }
 
 /// The tolerances, and the corrections that are switched off; without what `said` says already.

@@ -158,16 +158,16 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
     let of_severity = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
     let (errors, warnings) = (of_severity(Severity::Error), of_severity(Severity::Warning));
     let missing = match (result.k.is_none(), result.slap_down.speed.is_none()) {
-        (true, true) => Some("k and the slap-down speed are"),
-        (true, false) => Some("k is"),
-        (false, true) => Some("The slap-down speed is"),
+        (true, true) => Some(("k and the slap-down speed are", "")),
+        (true, false) => Some(("k is", "; the speed may be used")),
+        (false, true) => Some(("The slap-down speed is", "; k may be used")),
         (false, false) => None,
     };
     match (result.verdict, missing) {
         (Verdict::Pass, _) => "No check found a problem.".into(),
-        (_, Some(missing)) => {
+        (_, Some((missing, stands))) => {
             let why = if errors > 0 { counted(errors, "error") } else { counted(warnings, "warning") };
-            format!("{missing} not determined ({why}).")
+            format!("{missing} not determined ({why}){stands}.")
         }
         (Verdict::Review, None) if warnings == 1 => "One warning: read it before using the numbers.".into(),
         (Verdict::Review, None) => format!("{warnings} warnings: read them before using the numbers."),

@@ -245,7 +245,7 @@ fn sensors_on_the_skin_that_are_stated_on_the_axis_are_named_and_never_wrong() {
         let result = analyze(&read, &file.stated).result;
         let truth_m_s = motion.truth.speed.expect("R strikes");
         let is_off = |speed: dropcheck::data::Estimate| (speed.value - truth_m_s).abs() > 2.0 * speed.u95;
-        let says = |f: &Finding| f.message.contains("`offset_m`") && f.message.contains("on the lower skin");
+        let says = |f: &Finding| f.message.contains("`offset_m`") && f.message.contains("(lower skin)");
         passed += usize::from(result.verdict == Verdict::Pass && result.slap_down.speed.is_some_and(is_off));
         named += usize::from(result.quality.iter().any(says));
         told += usize::from(result.verdict != Verdict::Pass);

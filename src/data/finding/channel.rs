@@ -187,7 +187,7 @@ pub enum ChannelFinding {
     /// The velocity is off its flight by the time R strikes.
     #[error(
         "is {mismatch_m_s:+.2} m/s off its flight between the impacts by the time the second end strikes: \
-         the first end touched again, or the sensor drifts"
+         the first end touched again, or the sensor drifts; the film tells which"
     )]
     LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning);
     /// Plateau and modes leave too much of the flight.

@@ -103,8 +103,8 @@ pub enum DropFinding {
     Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning);
     /// A mode that is no bending.
     #[error(
-        "an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is none of the cask's bending: contents \
-         or mounts move in it; the slap-down speed and k are those of cask and contents together, \
+        "an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is slower than the cask bends: contents \
+         or mounts move in it; speed and k are those of cask and contents together, \
          the speed of the corner is that of what strikes"
     )]
     Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning);
@@ -112,7 +112,8 @@ pub enum DropFinding {
     #[error(
         "between first contact and the strike of the second end the velocities curve as in no free flight \
          ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
-         on the target as the second end strikes; contacts that overlap are not followed"
+         on the target as the second end strikes; contacts that overlap are not followed: take the speed from \
+         film"
     )]
     Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error);
     /// The target pushes L through the flight.
@@ -121,11 +122,11 @@ pub enum DropFinding {
          {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
     )]
     Carried { rate_hz: f64 } => (Code::SecondContact, Warning);
-    /// The flight may have lasted no time.
+    /// The flight may have lasted no time; an error, to stand before what follows from it.
     #[error("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second \
-             end struck, and k and the slap-down speed then mean \
-             nothing", 1e3 * .flight_time.value, 1e3 * .flight_time.u95)]
-    NoFlight { flight_time: Estimate } => (Code::FlightFit, Warning);
+             end struck; contacts that overlap are not \
+             followed: take the speed from film", 1e3 * .flight_time.value, 1e3 * .flight_time.u95)]
+    NoFlight { flight_time: Estimate } => (Code::SecondContact, Error);
     /// The flight is too short to tell its modes from one another.
     #[error("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to \
              it ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are \

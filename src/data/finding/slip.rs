@@ -35,7 +35,9 @@ impl Cure {
     pub(super) fn words(&self) -> String {
         let words = |Slip { key, names, right, .. }: &Slip| match &names[..] {
             [] => format!("`{key}` {right}"),
-            names => format!("`{key}` of {} {right}", names.join(" and ")),
+            names => {
+                format!("`{key}` of {} {right}", names.join(if names.len() > 2 { ", " } else { " and " }))
+            }
         };
         let all = self.slips.iter().map(words).collect::<Vec<_>>().join(" and ");
         format!("with {all} everything is consistent, at {}", numbers(self.speed, self.k))
