@@ -112,8 +112,8 @@ pub enum DropFinding {
     #[error(
         "between first contact and the strike of the second end the velocities curve as in no free flight \
          ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
-         on the target as the second end strikes; contacts that overlap are not followed: take the speed from \
-         film"
+         on the target as the second end strikes; contacts that overlap are not followed: take the speed \
+         from film"
     )]
     Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error);
     /// The target pushes L through the flight.
