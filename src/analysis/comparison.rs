@@ -3,7 +3,9 @@
 
 use super::flight::Flown;
 use super::impact::Impact;
-use crate::data::{BodyModel, CaskFile, Comparison, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice};
+use crate::data::{
+    BodyModel, CaskFile, Comparison, DropFinding, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice,
+};
 use crate::{compare, judge, predict};
 
 /// L falls on with more than this share of v0: what is left of it is a stage of one contact.
@@ -41,6 +43,11 @@ impl Measured {
             let of_motion = of_motion(flown, impact, events, file);
             findings.extend(judge::judge_pressed(flight, &of_motion));
             findings.extend(of_motion);
+            let landed = flight.landing.as_ref().zip(events.slap_down_s());
+            findings.extend(landed.map(|(landing, struck_s)| {
+                Finding::from(DropFinding::Landed { before_s: struck_s - landing.time_s })
+                    .between(landing.time_s, landing.time_s)
+            }));
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
                 findings.extend(judge::judge_blows(
@@ -82,7 +89,8 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
-    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask));
+    let is_followed = flight.landing.is_some();
+    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask, is_followed));
     found
 }
 

@@ -143,7 +143,10 @@ fn moved(
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
     let stated = motion::outcome(integrated, &flight, events, &setup)?;
-    let second = SecondImpact::find(file, &integrated.signals, &stated, &measured);
+    // What rings behind a touch is not what rang before it: neither the second impact nor the corner is told.
+    let is_whole = flight.landing.is_none();
+    let second =
+        is_whole.then(|| SecondImpact::find(file, &integrated.signals, &stated, &measured)).flatten();
     let of_second = second.as_ref().map(|second| (second.inputs(), second));
     let turned_beyond_rad_s =
         |inputs: &_, first: &_| of_second.as_ref()?.1.turned_beyond_rad_s(inputs, first);
@@ -165,6 +168,7 @@ fn moved(
     });
     let ringing = events
         .slap_down
+        .filter(|_| is_whole)
         .and_then(|at| motion::ringing_of_second_end(integrated, moved, &window, at, as_taken));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
     let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;

@@ -118,6 +118,14 @@ pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Opt
     if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
+        let is_off =
+            flight.plateaus.iter().any(|p| p.late_mismatch_m_s.is_some_and(|off_m_s| off_m_s != 0.0));
+        let landing = || motion::landing(flight, integrated, window, &file.cask);
+        flight.landing = found.slap_down.filter(|_| is_off).and_then(|_| landing());
+        if flight.landing.is_some() {
+            // What it changes is known.
+            flight.plateaus.iter_mut().for_each(|p| p.late_mismatch_m_s = None);
+        }
     }
     Some(found)
 }

@@ -141,7 +141,8 @@ fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analy
             None => Reached::Flown(Box::new(flown)),
             Some(measured) => {
                 let tabulated = flown.tabulated.as_ref();
-                findings.extend(tabulated.and_then(|t| t.untold(impact.recorded(), &events)));
+                let untold = tabulated.and_then(|t| t.untold(impact.recorded(), &events));
+                findings.extend(untold.filter(|_| flown.flight.landing.is_none()));
                 findings.extend(tabulated.and_then(Tabulated::two_maxima));
                 Reached::Measured(Box::new(flown), measured)
             }

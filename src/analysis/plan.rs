@@ -167,6 +167,7 @@ impl ExpectedDrop {
             drift: false,
             candidates: Vec::new(),
             strike: None,
+            landing: None,
         };
         let integrated = Integrated::over(&signals, CONTACT_S).into_owned();
         Some(Self { integrated, flight, events })

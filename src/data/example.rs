@@ -71,7 +71,16 @@ pub(crate) fn plateau(channel: &str, velocity_step_m_s: f64) -> Plateau {
 
 /// A flight between two times without modes or drift.
 pub(crate) fn flight(from_s: f64, to_s: f64, plateaus: Vec<Plateau>) -> FlightFit {
-    FlightFit { from_s, to_s, plateaus, modes: vec![], drift: false, candidates: vec![], strike: None }
+    FlightFit {
+        from_s,
+        to_s,
+        plateaus,
+        modes: vec![],
+        drift: false,
+        candidates: vec![],
+        strike: None,
+        landing: None,
+    }
 }
 
 /// First contact and slap-down known exactly.

@@ -89,6 +89,20 @@ pub struct FlightFit {
     pub candidates: Vec<FlightModelScore>,
     /// The blow in the flight that explains it best, however little.
     pub strike: Option<Strike>,
+    /// The touch of L near its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub landing: Option<Landing>,
+}
+
+/// A touch of L between its flight and the slap-down.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Landing {
+    /// When, s from the recording's first sample.
+    pub time_s: f64,
+    /// What it changes the velocity of each channel by, m/s, in the order of the plateaus.
+    pub steps_m_s: Vec<f64>,
+    /// Standard uncertainty of each, m/s.
+    pub u_m_s: Vec<f64>,
 }
 
 /// A step of all velocities within a flight.

@@ -113,6 +113,7 @@ pub(super) enum InputShift {
     AngularVelocity { by_rad_s: f64 },
     HorizontalVelocity { by_m_s: f64 },
     OfSecondImpact { input: usize },
+    Landing { channel: usize, add_m_s: f64 },
 }
 
 /// The key of the cask file that states an input.
@@ -137,7 +138,9 @@ impl InputShift {
             Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
         };
         match *self {
-            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } => None,
+            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } | Self::Landing { .. } => {
+                None
+            }
             Self::Scale { share, .. } => {
                 row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
             }
@@ -283,6 +286,11 @@ impl Inputs {
             }
             InputShift::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
             InputShift::OfSecondImpact { input } => self.second_u[input] += by,
+            InputShift::Landing { channel, add_m_s } => {
+                if let Some(landing) = &mut self.flight.landing {
+                    landing.steps_m_s[channel] += by * add_m_s;
+                }
+            }
         }
     }
 }
@@ -414,6 +422,10 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
     let u_m_s =
         if is_stood_in { measured.flight.plateaus[channel].u_m_s } else { u_step_m_s(measured, channel) };
     add("velocity step", format!("{u_m_s:.3} m/s"), InputShift::Step { channel, add_m_s: u_m_s });
+    if let Some(landing) = &measured.flight.landing {
+        let add_m_s = landing.u_m_s[channel];
+        add("step by the touch", format!("{add_m_s:.3} m/s"), InputShift::Landing { channel, add_m_s });
+    }
     if is_stood_in {
         // Its sensor's errors are those of the channel that it is made of.
         return;

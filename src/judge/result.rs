@@ -91,19 +91,22 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
 /// prediction with the measured k.
 ///
 /// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
-/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
+/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it. Behind a
+/// touch that is followed that height is known.
 pub fn judge_touch(
     motion: &Motion,
     quantities: &Quantities,
     effect_m_s: f64,
     cask: &Cask,
+    is_followed: bool,
 ) -> Option<Finding> {
     let interval_m_s = quantities.speed?.u95;
     let depth_m = -motion.lowest_first_end_m;
-    let settles = depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s;
+    let even_m = TOUCHED_SHARE * cask.length_m;
+    let settles = depth_m > even_m && effect_m_s > interval_m_s && !is_followed;
     let by_landing_m_s = landing_effect_m_s(motion, quantities.k.value, cask);
     let above_m = motion.last_first_end_m;
-    let u_m = open_height_m(quantities, cask.cog_m) / 2.0;
+    let u_m = if is_followed { even_m } else { open_height_m(quantities, cask.cog_m) / 2.0 };
     if settles {
         Some(DropFinding::Settles { depth_m, effect_m_s }.into())
     } else {

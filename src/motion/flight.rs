@@ -178,6 +178,7 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
             })
             .collect(),
         strike: None,
+        landing: None,
     }
 }
 

@@ -14,7 +14,7 @@ const MOST_DECLINE: f64 = 5.0;
 
 /// ∫f_η of S, m/s; Ω = φ̇, rad/s; and the mean over the axial channels of ∫f_ξ, m/s: each a sum over the
 /// channels.
-type Sums = [f64; 3];
+pub(super) type Sums = [f64; 3];
 
 /// How much each channel counts in the [`Sums`]: the transverse ones by the least-squares line over their
 /// positions, its value at S and its slope along the axis   (16), the axial ones by their mean.
@@ -48,6 +48,14 @@ impl AlongAxis {
         let axial_m = (on(Axis::Axial).next().is_some())
             .then(|| [mean(Axis::Axial, |s| s.position_m), mean(Axis::Axial, |s| s.offset_m)]);
         (square_m2 > 1e-6).then_some(Self { weights, turned_m, axial_m })
+    }
+
+    /// What steps of all channels change: the velocity of S across the axis, Ω, and the velocity along the
+    /// axis   (16)
+    pub fn changed(&self, steps_m_s: &[f64]) -> Sums {
+        let [across_m_s, turned_rad_s, along_m_s] = self.sums(steps_m_s.iter().copied());
+        let offset_m = self.axial_m.map_or(0.0, |[_, offset_m]| offset_m);
+        [across_m_s, turned_rad_s, along_m_s + turned_rad_s * offset_m]
     }
 
     /// The sums over the channels of what each of them has.

@@ -6,6 +6,7 @@ mod curves;
 mod decimate;
 mod flight;
 mod histories;
+mod landing;
 mod late_blow;
 mod local;
 mod others;
@@ -18,6 +19,7 @@ pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
+pub use landing::landing;
 pub use late_blow::strike;
 pub use local::{CornerRinging, ringing_of_second_end};
 pub use others::{other_curve, strongest_line};

@@ -3,7 +3,9 @@
 use super::Integrated;
 use super::curves::uniform;
 use super::histories::{AlongAxis, Histories};
-use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
+use crate::data::{
+    AxialClosure, Events, FlightFit, Landing, Motion, MotionCurve, MotionState, Setup, planar,
+};
 use crate::numerics::as_f64;
 
 /// Steps over the flight, for the curves.
@@ -28,12 +30,19 @@ pub fn reconstruct(
     let end_s = events.slap_down_s().unwrap_or(fit.to_s);
     let flight = (1..=FLIGHT_STEPS).map(|i| {
         let share = f64::from(i) / f64::from(FLIGHT_STEPS);
-        fly(setup, &separation, separation.time_s + (end_s - separation.time_s) * share)
+        fly_on(integrated, fit, setup, &separation, separation.time_s + (end_s - separation.time_s) * share)
     });
-    let left_m = corner_height_m(setup, &separation, setup.cog_m).min(0.0);
+    let height_m = |state: &MotionState| corner_height_m(setup, state, setup.cog_m);
+    let left_m = height_m(&separation).min(0.0);
+    // The place of a touch on the way is the target's.
+    let touched = fit.landing.as_ref().map(|landing| {
+        let time_s = touched_s(integrated, setup, landing);
+        (time_s, height_m(&fly(setup, &separation, time_s)))
+    });
     for state in flight {
         record(&state);
-        let above_m = corner_height_m(setup, &state, setup.cog_m) - left_m;
+        let behind = touched.filter(|(time_s, _)| *time_s < state.time_s);
+        let above_m = height_m(&state) - behind.map_or(left_m, |(_, touched_m)| touched_m);
         motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
         motion.last_first_end_m = above_m;
     }
@@ -95,8 +104,9 @@ fn follow(
     let impulse_ratio = (separation.horizontal_velocity_m_s - contact.horizontal_velocity_m_s)
         / (separation.vertical_velocity_m_s - contact.vertical_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
-    let slap_down =
-        events.slap_down_s().map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
+    let strikes =
+        |t| fly_on(integrated, fit, setup, &separation, contact_s + (t - contact_s) * setup.second_s);
+    let slap_down = events.slap_down_s().map(strikes);
     let behind_m = setup.cog_m - setup.length_m;
     Some(Motion {
         contact,
@@ -137,6 +147,39 @@ fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle
         + setup.gravity_m_s2 * (after.time_s - before.time_s);
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
     a_m * up_m_s - b_m * along_m_s
+}
+
+/// When L touches by the clock as it is taken to go, s.
+fn touched_s(integrated: &Integrated, setup: &Setup, landing: &Landing) -> f64 {
+    integrated.contact_s + (landing.time_s - integrated.contact_s) * setup.second_s
+}
+
+/// [`fly`] with the touch of L on the way, which changes the velocities by what the channels say.
+fn fly_on(
+    integrated: &Integrated,
+    fit: &FlightFit,
+    setup: &Setup,
+    state: &MotionState,
+    time_s: f64,
+) -> MotionState {
+    let touched = fit.landing.as_ref().map(|landing| (landing, touched_s(integrated, setup, landing)));
+    let touched = touched.filter(|(_, touched_s)| *touched_s < time_s);
+    let Some(((landing, touched_s), line)) =
+        touched.zip(AlongAxis::through(&integrated.signals, setup.cog_m))
+    else {
+        return fly(setup, state, time_s);
+    };
+    let before = fly(setup, state, touched_s);
+    let [across_m_s, turned_rad_s, along_m_s] =
+        line.changed(&landing.steps_m_s).map(|change| change * setup.second_s);
+    let (sin, cos) = before.angle_rad.sin_cos();
+    let behind = MotionState {
+        angular_velocity_rad_s: before.angular_velocity_rad_s - turned_rad_s,
+        horizontal_velocity_m_s: before.horizontal_velocity_m_s + along_m_s * cos - across_m_s * sin,
+        vertical_velocity_m_s: before.vertical_velocity_m_s + across_m_s * cos + along_m_s * sin,
+        ..before
+    };
+    fly(setup, &behind, time_s)
 }
 
 /// Ballistic motion of S from `state` to `time_s`   (8)

@@ -80,7 +80,8 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
             .number(Words::or("Second impact", "second end"), |row| row.words(second))
             .into()
     };
-    let missing = result.quality.iter().find(|f| f.code == IssueCode::SecondImpact);
+    let of_code = |code| result.quality.iter().find(|f| f.code == code);
+    let missing = of_code(IssueCode::SecondImpact).or_else(|| of_code(IssueCode::SecondContact));
     let why = missing.filter(|_| second.numbers.crush.is_none());
     let why = why.map(|f| ChapterPart::note(format!("{MISSING} not determined: {}", f.message)));
     let rigid = "The rigid body, free of ringing; impulse, energy and force with the stated mass";

@@ -288,6 +288,7 @@ fn flight() -> FlightFit {
             score(0, false, 8123.0, 0.61),
         ],
         strike: None,
+        landing: None,
     }
 }
 

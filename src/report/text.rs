@@ -257,7 +257,8 @@ pub(super) fn sentence(reason: &str) -> String {
     if words.is_empty() { words } else { words + "." }
 }
 
-/// The message of the first error or warning that takes a quantity away, one among `codes` before others.
+/// The message of the first error or warning that takes a quantity away, one among `codes` before others,
+/// else of a note among them.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
     let first = |severity, among: bool| {
         let is_wanted = |f: &&Finding| f.severity == severity && (!among || codes.contains(&f.code));
@@ -265,6 +266,7 @@ pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str
     };
     let gravest = |severity| first(severity, true).or_else(|| first(severity, false));
     let found = gravest(Severity::Error).or_else(|| gravest(Severity::Warning));
+    let found = found.or_else(|| first(Severity::Note, true));
     found.map_or("", |finding| finding.message.as_str())
 }
 

@@ -122,6 +122,11 @@ pub enum DropFinding {
          {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
     )]
     Carried { rate_hz: f64 } => (Code::SecondContact, Warning);
+    /// A touch of L that is followed.
+    #[error("the first end touches again {:.1} ms before the second one strikes: what that changes of the \
+             motion is read off all channels; the speed of the corner and the second impact, which ring with \
+             it, are not determined", 1e3 * .before_s)]
+    Landed { before_s: f64 } => (Code::SecondContact, Note);
     /// The flight may have lasted no time; an error, to stand before what follows from it.
     #[error("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second \
              end struck; contacts that overlap are not \
