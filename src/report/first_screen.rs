@@ -158,9 +158,9 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
         let named = format!("± covers tolerances; larger errors show nowhere: {named}");
         let lines = |text: &str| text.lines().count();
-        let left = MOST_LINES.saturating_sub(lines(&before) + lines(&foot));
+        let left = MOST_LINES.saturating_sub(lines(&before) + lines(&foot)).max(2);
         let free = left.saturating_sub(lines(&row("", &named, width, left)));
-        let remedies = row("To test them", &remedies, width, free.max(2));
+        let remedies = row("To test them", &remedies, width, free.max(2).min(left - 1));
         row("Untested here", &named, width, left.saturating_sub(lines(&remedies)).max(1)) + &remedies
     });
     before + &tested + &foot
