@@ -164,9 +164,9 @@ fn fly_on(
 ) -> MotionState {
     let touched = fit.landing.as_ref().map(|landing| (landing, touched_s(integrated, setup, landing)));
     let touched = touched.filter(|(_, touched_s)| *touched_s < time_s);
-    let Some(((landing, touched_s), line)) =
-        touched.zip(AlongAxis::through(&integrated.signals, setup.cog_m))
-    else {
+    // Asked for at each step of the fit: the line over the channels is drawn where there is a touch alone.
+    let line = || AlongAxis::through(&integrated.signals, setup.cog_m);
+    let Some(((landing, touched_s), line)) = touched.and_then(|touched| Some((touched, line()?))) else {
         return fly(setup, state, time_s);
     };
     let before = fly(setup, state, touched_s);
