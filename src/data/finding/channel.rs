@@ -45,8 +45,6 @@ pub enum RotationCause {
 
 findings! {
 /// A finding about one channel; its words follow the name of the channel.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum ChannelFinding {
     /// Samples stand at a limit; `takes_step` where more velocity is cut off than a result may miss.
     #[error("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more \

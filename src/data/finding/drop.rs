@@ -6,9 +6,7 @@ use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Esti
 
 findings! {
 /// A finding about the drop, its motion or its prediction.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
-pub enum DropFinding {
+pub enum DropFinding of Drop {
     /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a
     /// clock that may be why.
     #[error("no impact was found: {}; check source, unit and that the recording covers the \

@@ -6,9 +6,7 @@ use crate::data::shown::digits;
 
 findings! {
 /// A finding about an MCAP file.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
-pub enum McapFinding {
+pub enum McapFinding of Mcap {
     /// The file ends before its time; the last message kept begins at `kept_s`.
     #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} \
                                                 s")).unwrap_or_default())]

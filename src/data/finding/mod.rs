@@ -1,16 +1,19 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
-/// An enum of findings, each with its sentence, and behind the arrow its code and severity.
+/// An enum of findings, each with its sentence, and behind the arrow its code and severity; `of` says of which
+/// kind they are where they are not of one channel.
 macro_rules! findings {
     (
         $(#[$of_enum:meta])*
-        pub enum $name:ident {$(
+        pub enum $name:ident $(of $kind:ident)? {$(
             $(#[$of_variant:meta])*
             $variant:ident $({ $($field:ident: $type:ty),* $(,)? })? $(($inner:ident: $inner_type:ty))?
                 => $code:expr;
         )*}
     ) => {
         $(#[$of_enum])*
+        #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+        #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
         pub enum $name {$(
             $(#[$of_variant])*
             $variant $({ $($field: $type),* })? $(($inner_type))?,
@@ -27,6 +30,13 @@ macro_rules! findings {
                 )*}
             }
         }
+
+        $(impl From<$name> for super::Finding {
+            fn from(found: $name) -> Self {
+                let (of_kind, message) = (found.code(), found.to_string());
+                Self::made(super::FindingKind::$kind(found), of_kind, &message)
+            }
+        })?
     };
 }
 
@@ -96,28 +106,6 @@ pub struct Finding {
     /// End of that span, s from the recording's first sample.
     pub to_s: Option<f64>,
 }
-
-/// A finding from what was found, for each kind that is not of one channel.
-macro_rules! finding_from {
-    ($($kind:ident of $found:ty),*) => {$(
-        impl From<$found> for Finding {
-            fn from(found: $found) -> Self {
-                let (of_kind, message) = (found.code(), found.to_string());
-                Self::made(FindingKind::$kind(found), of_kind, &message)
-            }
-        }
-    )*};
-}
-
-finding_from!(
-    Drop of DropFinding,
-    Times of TimesFinding,
-    Clock of ClockFinding,
-    Mcap of McapFinding,
-    Table of TableFinding,
-    Attribute of AttributeFinding,
-    Rest of RestFinding
-);
 
 impl ChannelFinding {
     /// The finding, about the channel of that name.

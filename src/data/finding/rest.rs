@@ -31,9 +31,7 @@ pub enum RestCause {
 
 findings! {
 /// A finding about a recording at rest; its words follow the name of the channel where it is about one.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
-pub enum RestFinding {
+pub enum RestFinding of Rest {
     /// The level at rest, and by how much it may be off.
     #[error("reads {reads_g:+.2} g at rest, where {expected_g:+.2} ± {most_g:.1} g is expected: {cause}")]
     Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error);

@@ -4,9 +4,7 @@ use super::{IssueCode as Code, Severity};
 
 findings! {
 /// A finding about the rows of a table.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
-pub enum TableFinding {
+pub enum TableFinding of Table {
     /// The last line ends in the middle.
     #[error(
         "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was \

@@ -5,9 +5,7 @@ use crate::data::shown::{digits, hz};
 
 findings! {
 /// A finding about the times of rows or blocks, in any format.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
-pub enum TimesFinding {
+pub enum TimesFinding of Times {
     /// Times that run backward, first from one to another.
     #[error(
         "times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by \
