@@ -1,6 +1,6 @@
 //! A campaign of random scenes with known truth: what is asked for, and a row for each scene.
 
-use crate::data::{Estimate, ReconstructionRung, Verdict};
+use crate::data::{Estimate, ReconstructionRung, Verdict, number_or_null};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 
@@ -76,10 +76,10 @@ pub struct Damage {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stated {
     /// The value; what is no number is null where it is written.
-    #[serde(deserialize_with = "number")]
+    #[serde(deserialize_with = "number_or_null")]
     pub value: f64,
     /// The half-width.
-    #[serde(deserialize_with = "number")]
+    #[serde(deserialize_with = "number_or_null")]
     pub u95: f64,
 }
 
@@ -87,10 +87,6 @@ impl From<Estimate> for Stated {
     fn from(Estimate { value, u95, .. }: Estimate) -> Self {
         Self { value, u95 }
     }
-}
-
-fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 /// A measured quantity beside its truth.
