@@ -38,21 +38,15 @@ impl Wish {
     pub(super) fn of(words: &str, size: f64) -> Self {
         let has = |word: &str| words.split(' ').any(|one| one == word);
         let either = |yes: &str, no: &str| has(yes).then_some(true).or(has(no).then_some(false));
+        let flights = [("lands_again", BetweenImpacts::LandsAgain), ("short_flight", BetweenImpacts::Short)];
+        let contacts = [
+            ("friction", Contact::Coulomb(size)),
+            ("stated_rough", Contact::Rough),
+            ("unstated", Contact::Unknown),
+        ];
         Self {
-            flight: if has("lands_again") {
-                BetweenImpacts::LandsAgain
-            } else if has("short_flight") {
-                BetweenImpacts::Short
-            } else {
-                BetweenImpacts::Free
-            },
-            contact: if has("friction") {
-                Some(Contact::Coulomb(size))
-            } else if has("stated_rough") {
-                Some(Contact::Rough)
-            } else {
-                has("unstated").then_some(Contact::Unknown)
-            },
+            flight: flights.iter().find(|(word, _)| has(word)).map(|(_, flight)| *flight).unwrap_or_default(),
+            contact: contacts.iter().find(|(word, _)| has(word)).map(|(_, contact)| *contact),
             axial: either("axial", "no_axial"),
             rest: either("rest", "no_rest"),
             third_channel: has("third_channel"),
