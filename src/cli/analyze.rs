@@ -2,7 +2,7 @@
 
 use super::Ending;
 use super::limits::Bounds;
-use super::output::{Folder, JsonTarget, columns, print};
+use super::output::{Folder, JsonTarget, columns, note, print};
 use super::pdf;
 use super::progress::with_progress;
 use super::rerun::{self, EarlierResult};
@@ -105,12 +105,6 @@ impl SwitchedOff {
     }
 }
 
-/// A sentence for whoever watches, beside the output.
-fn complain_softly(sentence: &str) {
-    // Who has closed standard error does not want to know.
-    let _ = writeln!(anstream::stderr(), "{}", report::printable(sentence));
-}
-
 /// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date
 /// not yet stated.
 pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
@@ -195,16 +189,13 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match printed {
             Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
             Err(why) => {
-                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
+                note(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
             }
         }
         folder.write(&files)?;
         let is_new = files.iter().any(|(name, _)| name == pdf::NAME);
         if !is_new && Path::new(&folder.file(pdf::NAME)).exists() {
-            complain_softly(&format!(
-                "{} is of an earlier run; --pdf writes it anew.",
-                folder.file(pdf::NAME)
-            ));
+            note(&format!("{} is of an earlier run; --pdf writes it anew.", folder.file(pdf::NAME)));
         }
     }
     json.write(|| report::pretty_json(&analysis.result))?;
@@ -222,7 +213,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     let not_strict = report::not_strict(&analysis).filter(|_| arguments.strict);
     if let Some(why) = &not_strict {
-        complain_softly(&format!("--strict: {why}"));
+        note(&format!("--strict: {why}"));
     }
     let strict = if not_strict.is_some() { Ending::NeedsALook } else { Ending::Clear };
     Ok(repeated.max(strict).max(analysis.result.verdict.into()))

@@ -4,8 +4,9 @@ use super::protected_folders::is_protected;
 use super::replace::{
     OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
 };
+use crate::data::shown;
 use crate::ingest::{bytes_of, opened};
-use crate::report::ReportError;
+use crate::report::{ReportError, printable};
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -60,9 +61,7 @@ fn shown(path: &Path) -> String {
 
 /// The operating system's words without its error number and without names of files on the way.
 fn bare(source: &io::Error) -> io::Error {
-    let text = source.to_string();
-    let words = text.split(" (os error").next().unwrap_or_default();
-    io::Error::new(source.kind(), words.to_owned())
+    io::Error::new(source.kind(), shown::bare(source))
 }
 
 /// A folder for files, found fit before the work.
@@ -242,6 +241,12 @@ pub fn replace_by(
 pub fn print(text: &str) -> Result<(), CannotWrite> {
     let mut out = anstream::stdout().lock();
     settled(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Says something to whoever watches, beside the output.
+pub fn note(words: &str) {
+    // There is no one left to tell where standard error is closed.
+    let _ = writeln!(anstream::stderr(), "{}", printable(words));
 }
 
 /// Columns that tables may take: those of the terminal, 80 where there is none.

@@ -1,8 +1,9 @@
 //! Long work to a bar on standard error where that is a terminal, else to a line now and then.
 
+use super::output::note;
 use crate::ingest::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -28,8 +29,7 @@ pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
         bar.set_position(parts);
         let tenth = 10 * parts / u64::from(PARTS);
         if in_log && bar.elapsed() > SOON && told.fetch_max(tenth, Ordering::Relaxed) < tenth {
-            // There is no one left to tell where standard error is closed.
-            let _ = writeln!(anstream::stderr(), "{what}: {} %", 10 * tenth);
+            note(&format!("{what}: {} %", 10 * tenth));
         }
     });
     bar.finish_and_clear();
@@ -63,8 +63,7 @@ impl CountedProgress {
         if !std::io::stderr().is_terminal() && (done == all || self.told.elapsed() >= EACH) {
             self.told = Instant::now();
             let left = HumanDuration(self.bar.eta());
-            // There is no one left to tell where standard error is closed.
-            let _ = writeln!(anstream::stderr(), "{done} of {all}, {left} left");
+            note(&format!("{done} of {all}, {left} left"));
         }
         if done == all {
             self.bar.finish_and_clear();

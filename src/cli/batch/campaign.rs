@@ -7,7 +7,6 @@ use super::plan::SUMMARY;
 use crate::data::{CaskFile, Contact, Drop};
 use crate::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
 use crate::{ingest, predict};
-use serde_json::Value;
 use std::path::Path;
 
 /// Angles of a predicted curve.
@@ -31,20 +30,15 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
         lines.each(|line| {
             put(between.as_bytes())?;
             between = CampaignFiles::JSON_BETWEEN;
-            put(&files.json_row(&value(line))?)
+            put(&files.json_row(&serde_json::from_slice(line).unwrap_or_default())?)
         })?;
         put(CampaignFiles::JSON_END.as_bytes())
     })?;
     replace_by(&out.join(SUMMARY[1]), |put| {
         put(&batch.csv_head()?)?;
-        lines.each(|line| put(&files.csv_row(&value(line))?))
+        lines.each(|line| put(&files.csv_row(&serde_json::from_slice(line).unwrap_or_default())?))
     })?;
     Ok(folder.write(&files.page())?)
-}
-
-/// A line that was read before.
-fn value(line: &[u8]) -> Value {
-    serde_json::from_slice(line).unwrap_or_default()
 }
 
 /// Rod and body, rough and smooth, for the lowest and the highest k.

@@ -1,7 +1,8 @@
 //! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a
 //! manifest to fill in.
 
-use super::paths::{in_folder, note, stem};
+use super::super::output::note;
+use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
 use crate::ingest::{bytes_of, cask_file::key_of_column, in_utf8};
 use miette::miette;
@@ -133,7 +134,7 @@ pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
     for recording in in_folder(folder)? {
         if is_empty(&recording) {
-            note(&format!("{} is empty and was left out", recording.display()));
+            note(&format!("note: {} is empty and was left out", recording.display()));
             continue;
         }
         let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());

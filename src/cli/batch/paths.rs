@@ -1,10 +1,11 @@
 //! Paths, folders and patterns to the recordings that they stand for.
 
+use super::super::output::note;
+use crate::ingest;
 use crate::report::Batch;
-use crate::{ingest, report};
 use miette::miette;
 use std::collections::HashSet;
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
@@ -87,15 +88,9 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
     if !endings.is_empty() {
         let (folder, endings) = (folder.display().to_string(), endings.join(", ."));
         note(&format!(
-            "files of {folder} that end in .{endings} were left out; name a recording among them itself"
+            "note: files of {folder} that end in .{endings} were left out; name a recording among them itself"
         ));
     }
-}
-
-/// Says something on standard error.
-pub fn note(words: &str) {
-    // There is no one left to tell where standard error is closed.
-    let _ = writeln!(anstream::stderr(), "note: {}", report::printable(words));
 }
 
 /// Whether a file is a manifest or the table of an earlier campaign; a recording may have its name.

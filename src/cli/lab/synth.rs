@@ -2,6 +2,7 @@
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
+use super::super::replace::parent_of;
 use crate::lab::data::{SyntheticRecording, Truth};
 use crate::lab::report::SyntheticFormat;
 use crate::{lab, report};
@@ -53,10 +54,7 @@ pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], Synthetic
     let format = format(&out, arguments.encoding.as_deref())?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let names = lab::report::synthetic_names(&name);
-    let place = match out.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let place = parent_of(&out);
     // Whoever names a file may reach it by a link; the folder itself must be none.
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
     let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
