@@ -8,19 +8,8 @@ use crate::{analysis, ingest, report};
 use clap::Args;
 use std::path::PathBuf;
 
-const AFTER_HELP: &str = "\
-Record the rigged cask at rest for a second or more, with the sensors, ranges, rate and trigger of the drop.
-For --taps strike each end once from below, the first end first, a second apart, after half a second of rest.
-
-Examples:
-  dropcheck check rest.csv --cask cask.toml
-  dropcheck check rest.csv --cask cask.toml --out ready
-  dropcheck check taps.csv --cask cask.toml --taps --json -
-
-Exit status: 0 ready; 1 not ready; 2 could not be told.";
-
 #[derive(Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = include_str!("help/check.txt"))]
 pub struct Arguments {
     /// The recording of the rest: MCAP, HDF5 or CSV, told by its content
     rest: PathBuf,
