@@ -1,6 +1,7 @@
 //! `[VARIABLE=]FROM:TO:STEP` to the values of a sweep.
 
 use super::words::{ascending, number};
+use crate::data::SweepVariable::{Angle, DropHeight, Friction, K, Length};
 use crate::data::shown::rounded;
 use crate::data::{Sweep, SweepVariable};
 
@@ -17,47 +18,47 @@ struct Known {
     names: &'static [&'static str],
     /// Least and largest value.
     range: (f64, f64),
-    range_words: &'static str,
     example: &'static str,
 }
 
 const KNOWN: [Known; 5] = [
     Known {
-        variable: SweepVariable::Angle,
+        variable: Angle,
         names: &["angle", "angle_deg", "phi", "φ"],
         range: (0.0, 90.0),
-        range_words: "lies between 0 (flat) and 90 (upright) degrees",
         example: "5:45:5",
     },
+    Known { variable: K, names: &["k", "restitution"], range: (0.0, 1.0), example: "k=0:1:0.1" },
     Known {
-        variable: SweepVariable::K,
-        names: &["k", "restitution"],
-        range: (0.0, 1.0),
-        range_words: "lies between 0 and 1",
-        example: "k=0:1:0.1",
-    },
-    Known {
-        variable: SweepVariable::Friction,
+        variable: Friction,
         names: &["friction", "contact", "mu", "μ", "µ"],
         range: (0.0, f64::INFINITY),
-        range_words: "is 0 or more",
         example: "friction=0:1:0.1",
     },
     Known {
-        variable: SweepVariable::Length,
+        variable: Length,
         names: &["length", "length_m"],
         range: (0.01, 100.0),
-        range_words: "lies between 0.01 and 100 m: it is the length of the cask, in metres",
         example: "length=4:6:0.1",
     },
     Known {
-        variable: SweepVariable::DropHeight,
+        variable: DropHeight,
         names: &["height", "drop_height", "drop_height_m"],
         range: (0.001, 1000.0),
-        range_words: "lies between 0.001 and 1000 m: it is the height of the drop, in metres",
         example: "height=1:9:0.5",
     },
 ];
+
+/// Where its values lie, as a sentence goes on.
+fn range_words(variable: SweepVariable) -> &'static str {
+    match variable {
+        Angle => "lies between 0 (flat) and 90 (upright) degrees",
+        K => "lies between 0 and 1",
+        Friction => "is 0 or more",
+        Length => "lies between 0.01 and 100 m: it is the length of the cask, in metres",
+        DropHeight => "lies between 0.001 and 1000 m: it is the height of the drop, in metres",
+    }
+}
 
 /// What the variable is called on the command line.
 pub fn name(variable: SweepVariable) -> &'static str {
@@ -74,14 +75,14 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
     };
     let parts: Vec<&str> = values.split(':').collect();
     let [from, to, step] = parts[..] else {
-        let unit = if known.variable == SweepVariable::Angle { ", in degrees" } else { "" };
+        let unit = if known.variable == Angle { ", in degrees" } else { "" };
         return Err(format!("give FROM:TO:STEP{unit}, such as --sweep {}", known.example));
     };
     let (from, to, step) = (number(from)?, number(to)?, number(step)?);
     for (word, value) in [("FROM", from), ("TO", to)] {
         let inside = (known.range.0..=known.range.1).contains(&value);
         if !inside {
-            return Err(format!("{word} is {value}: {} {}", known.names[0], known.range_words));
+            return Err(format!("{word} is {value}: {} {}", known.names[0], range_words(known.variable)));
         }
     }
     ascending(from, to)?;
