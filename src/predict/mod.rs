@@ -15,36 +15,24 @@ mod support;
 pub use ladder::{ladder, predict_by};
 pub use study::{default_uncertain, study, usual_request};
 
-use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction};
+use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, block_inertia_kg_m2};
 use path::Way;
 use state::State;
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 #[must_use]
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
-    match model {
-        BodyModel::Rod => thin_rod(cask.mass_kg, cask.length_m),
-        BodyModel::Body => Body {
-            model,
-            mass_kg: cask.mass_kg,
-            length_m: cask.length_m,
-            height_m: cask.height_m,
-            cog_m: cask.cog_m,
-            inertia_kg_m2: cask.inertia_kg_m2,
-        },
+    if model == BodyModel::Rod {
+        return thin_rod(cask.mass_kg, cask.length_m);
     }
+    let Cask { mass_kg, length_m, height_m, cog_m, inertia_kg_m2, .. } = *cask;
+    Body { model, mass_kg, length_m, height_m, cog_m, inertia_kg_m2 }
 }
 
 /// The thin uniform rod: h = 0, c = l/2, Θ = m l²/12.
 fn thin_rod(mass_kg: f64, length_m: f64) -> Body {
-    Body {
-        model: BodyModel::Rod,
-        mass_kg,
-        length_m,
-        height_m: 0.0,
-        cog_m: length_m / 2.0,
-        inertia_kg_m2: mass_kg * length_m.powi(2) / 12.0,
-    }
+    let inertia_kg_m2 = block_inertia_kg_m2(mass_kg, length_m, 0.0);
+    Body { model: BodyModel::Rod, mass_kg, length_m, height_m: 0.0, cog_m: length_m / 2.0, inertia_kg_m2 }
 }
 
 /// The bodies that a cask file asks to be predicted: the rod, and the body where the file describes one.
