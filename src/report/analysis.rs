@@ -20,7 +20,7 @@ use super::text::{
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
     Analysis, CaskFile, DropResult, Finding, FlightRegime, IssueCode, Prediction, Program, QuantityRow,
-    STANDARD_GRAVITY_M_S2, Setting, Severity, TestRecord,
+    STANDARD_GRAVITY_M_S2, Setting, Severity,
 };
 
 /// Findings that take away what the first impact would give.
@@ -54,12 +54,13 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
         |names: &[&str]| names.iter().map(|name| ChapterPart::picture(name, "")).collect::<Vec<_>>();
     let photographs: Vec<_> = record::photographs(&result.test).collect();
     let photographs = (!photographs.is_empty()).then(|| PartContent::Photographs(photographs).into());
+    let who = Some(&result.test.signatures).filter(|who| !who.is_empty());
+    let signatures = who.map(|who| record::signatures(who));
     let hash = input.recording_sha256.get(..16).unwrap_or_default();
     ReportDocument {
         page: Frame {
             title: format!("{heading} – {}", verdict_word(result.verdict)),
             product: "Drop test report",
-            version: result.version.to_owned(),
             foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
             heading,
             about: format!("{} · {}", dropped(&file.drop), input.recording),
@@ -97,7 +98,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
             Chapter::new("Photographs").only(Medium::Page).with_all(photographs),
-            signed(&result.test),
+            Chapter::new("Signatures").only(Medium::Page).with_all(signatures),
         ],
     }
 }
@@ -106,12 +107,6 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
 const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals \
                             were tested on simulated drops of known \
                             truth; no recording with a certified slap-down velocity was available.";
-
-/// Lines to sign, where the cask file names who does.
-fn signed(test: &TestRecord) -> Chapter {
-    let chapter = Chapter::new("Signatures").only(Medium::Page);
-    if test.signatures.is_empty() { chapter } else { chapter.with(record::signatures(&test.signatures)) }
-}
 
 /// What was dropped, the verdict and its cause, the four numbers that a reader looks for first, and what they
 /// rest on.

@@ -18,10 +18,9 @@ const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_st
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
-    let Frame { title, product, version, heading, about, footer, foot, letterhead, style, data, .. } =
-        &document.page;
+    let Frame { title, product, heading, about, footer, foot, letterhead, style, data, .. } = &document.page;
     let scripts = scripts(document, pictures);
-    let generator = format!("dropcheck {version}");
+    let generator = concat!("dropcheck ", env!("CARGO_PKG_VERSION"));
     html! {
         (DOCTYPE)
         html lang="en" {

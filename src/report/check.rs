@@ -8,8 +8,7 @@ use super::rounding::{fixed, optional_fixed};
 use super::text::{Style, capital, counted, dropped};
 use super::{ReportError, as_html, json, pictures, record};
 use crate::data::{
-    CaskFile, Channel, Check, CheckedChannel, Finding, Program, Recording, RestCause,
-    STANDARD_GRAVITY_M_S2 as G,
+    CaskFile, Channel, Check, CheckedChannel, Finding, Recording, RestCause, STANDARD_GRAVITY_M_S2 as G,
 };
 
 /// Drawing and photographs leave room on the sheet for eight channels and the signatures.
@@ -82,7 +81,6 @@ fn document(setup: &CheckedSetup) -> ReportDocument {
         page: Frame {
             title: format!("{name} – {}", if check.ready { "ready" } else { "not ready" }),
             product: "Check before the drop",
-            version: Program::this().version.to_owned(),
             heading: test.id.as_ref().map_or_else(|| name.clone(), |id| format!("{id}: {name}")),
             about: format!("{} · {} · {}", dropped(&file.drop), rest.path.display(), file.path.display()),
             foot: format!("{} · rest {hash}", test.id.as_deref().unwrap_or(name)),

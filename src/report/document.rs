@@ -23,8 +23,6 @@ pub(crate) struct Frame {
     pub(crate) title: String,
     /// What kind of report it is.
     pub(crate) product: &'static str,
-    /// The program's version.
-    pub(crate) version: String,
     /// The heading of the whole.
     pub(crate) heading: String,
     /// What it is made from.

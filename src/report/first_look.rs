@@ -9,7 +9,7 @@ use super::rounding::{MISSING, plain};
 use super::table::{ReportTable, TableCell};
 use super::text::{moment, printable, tail};
 use super::{ReportError, as_html, json, listing};
-use crate::data::{Channel, ChannelLook, Extreme, ListedChannel, Listing, Program};
+use crate::data::{Channel, ChannelLook, Extreme, ListedChannel, Listing};
 use serde::Serialize;
 
 /// The page; and the listing, by which the folder is known to be of which recording.
@@ -137,7 +137,6 @@ impl<'a> FirstLook<'a> {
             page: Frame {
                 title: format!("{name} – first look"),
                 product: "First look at a recording",
-                version: Program::this().version.to_owned(),
                 heading: printable(name),
                 about: listing::about(self.listing),
                 foot: format!("{name} · recording {}", sha256.get(..16).unwrap_or_default()),

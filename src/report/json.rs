@@ -1,6 +1,7 @@
 //! Results and listings to JSON: pretty, keys in the contract's order, never a number that is not one.
 
 use super::ReportError;
+use super::text::turns;
 use std::fmt::Write as _;
 
 /// A result, a listing or the like as a file: two spaces of indentation and a line feed at the end.
@@ -37,9 +38,7 @@ fn bare(text: String) -> String {
 /// Whether JSON may hold it bare and a terminal would obey it: controls beyond ASCII, line ends and
 /// directions of Unicode.
 fn steers(c: char) -> bool {
-    matches!(c,
-        '\u{7f}'..='\u{9f}' | '\u{61c}' | '\u{200e}' | '\u{200f}' 
-            | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    turns(c) || ('\u{7f}'..='\u{9f}').contains(&c)
 }
 
 #[cfg(test)]

@@ -73,9 +73,12 @@ pub fn printable(text: &str) -> String {
 
 /// Whether a character steers a terminal or the direction of reading, or is none that XML 1.0 knows.
 pub(super) fn is_hidden(c: char) -> bool {
-    let turns =
-        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    turns || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
+    turns(c) || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
+}
+
+/// Whether a character ends a line or steers the direction of reading.
+pub(super) fn turns(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays

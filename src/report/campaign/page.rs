@@ -5,7 +5,7 @@ use super::columns::NamedQuantity;
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, is_usable, scatter_words};
 use super::summary::{Oddity, few, oddities, tag};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES};
-use crate::data::{Estimate, Program, STANDARD_GRAVITY_M_S2, Verdict};
+use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
 use crate::numerics::pooled::e_n;
 use crate::report::document::{
     Chapter, ChapterPart, Frame, PartContent, ReportDocument, ReportTable, TableCell, Tone,
@@ -54,7 +54,6 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
         page: Frame {
             title: format!("{heading} · {}", batch.source),
             product: "Campaign of drop tests",
-            version: Program::this().version.to_owned(),
             heading,
             about: format!(
                 "{} · {count} recordings · {} casks · {angles} angles",

@@ -36,7 +36,6 @@ pub(super) fn document(study: &Study) -> ReportDocument {
         page: Frame {
             title: format!("Prediction for {name}"),
             product: "Prediction report",
-            version: env!("CARGO_PKG_VERSION").to_owned(),
             heading: format!("{name}: slap-down prediction"),
             about: file.path.display().to_string(),
             footer: "The drop angle is the inclination of the cask's axis above the horizontal at first \
