@@ -1,10 +1,9 @@
 //! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
 
-use super::at::At;
 use super::cask_file::CaskFile;
 use super::channel::Span;
 use super::curves::LazyCurves;
-use super::estimate::Estimate;
+use super::estimate::{At, Estimate};
 use super::finding::Finding;
 use super::flight::FlightFit;
 use super::impacts::ImpactTable;

@@ -1,4 +1,4 @@
-//! A measured quantity with its 95 % interval.
+//! A measured quantity with its 95 % interval, and a time with its standard uncertainty.
 
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -71,5 +71,22 @@ impl<'de> Deserialize<'de> for Estimate {
         let EstimateParts { value, u95, unit } = EstimateParts::deserialize(from)?;
         let known = UNITS.into_iter().map(|(known, _)| known).find(|known| *known == unit);
         Ok(Self::new(value, u95, known.ok_or_else(|| D::Error::custom("no unit of a result"))?))
+    }
+}
+
+/// A time and its standard uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct At {
+    /// From the recording's first sample, s.
+    pub time_s: f64,
+    /// Its standard uncertainty, s.
+    pub u_s: f64,
+}
+
+impl At {
+    /// A time that is known.
+    #[must_use]
+    pub const fn exactly(time_s: f64) -> Self {
+        Self { time_s, u_s: 0.0 }
     }
 }

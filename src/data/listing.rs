@@ -1,10 +1,12 @@
 //! What a recording holds, before any cask file is known: the answer of `inspect`.
 
 use super::cask::{RowsOf, Source};
+use super::channel::Extreme;
 use super::finding::Finding;
 use super::recording::RecordingFormat;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// One source of samples in a recording: a message path, a dataset (or its column), a CSV column.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -77,4 +79,21 @@ pub struct Listing {
     pub channels: Vec<ListedChannel>,
     /// What is wrong with the file.
     pub issues: Vec<Finding>,
+}
+
+/// What a first look at a channel shows, in the recording's unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelLook {
+    /// The smallest sample.
+    pub smallest: Extreme,
+    /// The largest sample.
+    pub largest: Extreme,
+    /// Median of the first samples; not a number where none of them is one.
+    pub level: f64,
+    /// Their spread about it as a standard deviation.
+    pub noise: f64,
+    /// What looks like a fall, s: from the release to what ends it.
+    pub fall_s: Option<Range<f64>>,
+    /// When what looks like an impact begins, s.
+    pub impact_s: Option<f64>,
 }

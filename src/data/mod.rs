@@ -1,7 +1,6 @@
 //! The plain structs that pass between stages; they hold no algorithm.
 
 mod analysis;
-mod at;
 mod cask;
 mod cask_file;
 mod channel;
@@ -12,15 +11,12 @@ mod estimate;
 pub(crate) mod example;
 mod finding;
 mod flight;
-mod held;
 mod impacts;
 mod key;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
-mod look;
 mod motion;
-mod onset;
 mod other;
 mod plan;
 pub(crate) mod planar;
@@ -37,7 +33,6 @@ mod tolerances;
 mod unit;
 
 pub use analysis::*;
-pub use at::*;
 pub use cask::*;
 pub use cask_file::*;
 pub use channel::*;
@@ -46,14 +41,11 @@ pub use curves::*;
 pub use estimate::*;
 pub use finding::*;
 pub use flight::*;
-pub use held::*;
 pub use impacts::*;
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::*;
 pub use listing::*;
-pub use look::*;
 pub use motion::*;
-pub use onset::*;
 pub use other::*;
 pub use plan::*;
 pub use prediction::*;
