@@ -18,33 +18,33 @@ const SCHEMA_MARK_WITHIN: u64 = 64;
 /// Why something could not be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CannotWrite {
-    #[error("{path} is a file, and --out needs a folder")]
+    #[error("{0} is a file, and --out needs a folder")]
     #[diagnostic(help("name a folder that does not exist yet, or an older report's"))]
-    NotAFolder { path: String },
-    #[error("{path} is no place for a report: its files would lie among those of the system or of your home")]
+    NotAFolder(String),
+    #[error("{0} is no place for a report: its files would lie among those of the system or of your home")]
     #[diagnostic(help("name a folder of its own, which need not exist yet, such as --out report"))]
-    Shared { path: String },
+    Shared(String),
     #[error("nothing can be written in {path}")]
     #[diagnostic(help("choose another place, or change its permissions"))]
     NotWritable { path: String, source: io::Error },
-    #[error("the folder {path} does not exist")]
+    #[error("the folder {0} does not exist")]
     #[diagnostic(help("create it, or choose another place"))]
-    NoFolder { path: String },
-    #[error("{path} would overwrite the recording or the cask file")]
+    NoFolder(String),
+    #[error("{0} would overwrite the recording or the cask file")]
     #[diagnostic(help("choose another place: no command alters its input"))]
-    Input { path: String },
-    #[error("{path} exists and was not written by dropcheck")]
+    Input(String),
+    #[error("{0} exists and was not written by dropcheck")]
     #[diagnostic(help("choose another place, or remove it yourself"))]
-    Foreign { path: String },
+    Foreign(String),
     #[error("{folder} holds the report of another recording, {recording}")]
     #[diagnostic(help("name another folder; or add --force, which replaces that report"))]
     OtherReport { folder: String, recording: String },
-    #[error("{path} is a symbolic link")]
+    #[error("{0} is a symbolic link")]
     #[diagnostic(help("name what it points to"))]
-    Link { path: String },
-    #[error("{path} is a folder, and a file of that name must be written")]
+    Link(String),
+    #[error("{0} is a folder, and a file of that name must be written")]
     #[diagnostic(help("choose another place, or remove it yourself"))]
-    IsAFolder { path: String },
+    IsAFolder(String),
     #[error("{path} could not be written")]
     #[diagnostic(help(
         "see whether the disk is full or another program has it open; what was there before is unchanged"
@@ -57,6 +57,11 @@ pub enum CannotWrite {
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// `why` of a path where something `is_wrong` with it.
+fn refused_where(is_wrong: bool, why: fn(String) -> CannotWrite, path: &Path) -> Result<(), CannotWrite> {
+    if is_wrong { Err(why(shown(path))) } else { Ok(()) }
 }
 
 /// The operating system's words without its error number and without names of files on the way.
@@ -76,44 +81,33 @@ impl Folder {
     /// ".json" tells whose they are.
     pub fn checked(path: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, CannotWrite> {
         if path.as_os_str().is_empty() {
-            return Err(CannotWrite::NoFolder { path: "\"\"".into() });
+            return Err(CannotWrite::NoFolder("\"\"".into()));
         }
-        if is_input(path, inputs) {
-            return Err(CannotWrite::Input { path: shown(path) });
-        }
+        refused_where(is_input(path, inputs), CannotWrite::Input, path)?;
         // A link may have been put there to have files written elsewhere.
-        if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
-            return Err(CannotWrite::Link { path: shown(path) });
-        }
-        if is_protected(path) {
-            return Err(CannotWrite::Shared { path: shown(path) });
-        }
+        refused_where(path.is_symlink(), CannotWrite::Link, path)?;
+        refused_where(is_protected(path), CannotWrite::Shared, path)?;
         let mut standing = path;
         while fs::symlink_metadata(standing).is_err() {
             standing = match standing.parent() {
                 Some(parent) if !parent.as_os_str().is_empty() => parent,
                 // A drive or a share of Windows that is not there.
-                _ if standing.has_root() => return Err(CannotWrite::NoFolder { path: shown(standing) }),
+                _ if standing.has_root() => return Err(CannotWrite::NoFolder(shown(standing))),
                 _ => Path::new("."),
             };
         }
-        if !standing.is_dir() {
-            return Err(CannotWrite::NotAFolder { path: shown(standing) });
-        }
+        refused_where(!standing.is_dir(), CannotWrite::NotAFolder, standing)?;
         writable(standing)?;
         let present: Vec<PathBuf> =
             names.iter().map(|name| path.join(name)).filter(|p| fs::symlink_metadata(p).is_ok()).collect();
         for target in &present {
-            if is_input(target, inputs) {
-                return Err(CannotWrite::Input { path: shown(target) });
-            }
-            if fs::symlink_metadata(target).is_ok_and(|m| m.is_dir()) {
-                return Err(CannotWrite::IsAFolder { path: shown(target) });
-            }
+            refused_where(is_input(target, inputs), CannotWrite::Input, target)?;
+            let is_folder = target.is_dir() && !target.is_symlink();
+            refused_where(is_folder, CannotWrite::IsAFolder, target)?;
         }
         let own = names.iter().find(|name| is_json(name)).is_none_or(|name| is_own_json(&path.join(name)));
         match present.first() {
-            Some(first) if !own => Err(CannotWrite::Foreign { path: shown(first) }),
+            Some(first) if !own => Err(CannotWrite::Foreign(shown(first))),
             _ => Ok(Self { path: path.to_path_buf() }),
         }
     }
@@ -158,30 +152,17 @@ impl JsonTarget {
     pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> Result<Self, CannotWrite> {
         let target = Self(path.map(Path::to_path_buf));
         let Some(path) = path.filter(|_| !target.is_standard_output()) else { return Ok(target) };
-        if is_input(path, inputs) {
-            return Err(CannotWrite::Input { path: shown(path) });
-        }
+        refused_where(is_input(path, inputs), CannotWrite::Input, path)?;
         match fs::metadata(path) {
-            Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder { path: shown(path) }),
-            Ok(there) if there.is_file() => {
-                if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) {
-                    return Err(CannotWrite::Link { path: shown(path) });
-                }
-                if there.len() > 0 && !is_own_json(path) {
-                    return Err(CannotWrite::Foreign { path: shown(path) });
-                }
-            }
+            Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder(shown(path))),
             // A pipe or a device takes the bytes as they come.
-            Ok(_) => return Ok(target),
-            Err(_) if fs::symlink_metadata(path).is_ok() => {
-                return Err(CannotWrite::Link { path: shown(path) });
-            }
+            Ok(there) if !there.is_file() => return Ok(target),
+            _ if path.is_symlink() => return Err(CannotWrite::Link(shown(path))),
+            Ok(there) => refused_where(there.len() > 0 && !is_own_json(path), CannotWrite::Foreign, path)?,
             Err(_) => {}
         }
         let parent = parent_of(path);
-        if !parent.is_dir() {
-            return Err(CannotWrite::NoFolder { path: shown(parent) });
-        }
+        refused_where(!parent.is_dir(), CannotWrite::NoFolder, parent)?;
         writable(parent)?;
         Ok(target)
     }

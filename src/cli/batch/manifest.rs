@@ -5,7 +5,7 @@ use super::super::output::note;
 use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
 use crate::ingest::{bytes_of, cask_file::key_of_column, in_utf8};
-use miette::miette;
+use miette::{ensure, miette};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -38,13 +38,8 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
         if row.iter().all(|cell| cell.trim().is_empty()) {
             continue;
         }
-        if row.len() > heads.len() {
-            let (mend, cells, all) = ("put quotes around a cell that holds a comma", row.len(), heads.len());
-            return Err(miette!(
-                help = mend,
-                "{name}, line {line}: {cells} cells, and there are {all} columns"
-            ));
-        }
+        let (mend, cells, all) = ("put quotes around a cell that holds a comma", row.len(), heads.len());
+        ensure!(cells <= all, help = mend, "{name}, line {line}: {cells} cells, and there are {all} columns");
         let cells: Vec<(&str, &str)> =
             heads.iter().map(String::as_str).zip(row.iter().map(str::trim)).collect();
         let test = test(&cells, folder, cask)
@@ -56,9 +51,7 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
         }
         tests.push(test);
     }
-    if tests.is_empty() {
-        return Err(miette!(help = "write one row a recording", "{name} lists no recording"));
-    }
+    ensure!(!tests.is_empty(), help = "write one row a recording", "{name} lists no recording");
     Ok(tests)
 }
 
@@ -100,16 +93,14 @@ fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<Pl
 /// Refuses heads that cannot be meant.
 fn check(heads: &[String], path: &Path) -> miette::Result<()> {
     let name = path.display();
-    if !heads.iter().any(|head| head == RECORDING) {
-        let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck \
-                    init FOLDER` writes one";
-        return Err(miette!(help = mend, "{name}, line 1: there is no column `recording`"));
-    }
+    let is_there = heads.iter().any(|head| head == RECORDING);
+    let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck init \
+                FOLDER` writes one";
+    ensure!(is_there, help = mend, "{name}, line 1: there is no column `recording`");
     let mut before = HashSet::new();
     for head in heads {
-        if !head.is_empty() && !before.insert(head) {
-            return Err(miette!(help = "rename one of them", "{name}, line 1: two columns are named {head}"));
-        }
+        let is_new = head.is_empty() || before.insert(head);
+        ensure!(is_new, help = "rename one of them", "{name}, line 1: two columns are named {head}");
         let mend = "a column that is only to be carried into the tables needs a name without that table's \
                     word and a point";
         key_of_column(head).map_err(|problem| miette!(help = mend, "{name}, line 1: {problem}"))?;

@@ -3,7 +3,7 @@
 use super::super::output::note;
 use crate::ingest;
 use crate::report::Batch;
-use miette::miette;
+use miette::{ensure, miette};
 use std::collections::HashSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -24,9 +24,7 @@ pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             let found = glob::glob(&pattern).map_err(|fault| miette!("{pattern} is no pattern: {fault}"))?;
             let before = recordings.len();
             recordings.extend(found.flatten().filter(|path| is_one(path) && !is_summary(path)));
-            if recordings.len() == before {
-                return Err(miette!("no file is named like {pattern}"));
-            }
+            ensure!(recordings.len() > before, "no file is named like {pattern}");
         } else {
             recordings.push(path.clone());
         }
@@ -57,11 +55,9 @@ pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
     let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
         files.into_iter().filter(|p| !is_summary(p)).partition(|p| p.is_dir() || has_ending(p));
     tell_left_out(path, &others);
-    if found.is_empty() {
-        let mend = "name the recordings themselves: their content, not their name, tells the format";
-        let none = "holds no .mcap, .h5, .hdf5, .hdf, .csv or .zip file, nor a folder in ISO-MME";
-        return Err(miette!(help = mend, "the folder {} {none}", path.display()));
-    }
+    let mend = "name the recordings themselves: their content, not their name, tells the format";
+    let none = "holds no .mcap, .h5, .hdf5, .hdf, .csv or .zip file, nor a folder in ISO-MME";
+    ensure!(!found.is_empty(), help = mend, "the folder {} {none}", path.display());
     Ok(found)
 }
 

@@ -3,7 +3,7 @@
 
 use super::super::output::{JsonTarget, replace_by};
 use crate::ingest::opened;
-use miette::{IntoDiagnostic, WrapErr, miette};
+use miette::{IntoDiagnostic, WrapErr, ensure, miette};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -204,15 +204,11 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
             file = opened_alone(path);
         }
     }
-    if is_held(&file) {
-        let help = "wait for it, or end it";
-        return Err(miette!(help = help, "another run is writing {}", path.display()));
-    }
+    ensure!(!is_held(&file), help = "wait for it, or end it", "another run is writing {}", path.display());
     let file = file.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))?;
-    if !file.metadata().is_ok_and(|there| there.is_file()) {
-        let help = "name a file; --jsonl - writes to standard output";
-        return Err(miette!(help = help, "{} is a pipe or a device", path.display()));
-    }
+    let is_file = file.metadata().is_ok_and(|there| there.is_file());
+    let help = "name a file; --jsonl - writes to standard output";
+    ensure!(is_file, help = help, "{} is a pipe or a device", path.display());
     Ok(file)
 }
 

@@ -5,7 +5,7 @@ use super::sweep::{MOST_PREDICTIONS, name};
 use crate::data::shown::rounded;
 use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use crate::predict;
-use miette::miette;
+use miette::{ensure, miette};
 
 /// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
@@ -52,10 +52,9 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
     let sweeps = &arguments.sweep;
     for (i, sweep) in sweeps.iter().enumerate() {
         let called = name(sweep.variable);
-        if sweeps[..i].iter().any(|other| other.variable == sweep.variable) {
-            let mend = "one --sweep for each variable; for two ranges of one variable run predict twice";
-            return Err(miette!(help = mend, "--sweep {called} is given twice"));
-        }
+        let is_new = sweeps[..i].iter().all(|other| other.variable != sweep.variable);
+        let mend = "one --sweep for each variable; for two ranges of one variable run predict twice";
+        ensure!(is_new, help = mend, "--sweep {called} is given twice");
         let option = match sweep.variable {
             SweepVariable::Angle => arguments.angle.map(|_| "--angle"),
             SweepVariable::K => arguments.k.map(|_| "--k"),
