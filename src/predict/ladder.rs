@@ -24,7 +24,6 @@ pub(super) struct Case<'a> {
 ///
 /// The rungs below Coulomb friction take any friction for rough. For k = 0 those below the unilateral contact
 /// hold L on the target.
-#[must_use]
 pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
     let ideal = match contact {
         Contact::Coulomb(coefficient) if coefficient > 0.0 => Contact::Rough,
@@ -34,11 +33,11 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
     match rung {
         Rung::Rod => {
             let rod = thin_rod(body.mass_kg, body.length_m);
-            Case { body: &rod, drop, contact: ideal, k }.held_or_one_flight(rod::table_1)
+            Case { body: &rod, drop, contact: ideal, k }.one_flight(rod::table_1, true)
         }
-        Rung::Body => Case { body, drop, contact: ideal, k }.held_or_one_flight(strike_first_end),
-        Rung::Friction => Case { body, drop, contact, k }.held_or_one_flight(strike_first_end),
-        Rung::Unilateral => Case { body, drop, contact, k }.unilateral(),
+        Rung::Body => Case { body, drop, contact: ideal, k }.one_flight(strike_first_end, true),
+        Rung::Friction => Case { body, drop, contact, k }.one_flight(strike_first_end, true),
+        Rung::Unilateral => Case { body, drop, contact, k }.one_flight(strike_first_end, false),
         Rung::FurtherImpacts => predict(body, &Drop { contact_duration_s: 0.0, ..*drop }, contact, k),
         Rung::FinitePulse => predict(body, drop, contact, k),
     }
@@ -46,7 +45,6 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
 
 /// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than
 /// [`LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
-#[must_use]
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
     for rung in Rung::of(drop) {
@@ -78,28 +76,16 @@ fn alike(one: Option<f64>, other: Option<f64>) -> bool {
 type ImpactLaw = fn(&Body, &State, Contact, f64) -> Struck;
 
 impl Case<'_> {
-    fn start(&self) -> State {
-        State::falling(self.body, self.drop.angle_rad, self.drop)
-    }
-
-    /// k = 0: L held on the target until R strikes; else one flight.
-    fn held_or_one_flight(&self, impact: ImpactLaw) -> Prediction {
-        let start = self.start();
+    /// One flight; before it for k = 0 L on the target while it pushes, or where it `pulls` until R strikes.
+    fn one_flight(&self, impact: ImpactLaw, pulls: bool) -> Prediction {
+        let start = State::falling(self.body, self.drop.angle_rad, self.drop);
         let struck = impact(self.body, &start, self.contact, self.k);
-        let outcome = if self.k <= 0.0 { self.held(&struck.after) } else { self.one_flight(&struck) };
+        let outcome = if pulls && self.k <= 0.0 {
+            self.held(&struck.after)
+        } else {
+            Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
+        };
         self.prediction(&start, &struck, &outcome)
-    }
-
-    /// k = 0: L on the target while it pushes, then one flight; else one flight.
-    fn unilateral(&self) -> Prediction {
-        let start = self.start();
-        let struck = strike_first_end(self.body, &start, self.contact, self.k);
-        let outcome = self.one_flight(&struck);
-        self.prediction(&start, &struck, &outcome)
-    }
-
-    fn one_flight(&self, struck: &Struck) -> PathEnd {
-        Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
     }
 
     /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.

@@ -20,7 +20,6 @@ use path::Way;
 use state::State;
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
-#[must_use]
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
     if model == BodyModel::Rod {
         return thin_rod(cask.mass_kg, cask.length_m);
@@ -36,13 +35,9 @@ fn thin_rod(mass_kg: f64, length_m: f64) -> Body {
 }
 
 /// The bodies that a cask file asks to be predicted: the rod, and the body where the file describes one.
-#[must_use]
 pub fn bodies(cask: &Cask) -> Vec<Body> {
-    let mut bodies = vec![body(cask, BodyModel::Rod)];
-    if cask.is_body {
-        bodies.push(body(cask, BodyModel::Body));
-    }
-    bodies
+    let models = if cask.is_body { &[BodyModel::Rod, BodyModel::Body][..] } else { &[BodyModel::Rod] };
+    models.iter().map(|model| body(cask, *model)).collect()
 }
 
 /// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1),
@@ -58,7 +53,6 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 
 /// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid
 /// limit, in which every touch is an impact.
-#[must_use]
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
     let (struck, outcome) = Way::of(body, drop, contact, Some(graze_share)).from(&start, drop, k);
@@ -66,7 +60,6 @@ pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze
 }
 
 /// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.
-#[must_use]
 pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
     [Contact::Rough, Contact::Smooth]
         .into_iter()

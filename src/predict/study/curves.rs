@@ -32,18 +32,12 @@ pub(super) fn sections(cask_file: &CaskFile, angles_deg: &[f64]) -> Vec<AngleCur
     let rod = super::super::body(&cask_file.cask, BodyModel::Rod);
     let uniform =
         |height_m: f64| Body { model: BodyModel::Body, ..super::resized(&rod, rod.length_m, height_m) };
-    let mut bodies = vec![rod];
-    bodies.extend(SECTIONS_M.map(uniform));
-    if cask_file.cask.is_body {
-        bodies.push(super::richest(cask_file));
-    }
-    bodies
-        .into_iter()
-        .map(|body| {
-            let fall = Fall { body, drop: cask_file.drop, contact: Contact::Smooth, k: 1.0 };
-            curve(&fall, angles_deg, &fall.over(angles_deg))
-        })
-        .collect()
+    let own = cask_file.cask.is_body.then(|| super::richest(cask_file));
+    let of_body = |body| {
+        let fall = Fall { body, drop: cask_file.drop, contact: Contact::Smooth, k: 1.0 };
+        curve(&fall, angles_deg, &fall.over(angles_deg))
+    };
+    std::iter::once(rod).chain(SECTIONS_M.map(uniform)).chain(own).map(of_body).collect()
 }
 
 #[cfg(test)]
