@@ -74,17 +74,13 @@ impl CurvesFile {
     /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves
     /// again. A unit that their names do not tell stands in the channel's metadata.
     fn channel(&mut self, name: &str, topic: &str, fields: &[&str], unit: &str) -> Result<u16, ReportError> {
-        let mut properties = serde_json::Map::new();
-        properties.insert(
-            "timestamp".into(),
-            serde_json::json!({
-                "type": "object", "title": "time",
-                "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}
-            }),
-        );
+        let mut properties = serde_json::json!({"timestamp": {
+            "type": "object", "title": "time",
+            "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}
+        }});
         for field in fields {
             let kind = if *field == "name" { "string" } else { "number" };
-            properties.insert((*field).into(), serde_json::json!({"type": kind}));
+            properties[*field] = serde_json::json!({"type": kind});
         }
         let schema = serde_json::json!({"title": name, "type": "object", "properties": properties});
         let schema = self.writer.add_schema(name, "jsonschema", &serde_json::to_vec(&schema)?)?;

@@ -2,11 +2,10 @@
 //! there is a cask file.
 
 use super::acceleration_sources::{accelerations, is_time};
-use super::document::{Chapter, ChapterPart, Frame, ReportDocument};
+use super::document::{Chapter, ChapterPart, Frame, ReportDocument, ReportTable, TableCell};
 use super::pictures::draw::Picture;
 use super::pictures::recorded;
 use super::rounding::{MISSING, plain};
-use super::table::{ReportTable, TableCell};
 use super::text::{moment, printable, tail};
 use super::{ReportError, as_html, json, listing};
 use crate::data::{Channel, ChannelLook, Extreme, ListedChannel, Listing};

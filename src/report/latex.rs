@@ -14,13 +14,10 @@ pub(super) fn table(result: &DropResult) -> Vec<u8> {
         .chain([("Slap-down speed over impact velocity".to_owned(), result.amplification)]);
     let line = |(name, value): (String, Option<_>)| format!("{name} & {} \\\\\n", cell(value.as_ref()));
     let lines = rows.map(line).collect::<Vec<String>>().concat();
-    let head = format!(
-        "% dropcheck {}, SHA-256 of the recording: {}",
-        result.version, result.input.recording_sha256
-    );
     format!(
-        "{head}\n\\begin{{tabular}}{{lr}}\n\\hline\nQuantity & Value $\\pm$ 95\\,\\% \
-             \\\\\n\\hline\n{lines}\\hline\n\\end{{tabular}}\n"
+        "% dropcheck {}, SHA-256 of the recording: {}\n\\begin{{tabular}}{{lr}}\n\\hline\nQuantity & Value \
+         $\\pm$ 95\\,\\% \\\\\n\\hline\n{lines}\\hline\n\\end{{tabular}}\n",
+        result.version, result.input.recording_sha256
     )
     .into_bytes()
 }

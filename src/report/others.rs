@@ -1,9 +1,7 @@
 //! The channels that take no part in the motion to a table of what each reads.
 
-use super::document::{Chapter, ChapterPart};
-use super::medium::{Medium, Words};
+use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
 use super::rounding::{MISSING, optional, optional_fixed, plain, significant};
-use super::table::ReportTable;
 use super::text::json_word;
 use crate::data::{DropResult, Extreme, OtherSummary, SpectralLine};
 

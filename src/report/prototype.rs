@@ -1,9 +1,8 @@
 //! What holds of the prototype of a scale model to a table beside what was measured.
 
-use super::document::{Chapter, ChapterPart};
+use super::document::{Chapter, ChapterPart, ReportTable};
 use super::impacts;
 use super::rounding::{MISSING, interval};
-use super::table::ReportTable;
 use crate::data::{CaskFile, DropResult, QuantityRow};
 
 /// The chapter; empty where no scale is stated.

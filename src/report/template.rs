@@ -1,6 +1,7 @@
 //! What a recording holds to a commented cask file to fill in.
 
 use super::acceleration_sources::{self, NoChannels, VOLTAGES, has_word, is_time};
+use super::rounding::{plain, significant};
 use super::text::{is_hidden, lines, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, Source, acceleration_unit_m_s2};
@@ -186,19 +187,14 @@ fn unit(told: Option<&str>, key: &Key) -> Vec<String> {
 }
 
 fn facts(listed: &ListedChannel) -> String {
-    let mut facts = Vec::new();
-    if let Some(n) = listed.samples {
-        facts.push(format!("{n} samples"));
-    }
-    if let Some(rate) = listed.sample_rate_hz {
-        facts.push(format!("{} Hz", super::rounding::plain(rate, 7)));
-    }
-    if let Some((low, high)) = listed.range {
-        let three = |v| super::rounding::significant(v, 3);
-        facts.push(format!("{} to {} {}", three(low), three(high), listed.unit.as_deref().unwrap_or("")));
-    }
-    facts.push(listed.encoding.clone());
-    printable(&facts.join(", "))
+    let unit = listed.unit.as_deref().unwrap_or("");
+    let facts = [
+        listed.samples.map(|n| format!("{n} samples")),
+        listed.sample_rate_hz.map(|rate| format!("{} Hz", plain(rate, 7))),
+        listed.range.map(|(low, high)| format!("{} to {} {unit}", significant(low, 3), significant(high, 3))),
+        Some(listed.encoding.clone()),
+    ];
+    printable(&facts.into_iter().flatten().collect::<Vec<String>>().join(", "))
 }
 
 /// A source as TOML.

@@ -17,12 +17,7 @@ pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<
 
 /// The lines, each with its end.
 pub(super) fn lines(lines: impl IntoIterator<Item = String>) -> String {
-    let mut out = String::new();
-    for text in lines {
-        out.push_str(&text);
-        out.push('\n');
-    }
-    out
+    lines.into_iter().map(|text| text + "\n").collect()
 }
 
 /// Every line of `text` in `style`.
