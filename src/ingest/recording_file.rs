@@ -1,7 +1,7 @@
 //! Where the bytes of a recording lie, on disk or in memory, to something that reads and seeks.
 
 use std::fs::File;
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::io::{self, Cursor, Read, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,8 +30,10 @@ impl<'a> RecordingFile<'a> {
     /// # Errors
     /// It is no file, or may not be read.
     pub(super) fn opened(self) -> io::Result<OpenFile> {
-        let Some(bytes) = self.in_memory else { return opened(self.path).map(OpenFile::OnDisk) };
-        Ok(OpenFile::InMemory(Cursor::new(bytes.clone())))
+        Ok(match self.in_memory {
+            Some(bytes) => Box::new(Cursor::new(bytes.clone())),
+            None => Box::new(opened(self.path)?),
+        })
     }
 
     /// Its length, bytes.
@@ -48,29 +50,12 @@ impl<'a> RecordingFile<'a> {
     }
 }
 
+/// What reads and seeks.
+pub(super) trait ReadSeek: Read + Seek + Send {}
+impl<T: Read + Seek + Send> ReadSeek for T {}
+
 /// A file that is open for reading.
-pub(super) enum OpenFile {
-    OnDisk(File),
-    InMemory(Cursor<Arc<[u8]>>),
-}
-
-impl Read for OpenFile {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::OnDisk(file) => file.read(buffer),
-            Self::InMemory(bytes) => bytes.read(buffer),
-        }
-    }
-}
-
-impl Seek for OpenFile {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match self {
-            Self::OnDisk(file) => file.seek(to),
-            Self::InMemory(bytes) => bytes.seek(to),
-        }
-    }
-}
+pub(super) type OpenFile = Box<dyn ReadSeek>;
 
 /// The file at `path`, open for reading: no pipe or device, which may never end, and no folder.
 ///
