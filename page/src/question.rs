@@ -2,7 +2,6 @@
 
 use crate::cask_text;
 use dropcheck::data::{Analysis, CaskFile, Listing};
-use dropcheck::ingest::cask_file::CaskFileError;
 use dropcheck::ingest::{self, IngestError, Limits, RecordingFile};
 use dropcheck::{report, stages};
 use miette::{IntoDiagnostic, Report, miette};
@@ -138,13 +137,8 @@ impl Question {
 
 /// A refusal, with the place in the cask file that it speaks of.
 pub fn refused(refusal: &Report) -> Answer {
-    let wrong_line =
-        refusal.downcast_ref::<CaskFileError>().or_else(|| match refusal.downcast_ref::<IngestError>()? {
-            IngestError::CaskFile(error) => Some(error),
-            IngestError::Refused { .. } => None,
-        });
-    let wrong_line = match wrong_line {
-        Some(CaskFileError::Line(line)) => Some(line),
+    let wrong_line = match refusal.downcast_ref() {
+        Some(IngestError::Line(line)) => Some(line),
         _ => None,
     };
     let error = json!({

@@ -12,6 +12,7 @@ mod texts;
 pub(super) mod tolerance;
 mod wording;
 
+use super::error::{IngestError, of_file};
 use super::lines::in_utf8;
 use super::recording_file::bytes_of;
 use super::refusal::Refusal;
@@ -20,12 +21,16 @@ use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 use fault::THE_CASK_FILE;
-pub use fault::{CaskFileError, WrongLine};
+pub use fault::WrongLine;
 pub use overrides::{key_of_column, with_columns};
 use section::{CASK_FILE, Document, Kind, Section};
 pub use settings::settings;
 use sha2::{Digest, Sha256};
 use std::path::Path;
+
+/// What the laboratory calls the error of a scene file, which is read as a cask file is.
+#[cfg(feature = "lab")]
+pub(crate) type CaskFileError = IngestError;
 
 /// A larger file is no cask file: a thousand channels take 300 kB.
 const LARGEST_MIB: u64 = 16;
@@ -34,16 +39,16 @@ const LARGEST_MIB: u64 = 16;
 /// its photographs only the beginnings are looked at: [`with_photos`] reads them.
 ///
 /// # Errors
-/// [`CaskFileError`], one message that shows the line.
-pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
+/// [`IngestError`], one message that shows the line.
+pub fn parse(path: &Path) -> Result<CaskFile, IngestError> {
     of_bytes(path, &read(path, &CASK_FILE)?, Some(path.parent().unwrap_or(Path::new(""))))
 }
 
 /// The cask file with its photographs and its logo, for a page.
 ///
 /// # Errors
-/// [`CaskFileError`] where one is no longer as it was.
-pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
+/// [`IngestError`] where one is no longer as it was.
+pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, IngestError> {
     let folder = file.path.parent().unwrap_or(Path::new("")).to_owned();
     // One whose kind is not known was never looked for.
     let pictures = file.test.photos.iter_mut().chain(&mut file.letterhead.logo);
@@ -58,12 +63,12 @@ pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
 /// photographs are not looked for.
 ///
 /// # Errors
-/// [`CaskFileError`], one message that shows the line.
-pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+/// [`IngestError`], one message that shows the line.
+pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, IngestError> {
     of_bytes(path, text.as_bytes(), None)
 }
 
-fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
+fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, IngestError> {
     let sha256 = super::unchanged::hexadecimal(&Sha256::digest(bytes));
     let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
     Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
@@ -72,8 +77,8 @@ fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile
 /// Whether the file has any channel, as `analyze` needs.
 ///
 /// # Errors
-/// [`CaskFileError`] that says how to get channels.
-pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), CaskFileError> {
+/// [`IngestError`] that says how to get channels.
+pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), IngestError> {
     if !cask_file.channels.is_empty() {
         return Ok(());
     }
@@ -91,16 +96,16 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
 }
 
 /// The refusal of a file that is no such file.
-pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
-    CaskFileError::Refused { path: path.display().to_string(), refusal: Refusal::new(problem, mend) }
+pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> IngestError {
+    of_file(path, Refusal::new(problem, mend))
 }
 
 /// The text of a file of this kind, not yet checked to be UTF-8.
-pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
+pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, IngestError> {
     bytes(path, LARGEST_MIB, kind.name).map(in_utf8)
 }
 
-fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, CaskFileError> {
+fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, IngestError> {
     let option = if name == THE_CASK_FILE { " after --cask" } else { "" };
     bytes_of(path, most_mib).map_err(|refusal| {
         let mend = format!("check the name{option}, and that you may read it");
@@ -118,7 +123,7 @@ fn order(kind: &Kind) -> &'static str {
 }
 
 /// The text, without a byte-order mark.
-pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, CaskFileError> {
+pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, IngestError> {
     if bytes.starts_with(b"\x89HDF") || bytes.starts_with(b"\x89MCAP") {
         let problem = format!("this is a recording, not {}", kind.name);
         return Err(no_cask_file(path, &problem, order(kind)));
@@ -145,7 +150,7 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
 }
 
 /// The checked file of this text; its photographs are looked for in the folder `photos`, if any.
-pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
+pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, IngestError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
     let cask_table = root.required_table("cask")?;
@@ -204,7 +209,7 @@ pub(crate) fn assumed(root: &Section, tables: &[&str]) -> Vec<String> {
 }
 
 /// `[contact]`.
-pub(crate) fn contact(table: &Section) -> Result<Contact, CaskFileError> {
+pub(crate) fn contact(table: &Section) -> Result<Contact, IngestError> {
     const MEND: &str = "friction = \"rough\" (no sliding), \"smooth\" (no friction), \"unknown\", or a \
                         coefficient such as 0.4";
     let Some(value) = table.value("friction") else { return Ok(Contact::Unknown) };
@@ -224,7 +229,7 @@ pub(crate) fn contact(table: &Section) -> Result<Contact, CaskFileError> {
     Ok(Contact::Coulomb(coefficient.value))
 }
 
-fn filter(table: &Section) -> Result<FilterChoice, CaskFileError> {
+fn filter(table: &Section) -> Result<FilterChoice, IngestError> {
     match (table.number("cfc")?, table.number("cutoff_hz")?) {
         (Some(_), Some(cutoff)) => Err(table.wrong(
             cutoff.span,

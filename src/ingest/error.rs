@@ -8,10 +8,10 @@ use std::path::Path;
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum IngestError {
-    /// The cask file is at fault.
+    /// A line of the cask file is wrong.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    CaskFile(#[from] super::cask_file::fault::CaskFileError),
+    Line(#[from] Box<super::cask_file::fault::WrongLine>),
     /// The operating system refuses it, a part of it would take more memory than reading may, it is no
     /// recording that is read, lacks what a channel names, or contradicts its format.
     #[error("{path}: {refusal}")]
@@ -31,7 +31,7 @@ impl IngestError {
             Self::Refused { path, .. } if *path == file.display().to_string() => {
                 *path = name.display().to_string();
             }
-            Self::CaskFile(_) | Self::Refused { .. } => {}
+            Self::Line(_) | Self::Refused { .. } => {}
         }
         self
     }

@@ -91,7 +91,7 @@ pub(crate) struct RawRecording {
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
-    Ok(cask_file::with_photos(cask_file::parse(path)?)?)
+    cask_file::with_photos(cask_file::parse(path)?)
 }
 
 /// Reads the channels that `cask_file` names from a recording, its format told by its content; the rest

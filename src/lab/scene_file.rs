@@ -36,7 +36,7 @@ const MOST_SAMPLES: f64 = 2e7;
 /// One diagnostic that shows the line.
 pub fn read(path: &Path) -> Result<SceneFile, IngestError> {
     let bytes = cask_file::read(path, &SCENE_FILE)?;
-    Ok(checked(path, cask_file::text(path, &bytes, &SCENE_FILE)?)?)
+    checked(path, cask_file::text(path, &bytes, &SCENE_FILE)?)
 }
 
 fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {

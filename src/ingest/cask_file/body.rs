@@ -1,9 +1,9 @@
 //! `[cask]` and `[drop]` to a body and its fall, each number within the range of what is dropped.
 
-use super::CaskFileError;
 use super::section::{Placed, Section};
 use crate::data::planar::first_arm_m;
 use crate::data::{Cask, Drop, block_inertia_kg_m2};
+use crate::ingest::IngestError;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -23,7 +23,7 @@ const LEAST_DENSITY_KG_M3: f64 = 5.0;
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 
 /// `[cask]`; its name is that of the file at `path` where it gives none.
-pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> {
+pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, IngestError> {
     let mass_kg = table.required_number("mass_kg")?.value;
     let length_m = table.required_number("length_m")?.value;
     let height = table.number("height_m")?;
@@ -98,7 +98,7 @@ fn inertia_is_possible(
     inertia: &Placed<f64>,
     mass_kg: f64,
     [length_m, height_m, cog_m]: [f64; 3],
-) -> Result<(), CaskFileError> {
+) -> Result<(), IngestError> {
     // Θ ≤ m (c (l − c) + h²/4).
     let most = mass_kg * (cog_m * (length_m - cog_m) + height_m * height_m / 4.0);
     let least = mass_kg * length_m * length_m * LEAST_INERTIA;
@@ -119,7 +119,7 @@ fn inertia_is_possible(
 }
 
 /// `[drop]`, whose ranges hold of the height and the velocity that it leaves out too.
-pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> {
+pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, IngestError> {
     let gravity_m_s2 = table.given("gravity_m_s2")?.unwrap_or(DEFAULT_GRAVITY_M_S2);
     let velocity = table.given("impact_velocity_m_s")?;
     let height = table.given("height_m")?;

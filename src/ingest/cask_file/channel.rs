@@ -1,11 +1,11 @@
 //! `[[channel]]` tables to checked channel specifications.
 
-use super::CaskFileError;
 use super::section::Section;
 use crate::data::{
     Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RateSpec, RowsOf, SensorRecord, Source,
     Unit, rate_unit_rad_s,
 };
+use crate::ingest::IngestError;
 use std::ops::Range;
 use toml::de::DeValue;
 
@@ -37,7 +37,7 @@ const NO_ACCELERATION: &str = "an angular-rate sensor is DC-coupled, in rad/s or
 pub(super) fn channels(
     root: &Section,
     cask: &Cask,
-) -> Result<(Vec<ChannelSpec>, Vec<OtherSpec>), CaskFileError> {
+) -> Result<(Vec<ChannelSpec>, Vec<OtherSpec>), IngestError> {
     let mut channels: Vec<ChannelSpec> = Vec::new();
     let mut others: Vec<OtherSpec> = Vec::new();
     let mut lines: Vec<usize> = Vec::new();
@@ -84,7 +84,7 @@ pub(super) fn channels(
     Ok((channels, others))
 }
 
-fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
+fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), IngestError> {
     let name = table.required_text("name")?;
     let Some(end) = end_or_none(table)? else {
         let words = ["beside end = \"none\"", "only with \"first\" or \"second\"", NO_PART];
@@ -126,7 +126,7 @@ fn without_meaning(
     table: &Section,
     keys: &[&str],
     [beside, goes_with, why]: [&str; 3],
-) -> Result<(), CaskFileError> {
+) -> Result<(), IngestError> {
     keys.iter().find(|key| table.value(key).is_some()).map_or(Ok(()), |key| {
         let problem = format!("{key} has no meaning {beside}");
         Err(table.wrong(table.place(key), problem, goes_with.into(), &format!("delete {key}: {why}")))
@@ -139,7 +139,7 @@ pub(crate) fn is_rate(table: &Section) -> bool {
 }
 
 /// What the table says of an angular-rate sensor; `None` where it is none.
-fn rate(table: &Section) -> Result<Option<RateSpec>, CaskFileError> {
+fn rate(table: &Section) -> Result<Option<RateSpec>, IngestError> {
     if !is_rate(table) || end_or_none(table)?.is_none() {
         return Ok(None);
     }
@@ -159,7 +159,7 @@ fn rate(table: &Section) -> Result<Option<RateSpec>, CaskFileError> {
 }
 
 /// A channel of this name that is no accelerometer.
-fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
+fn other(table: &Section, name: &str) -> Result<ChannelSpec, IngestError> {
     Ok(ChannelSpec {
         source: source(table)?,
         full_scale: table.given("full_scale")?,
@@ -171,7 +171,7 @@ fn other(table: &Section, name: &str) -> Result<ChannelSpec, CaskFileError> {
     })
 }
 
-fn sensor(table: &Section) -> Result<SensorRecord, CaskFileError> {
+fn sensor(table: &Section) -> Result<SensorRecord, IngestError> {
     Ok(SensorRecord {
         serial: table.words("serial")?,
         certificate: table.words("certificate")?,
@@ -180,7 +180,7 @@ fn sensor(table: &Section) -> Result<SensorRecord, CaskFileError> {
 }
 
 /// The end of the cask; `None` of a channel that takes no part in the motion.
-fn end_or_none(table: &Section) -> Result<Option<End>, CaskFileError> {
+fn end_or_none(table: &Section) -> Result<Option<End>, IngestError> {
     let words = [("first", Some(End::First)), ("second", Some(End::Second)), ("none", None)];
     table.word("end", &words, END)?.ok_or_else(|| table.missing("end", END))
 }
@@ -191,12 +191,12 @@ const AXIS: &str = "axis = \"transverse\" (across the cask, in the plane of the 
                     or \"rate\" of an angular-rate sensor";
 
 /// The axis of an accelerometer; `None` where the table has none, or an angular-rate sensor.
-pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, CaskFileError> {
+pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, IngestError> {
     let words = [("transverse", Some(Axis::Transverse)), ("axial", Some(Axis::Axial)), ("rate", None)];
     Ok(table.word("axis", &words, AXIS)?.flatten())
 }
 
-fn source(table: &Section) -> Result<Source, CaskFileError> {
+fn source(table: &Section) -> Result<Source, IngestError> {
     const MEND: &str = "`dropcheck inspect RECORDING` lists what to write: source = \"/topic.field\" (MCAP), \
                         \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
     let Some(value) = table.value("source") else { return Err(table.missing("source", MEND)) };
@@ -216,7 +216,7 @@ fn source(table: &Section) -> Result<Source, CaskFileError> {
     })
 }
 
-fn rows(table: &Section) -> Result<Option<RowsOf>, CaskFileError> {
+fn rows(table: &Section) -> Result<Option<RowsOf>, IngestError> {
     if table.value("where").is_none() {
         return Ok(None);
     }
@@ -229,7 +229,7 @@ fn rows(table: &Section) -> Result<Option<RowsOf>, CaskFileError> {
     Ok(Some(RowsOf { column, is }))
 }
 
-fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
+fn unit(table: &Section) -> Result<Option<Unit>, IngestError> {
     let words = [
         ("g", Unit::G),
         ("m/s^2", Unit::MetrePerSecondSquared),
@@ -265,7 +265,7 @@ fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
     Ok(unit)
 }
 
-pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileError> {
+pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, IngestError> {
     let position = table.required_number("position_m")?;
     if (0.0..=cask.length_m).contains(&position.value) {
         return Ok(position.value);
@@ -278,7 +278,7 @@ pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileEr
     ))
 }
 
-pub(crate) fn polarity(table: &Section) -> Result<f64, CaskFileError> {
+pub(crate) fn polarity(table: &Section) -> Result<f64, IngestError> {
     match table.number("polarity")? {
         None => Ok(1.0),
         Some(polarity) if (polarity.value.abs() - 1.0).abs() < f64::EPSILON => Ok(polarity.value.signum()),
@@ -291,7 +291,7 @@ pub(crate) fn polarity(table: &Section) -> Result<f64, CaskFileError> {
     }
 }
 
-pub(crate) fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
+pub(crate) fn coupling(table: &Section) -> Result<Coupling, IngestError> {
     const MEND: &str =
         "coupling = \"dc\" (the default: reads constant acceleration) or \"ac\" with time_constant_s";
     let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);

@@ -1,8 +1,9 @@
 //! A cask file and what a table of tests states instead of some of its keys to the cask file of one test.
 
-use super::{CASK_FILE, CaskFileError, no_cask_file, of_bytes, read, text};
+use super::{CASK_FILE, no_cask_file, of_bytes, read, text};
 use crate::data::CaskFile;
 use crate::data::keys::{CHANNEL, INNER_TABLES, Key, TABLES, Takes};
+use crate::ingest::IngestError;
 use std::path::Path;
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
@@ -36,8 +37,8 @@ pub fn key_of_column(column: &str) -> Result<Option<&'static Key>, String> {
 /// the changed one.
 ///
 /// # Errors
-/// [`CaskFileError`], of the file or of a value.
-pub fn with_columns(path: &Path, columns: &[(String, String)]) -> Result<CaskFile, CaskFileError> {
+/// [`IngestError`], of the file or of a value.
+pub fn with_columns(path: &Path, columns: &[(String, String)]) -> Result<CaskFile, IngestError> {
     let bytes = read(path, &CASK_FILE)?;
     let photos = Some(path.parent().unwrap_or(Path::new("")));
     if columns.is_empty() {
@@ -105,7 +106,7 @@ mod tests {
                         1\nangle_deg = 5.0\n[[channel]]\nname = \"A1\"\nend = \"first\"\naxis = \
                         \"transverse\"\nsource = \"a\"\nposition_m = 0.1\n";
 
-    fn with(columns: &[(&str, &str)]) -> Result<CaskFile, CaskFileError> {
+    fn with(columns: &[(&str, &str)]) -> Result<CaskFile, IngestError> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), CASK).unwrap();
         let owned: Vec<_> = columns.iter().map(|(c, w)| ((*c).to_owned(), (*w).to_owned())).collect();

@@ -1,13 +1,13 @@
 //! A number of a cask or scene file to itself, or to the diagnostic that names its range.
 
-use super::CaskFileError;
 use super::section::{Placed, Section};
 use super::wording::unit_of;
 use crate::data::keys::{Allowed, Takes};
 use crate::data::shown::short;
+use crate::ingest::IngestError;
 use std::ops::{Range, RangeInclusive};
 
-type Stated = Result<Option<Placed<f64>>, CaskFileError>;
+type Stated = Result<Option<Placed<f64>>, IngestError>;
 
 impl Section<'_> {
     /// A number within what its row allows.
@@ -20,12 +20,12 @@ impl Section<'_> {
     }
 
     /// The same without its place.
-    pub(crate) fn given(&self, key: &str) -> Result<Option<f64>, CaskFileError> {
+    pub(crate) fn given(&self, key: &str) -> Result<Option<f64>, IngestError> {
         Ok(self.number(key)?.map(|number| number.value))
     }
 
     /// Whether the range of `key` holds `number`, of which the refusal says `what`.
-    pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
+    pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), IngestError> {
         let Some(Takes::Number(allowed)) = self.row(key).map(|row| row.takes) else { return Ok(()) };
         let check = format!("check the value{}", unit_of(key));
         let mut expected = allowed.words();
@@ -43,7 +43,7 @@ impl Section<'_> {
     }
 
     /// A number within what its row allows, of a key that must be there.
-    pub(crate) fn required_number(&self, key: &str) -> Result<Placed<f64>, CaskFileError> {
+    pub(crate) fn required_number(&self, key: &str) -> Result<Placed<f64>, IngestError> {
         self.number(key)?.ok_or_else(|| self.without(key))
     }
 
@@ -54,7 +54,7 @@ impl Section<'_> {
         what: &str,
         range: &RangeInclusive<f64>,
         why: &str,
-    ) -> CaskFileError {
+    ) -> IngestError {
         let allowed = format!("{} to {}", short(*range.start()), short(*range.end()));
         self.wrong(span, format!("{what}, outside {allowed}"), allowed, why)
     }

@@ -1,11 +1,11 @@
 //! `[test]`, `[report]`, `[observed]` and `[limits]` to what stands around a report, and to what is held
 //! against the result.
 
-use super::CaskFileError;
 use super::section::{Placed, Section};
 use crate::data::keys::{LIMITS, OBSERVED};
 use crate::data::shown::bare;
 use crate::data::{Letterhead, Limit, LimitState, Observed, Photo, TestRecord};
+use crate::ingest::IngestError;
 use crate::ingest::opened;
 use std::ffi::OsStr;
 use std::io::Read;
@@ -23,7 +23,7 @@ const IMAGES: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "image/png"), (b"\xff
 const HEAD_OF_SVG: u64 = 4096;
 
 /// `[test]`; its photographs are looked for in `folder`, and known by name alone where there is none.
-pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord, CaskFileError> {
+pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord, IngestError> {
     let mut left_bytes = ALL_PHOTOS_MIB << 20;
     let photos = table.texts("photos")?.into_iter().map(|name| picture(table, name, folder, &mut left_bytes));
     Ok(TestRecord {
@@ -44,7 +44,7 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
 }
 
 /// `[report]`; its logo is looked for in `folder`, as the photographs.
-pub(super) fn letterhead(table: &Section, folder: Option<&Path>) -> Result<Letterhead, CaskFileError> {
+pub(super) fn letterhead(table: &Section, folder: Option<&Path>) -> Result<Letterhead, IngestError> {
     let logo = table.text("logo")?.map(|name| picture(table, name, folder, &mut (LARGEST_PHOTO_MIB << 20)));
     Ok(Letterhead { header: table.words("header")?, footer: table.words("footer")?, logo: logo.transpose()? })
 }
@@ -55,7 +55,7 @@ fn picture(
     name: Placed<String>,
     folder: Option<&Path>,
     left_bytes: &mut u64,
-) -> Result<Photo, CaskFileError> {
+) -> Result<Photo, IngestError> {
     let Placed { value: name, span } = name;
     let Some(folder) = folder else { return Ok(Photo { name, media_type: "", bytes: [].into() }) };
     let is_photo = table.row("photos").is_some();
@@ -99,7 +99,7 @@ fn picture(
 }
 
 /// `[observed]`, in the order of its keys.
-pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> {
+pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, IngestError> {
     let observed = |key: &'static str| {
         table.value(key)?;
         let observation = || {
@@ -114,7 +114,7 @@ pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> 
 }
 
 /// `[limits]`, in the order of its keys.
-pub(super) fn limits(table: &Section) -> Result<Vec<Limit>, CaskFileError> {
+pub(super) fn limits(table: &Section) -> Result<Vec<Limit>, IngestError> {
     let limit = |name: &'static str| {
         let bounds = table.table_as(name, "limit")?;
         let (least, most) = (bounds.given("least")?, bounds.given("most")?);

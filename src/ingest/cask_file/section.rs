@@ -1,8 +1,9 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
-use super::fault::{CaskFileError, THE_CASK_FILE, WrongLine};
+use super::fault::{THE_CASK_FILE, WrongLine};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use crate::data::keys::{self, FILL_IN, Key, KeyTable};
+use crate::ingest::IngestError;
 use miette::NamedSource;
 use std::ops::Range;
 use std::path::Path;
@@ -67,7 +68,7 @@ impl<'a> Document<'a> {
     }
 
     /// The file's top level.
-    pub(crate) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
+    pub(crate) fn root(&'a self) -> Result<Section<'a>, IngestError> {
         match DeTable::parse(self.text) {
             Ok(table) => self.section("", table.into_inner(), 0..0),
             Err(error) => Err(self.syntax(&error)),
@@ -79,7 +80,7 @@ impl<'a> Document<'a> {
         name: &'static str,
         table: DeTable<'a>,
         span: Range<usize>,
-    ) -> Result<Section<'a>, CaskFileError> {
+    ) -> Result<Section<'a>, IngestError> {
         let section = Section { document: self, name, table, span };
         if name == OWN_NAMES {
             return Ok(section);
@@ -90,7 +91,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn wrong(&self, span: Range<usize>, message: String, expected: String, mend: String) -> CaskFileError {
+    fn wrong(&self, span: Range<usize>, message: String, expected: String, mend: String) -> IngestError {
         let start = span.start.min(self.text.len());
         let end = span.end.clamp(start, self.text.len());
         let line = line_of(self.text.as_bytes(), start);
@@ -108,7 +109,7 @@ impl<'a> Document<'a> {
     }
 
     /// What the parser of TOML objects to, with the slips that are usual in files written by hand.
-    fn syntax(&self, error: &toml::de::Error) -> CaskFileError {
+    fn syntax(&self, error: &toml::de::Error) -> IngestError {
         let span = error.span().unwrap_or(0..0);
         let start = span.start.min(self.text.len());
         let from = self.text.as_bytes()[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
@@ -185,7 +186,7 @@ impl<'a> Section<'a> {
         message: String,
         expected: String,
         mend: &str,
-    ) -> CaskFileError {
+    ) -> IngestError {
         self.document.wrong(span, message, expected, mend.to_owned())
     }
 
@@ -194,12 +195,12 @@ impl<'a> Section<'a> {
         line_of(self.document.text.as_bytes(), at)
     }
 
-    pub(crate) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
+    pub(crate) fn missing(&self, key: &str, mend: &str) -> IngestError {
         let message = format!("{} has no {key}", self.title());
         self.wrong(self.span(), message, format!("{key} is missing here"), mend)
     }
 
-    fn unknown_key(&self, key: &Spanned<toml::de::DeString<'a>>) -> CaskFileError {
+    fn unknown_key(&self, key: &Spanned<toml::de::DeString<'a>>) -> IngestError {
         let word: &str = key.get_ref();
         let what = if self.name.is_empty() { "table" } else { "key" };
         let known = self.keys();
@@ -224,12 +225,12 @@ impl<'a> Section<'a> {
     }
 
     /// The table `key`; an empty one where there is none.
-    pub(crate) fn table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+    pub(crate) fn table(&self, key: &'static str) -> Result<Section<'a>, IngestError> {
         self.table_as(key, key)
     }
 
     /// The same, whose keys are those of the table `name`.
-    pub(super) fn table_as(&self, key: &str, name: &'static str) -> Result<Section<'a>, CaskFileError> {
+    pub(super) fn table_as(&self, key: &str, name: &'static str) -> Result<Section<'a>, IngestError> {
         let Some(value) = self.value(key) else {
             return Ok(Section { document: self.document, name, table: DeTable::new(), span: 0..0 });
         };
@@ -250,7 +251,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(crate) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+    pub(crate) fn required_table(&self, key: &'static str) -> Result<Section<'a>, IngestError> {
         let table = self.table(key)?;
         if self.value(key).is_some() {
             return Ok(table);
@@ -264,7 +265,7 @@ impl<'a> Section<'a> {
     }
 
     /// The tables `[[key]]`.
-    pub(crate) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
+    pub(crate) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let wrong = |span| {
             self.wrong(
@@ -285,7 +286,7 @@ impl<'a> Section<'a> {
     }
 
     /// A finite number.
-    pub(super) fn finite(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(super) fn finite(&self, key: &str) -> Result<Option<Placed<f64>>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let number = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => {

@@ -55,12 +55,12 @@ position_m = 5.512
 
 const SHORT: &str = "[cask]\nmass_kg = 120\nlength_m = 2.0\n[drop]\nheight_m = 9\nangle_deg = 30\n";
 
-fn of(text: &str) -> Result<CaskFile, CaskFileError> {
+fn of(text: &str) -> Result<CaskFile, IngestError> {
     checked(Path::new("box.toml"), text, None)
 }
 
 /// The whole diagnostic as one line of text: message, label and help.
-fn told(error: &CaskFileError) -> String {
+fn told(error: &IngestError) -> String {
     let labels: Vec<String> =
         error.labels().into_iter().flatten().filter_map(|l| l.label().map(str::to_owned)).collect();
     let help = error.help().map(|help| help.to_string()).unwrap_or_default();

@@ -1,27 +1,27 @@
 //! A text, a date or a list of a cask or scene file to itself, or to the diagnostic that says what it is
 //! instead.
 
-use super::CaskFileError;
 use super::section::{Placed, Section};
 use super::wording::{described, nearest};
 use crate::data::keys::FILL_IN;
+use crate::ingest::IngestError;
 use toml::Spanned;
 use toml::de::DeValue;
 
 impl Section<'_> {
     /// A word or name, not empty.
-    pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+    pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, IngestError> {
         self.text_such_as(key, &self.example(key))
     }
 
     /// The same without its place.
-    pub(crate) fn words(&self, key: &str) -> Result<Option<String>, CaskFileError> {
+    pub(crate) fn words(&self, key: &str) -> Result<Option<String>, IngestError> {
         Ok(self.text(key)?.map(|text| text.value))
     }
 
     /// As [`Section::text`]; `such_as` is what to write in place of what `dropcheck init` leaves to be filled
     /// in.
-    fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+    fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::String(text) if text == FILL_IN => Err(self.unfilled(key, such_as)),
@@ -43,12 +43,12 @@ impl Section<'_> {
         }
     }
 
-    pub(crate) fn required_text(&self, key: &str) -> Result<Placed<String>, CaskFileError> {
+    pub(crate) fn required_text(&self, key: &str) -> Result<Placed<String>, IngestError> {
         self.text(key)?.ok_or_else(|| self.without(key))
     }
 
     /// That a key is missing, with a line such as it could have.
-    pub(super) fn without(&self, key: &str) -> CaskFileError {
+    pub(super) fn without(&self, key: &str) -> IngestError {
         self.missing(key, &format!("add a line such as {}", self.example(key)))
     }
 
@@ -58,14 +58,14 @@ impl Section<'_> {
     }
 
     /// That the form of `dropcheck init` was left as it is here.
-    pub(super) fn unfilled(&self, key: &str, such_as: &str) -> CaskFileError {
+    pub(super) fn unfilled(&self, key: &str, such_as: &str) -> IngestError {
         let message = format!("{key} is \"{FILL_IN}\": what it is only you know");
         let label = "this line is still to be filled in".to_owned();
         self.wrong(self.place(key), message, label, &format!("write what it is, such as {such_as}"))
     }
 
     /// `true` or `false`.
-    pub(crate) fn flag(&self, key: &str, mend: &str) -> Result<Option<bool>, CaskFileError> {
+    pub(crate) fn flag(&self, key: &str, mend: &str) -> Result<Option<bool>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let told = value.get_ref().as_bool().ok_or_else(|| {
             let message = format!("{key} is neither true nor false");
@@ -75,7 +75,7 @@ impl Section<'_> {
     }
 
     /// A date, or a date and a time, as TOML writes it.
-    pub(super) fn date(&self, key: &str) -> Result<Option<String>, CaskFileError> {
+    pub(super) fn date(&self, key: &str) -> Result<Option<String>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::Datetime(when) if when.date.is_some() => Ok(Some(when.to_string())),
@@ -89,7 +89,7 @@ impl Section<'_> {
     }
 
     /// A list of texts; empty where there is none.
-    pub(super) fn texts(&self, key: &str) -> Result<Vec<Placed<String>>, CaskFileError> {
+    pub(super) fn texts(&self, key: &str) -> Result<Vec<Placed<String>>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let text = |item: &Spanned<DeValue>| match item.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => {
@@ -105,7 +105,7 @@ impl Section<'_> {
     }
 
     /// Its names, each with what stands behind it; a text or a number alone.
-    pub(super) fn own_names(&self) -> Result<Vec<(String, String)>, CaskFileError> {
+    pub(super) fn own_names(&self) -> Result<Vec<(String, String)>, IngestError> {
         let named = |(name, value): (&Spanned<toml::de::DeString>, &Spanned<DeValue>)| {
             let words = match value.get_ref() {
                 DeValue::String(text) => text.to_string(),
@@ -128,7 +128,7 @@ impl Section<'_> {
         key: &str,
         words: &[(&str, T)],
         mend: &str,
-    ) -> Result<Option<T>, CaskFileError> {
+    ) -> Result<Option<T>, IngestError> {
         let Some(text) = self.text_such_as(key, mend)? else { return Ok(None) };
         if let Some((_, value)) = words.iter().find(|(word, _)| *word == text.value) {
             return Ok(Some(*value));

@@ -1,8 +1,8 @@
 //! `[tolerance]` and `[corrections]` to how well the stated things are known and what may be corrected.
 
-use super::CaskFileError;
 use super::section::Section;
 use crate::data::{Cask, Corrections, TOLERANCES, Tolerances};
+use crate::ingest::IngestError;
 
 /// A tolerance above this share says that nothing is known, percent.
 const LARGEST_PERCENT: f64 = 100.0;
@@ -12,7 +12,7 @@ pub(super) fn tolerances(
     table: &Section,
     cask: &Cask,
     left_out: &[String],
-) -> Result<Tolerances, CaskFileError> {
+) -> Result<Tolerances, IngestError> {
     let mut stated = Tolerances::of(left_out);
     for tolerance in &TOLERANCES {
         let key = tolerance.key;
@@ -31,7 +31,7 @@ pub(super) fn tolerances(
 }
 
 /// `[corrections]`; what it leaves out is made.
-pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError> {
+pub(super) fn corrections(table: &Section) -> Result<Corrections, IngestError> {
     const UNQUOTED: &str = "without quotes; false leaves the samples as they are in this respect, and the \
                             report says so";
     let mut made = Corrections::default();
