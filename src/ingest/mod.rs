@@ -18,6 +18,7 @@ mod listed;
 mod mcap;
 mod mme;
 mod number;
+mod number_type;
 mod recording_file;
 pub(crate) mod refusal;
 mod statement;

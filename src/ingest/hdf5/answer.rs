@@ -5,6 +5,7 @@
 //! over as bytes: the other process may have been taken over by the file, so nothing in an answer is believed
 //! before [`Dataset::is_sane`] and the reader held it against the file.
 
+use crate::ingest::number_type::NumberType;
 use encoding_rs::WINDOWS_1252;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -219,58 +220,6 @@ pub(super) struct RecordField {
     pub from: usize,
     /// Whether the highest byte stands first.
     pub is_big_endian: bool,
-}
-
-/// A number as Rust has it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum NumberType {
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
-    F32,
-    F64,
-}
-
-impl NumberType {
-    /// An integer of so many bytes; `None` where Rust has none.
-    pub(super) fn integer(bytes: usize, is_signed: bool) -> Option<Self> {
-        Some(match (bytes, is_signed) {
-            (1, true) => Self::I8,
-            (2, true) => Self::I16,
-            (4, true) => Self::I32,
-            (8, true) => Self::I64,
-            (1, false) => Self::U8,
-            (2, false) => Self::U16,
-            (4, false) => Self::U32,
-            (8, false) => Self::U64,
-            _ => return None,
-        })
-    }
-
-    /// Whether it is an integer.
-    pub(super) fn is_whole(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
-    }
-
-    /// Whether it is held as f64.
-    pub(super) fn is_wide(self) -> bool {
-        matches!(self, Self::F64 | Self::I32 | Self::I64 | Self::U32 | Self::U64)
-    }
-
-    /// Bytes of one.
-    pub(super) fn bytes(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
 }
 
 impl Dataset {

@@ -1,8 +1,9 @@
 //! A column, row or field of a dataset with what of it a channel is.
 
-use super::answer::{AttributeValue::Texts, Dataset, NumberType, RecordField, Storage, decoded};
+use super::answer::{AttributeValue::Texts, Dataset, RecordField, Storage, decoded};
 use super::names::{self, AttributeRole::Columns};
 use super::room::File;
+use crate::ingest::number_type::NumberType;
 use std::rc::Rc;
 
 /// One channel's numbers in a file: a dataset, a column or row of one, or a field of its records.

@@ -1,10 +1,11 @@
 //! A source as a cask file names it to the dataset, and the column, row or field of it, that it means.
 
-use super::answer::{Dataset, Filter, NumberType, Object, RecordField, Storage, decoded};
+use super::answer::{Dataset, Filter, Object, RecordField, Storage, decoded};
 use super::column::{DatasetColumn, Place};
 use super::fault::{self, REPACK};
 use super::room::File;
 use crate::ingest::error;
+use crate::ingest::number_type::NumberType;
 use crate::ingest::refusal::Refusal;
 use std::rc::Rc;
 

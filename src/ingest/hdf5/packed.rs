@@ -1,11 +1,12 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the
 //! library works on one thread at a time.
 
-use super::answer::{Dataset, NumberType, Packing, RecordField, Slab, Storage, StoredChunk};
+use super::answer::{Dataset, Packing, RecordField, Slab, Storage, StoredChunk};
 use super::column::{DatasetColumn, Place};
 use super::fault::REPACK;
 use crate::data::Samples;
 use crate::ingest::Limits;
+use crate::ingest::number_type::NumberType;
 use crate::ingest::recording_file::OpenFile;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{RecordingFile, unpack};

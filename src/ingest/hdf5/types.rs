@@ -5,7 +5,8 @@ pub(super) mod of_library;
 #[cfg(any(not(feature = "native"), test, fuzzing))]
 pub(super) mod of_message;
 
-use super::answer::{Bytes, Dataset, NumberType, RecordField, Storage};
+use super::answer::{Bytes, Dataset, RecordField, Storage};
+use crate::ingest::number_type::NumberType;
 
 /// A type with more fields than this is no table of channels; nested types multiply.
 const MOST_FIELDS: usize = 4096;

@@ -6,9 +6,9 @@ use super::plan::{
 };
 use super::ros_type::{RosField, Type};
 use crate::data::Samples;
+use crate::ingest::number_type::NumberType;
 use crate::numerics::single;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
-use re_ros_msg::message_spec::BuiltInType;
 use std::sync::Arc;
 
 /// A serialised message begins with two bytes of representation and two of options.
@@ -133,24 +133,25 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
 
     fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), Undecoded> {
         match kind {
-            Type::Plain(BuiltInType::String(_)) => {
+            Type::Text => {
                 let text = self.text()?;
                 if let Some(slot) = node.and_then(|node| node.slot(Want::Text)) {
                     self.slots.set_text(slot, text);
                 }
                 Ok(())
             }
-            Type::Plain(BuiltInType::WString(_)) => {
+            Type::WideText => {
                 let units = self.reader.read_u32()? as usize;
                 self.reader.read_bytes(units.saturating_mul(self.wide_bytes))?;
                 Ok(())
             }
             Type::Message(fields) => self.message(fields, node),
             Type::Array(element, length) => self.array(element, *length, node),
-            Type::Plain(_) => {
-                let value = self.number(kind)?;
+            Type::Number(number) => {
+                let stored = self.stored(*number)?;
                 if let Some(slot) = node.and_then(|node| node.slot(Want::Numbers)) {
-                    self.slots.set(slot, Value::Number { value, is_narrow: kind.is_narrow() });
+                    let value = number.value(stored, !Order::IS_LITTLE);
+                    self.slots.set(slot, Value::Number { value, is_narrow: !number.is_wide() });
                 }
                 Ok(())
             }
@@ -159,8 +160,10 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
 
     fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
         let slot = node.and_then(|node| node.slot(Want::Stamp));
-        if let (Some(slot), [seconds, nanoseconds], true) = (slot, fields, is_time(fields)) {
-            let (whole, part) = (self.number(&seconds.kind)?, self.number(&nanoseconds.kind)?);
+        if let (Some(slot), [seconds, nanoseconds], true) = (slot, fields, is_time(fields))
+            && let (Type::Number(seconds), Type::Number(nanoseconds)) = (&seconds.kind, &nanoseconds.kind)
+        {
+            let (whole, part) = (self.number(*seconds)?, self.number(*nanoseconds)?);
             #[allow(clippy::cast_possible_truncation, reason = "both were 32-bit integers")]
             self.slots.set(slot, Value::Stamp(unix_ns(whole as i64, part as i64)));
             return Ok(());
@@ -173,7 +176,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             Some(count) => count,
             None => self.reader.read_u32()? as usize,
         };
-        let Some(bytes) = element.bytes() else {
+        let Type::Number(number) = *element else {
             for index in 0..count {
                 let before = self.reader.position();
                 self.value(element, node.and_then(|node| node.element(index)))?;
@@ -190,6 +193,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             }
             return Ok(());
         }
+        let bytes = number.bytes();
         self.reader.align(bytes)?;
         if count.saturating_mul(bytes) > self.reader.remaining() {
             return Err(Undecoded::new(format!(
@@ -201,22 +205,22 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             self.reader.read_bytes(count * bytes)?;
             return Ok(());
         };
-        let samples = self.numbers(element, count)?;
+        let samples = self.numbers(number, count)?;
         self.slots.set(slot, Value::Array(samples));
         self.slots.pick(slot, &node.elements());
         Ok(())
     }
 
-    fn numbers(&mut self, element: &Type, count: usize) -> Result<Samples, Undecoded> {
-        Ok(match element {
-            Type::Plain(BuiltInType::Float32) => Samples::F32(self.reader.read_numeric_vec(count)?),
-            Type::Plain(BuiltInType::Float64) => Samples::F64(self.reader.read_numeric_vec(count)?),
-            Type::Plain(BuiltInType::Int16) => Samples::F32(self.converted::<i16, f32>(count)?),
-            Type::Plain(BuiltInType::Int32) => Samples::F64(self.converted::<i32, f64>(count)?),
+    fn numbers(&mut self, number: NumberType, count: usize) -> Result<Samples, Undecoded> {
+        Ok(match number {
+            NumberType::F32 => Samples::F32(self.reader.read_numeric_vec(count)?),
+            NumberType::F64 => Samples::F64(self.reader.read_numeric_vec(count)?),
+            NumberType::I16 => Samples::F32(self.converted::<i16, f32>(count)?),
+            NumberType::I32 => Samples::F64(self.converted::<i32, f64>(count)?),
             other => {
                 let wide = (0..count).map(|_| self.number(other)).collect::<Result<Vec<f64>, _>>()?;
                 let narrow = || wide.iter().copied().map(single).collect();
-                if other.is_narrow() { Samples::F32(narrow()) } else { Samples::F64(wide) }
+                if other.is_wide() { Samples::F64(wide) } else { Samples::F32(narrow()) }
             }
         })
     }
@@ -226,28 +230,14 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         Ok(numbers.into_iter().map(Into::into).collect())
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn number(&mut self, kind: &Type) -> Result<f64, Undecoded> {
-        let reader = &mut self.reader;
-        let Type::Plain(plain) = kind else { return Err(Undecoded::new("a number is expected")) };
-        let number = match plain {
-            BuiltInType::Bool | BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => {
-                reader.read_u8().map(f64::from)
-            }
-            BuiltInType::Int8 => reader.read_i8().map(f64::from),
-            BuiltInType::UInt16 => reader.read_u16().map(f64::from),
-            BuiltInType::Int16 => reader.read_i16().map(f64::from),
-            BuiltInType::UInt32 => reader.read_u32().map(f64::from),
-            BuiltInType::Int32 => reader.read_i32().map(f64::from),
-            BuiltInType::UInt64 => reader.read_u64().map(|value| value as f64),
-            BuiltInType::Int64 => reader.read_i64().map(|value| value as f64),
-            BuiltInType::Float32 => reader.read_f32().map(f64::from),
-            BuiltInType::Float64 => reader.read_f64(),
-            BuiltInType::String(_) | BuiltInType::WString(_) => {
-                return Err(Undecoded::new("a number is expected"));
-            }
-        };
-        Ok(number?)
+    fn number(&mut self, number: NumberType) -> Result<f64, Undecoded> {
+        Ok(number.value(self.stored(number)?, !Order::IS_LITTLE))
+    }
+
+    /// The bytes of a number.
+    fn stored(&mut self, number: NumberType) -> Result<&'a [u8], Undecoded> {
+        self.reader.align(number.bytes())?;
+        Ok(self.reader.read_bytes(number.bytes())?)
     }
 
     /// A string's bytes without the closing zero.
@@ -273,15 +263,14 @@ fn descend(fields: &[RosField], path: &str, found: &mut Vec<Leaf>) {
         let below = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
         match &field.kind {
             Type::Message(inner) if !is_time(inner) => descend(inner, &below, found),
-            Type::Array(element, _) if element.bytes().is_some_and(|bytes| bytes > 1) => {
+            Type::Array(element, _) if matches!(**element, Type::Number(number) if number.bytes() > 1) => {
                 found.push(Leaf { path: below, is_array: true, is_signal: true });
             }
-            Type::Message(_) | Type::Array(..) | Type::Plain(BuiltInType::WString(_)) => {}
-            Type::Plain(plain) => {
-                use BuiltInType::{Bool, Byte, Char, String, UInt8};
-                let is_signal = !matches!(plain, Bool | Byte | Char | UInt8 | String(_));
-                found.push(Leaf { path: below, is_array: false, is_signal });
+            Type::Message(_) | Type::Array(..) | Type::WideText => {}
+            Type::Number(number) => {
+                found.push(Leaf { path: below, is_array: false, is_signal: *number != NumberType::U8 });
             }
+            Type::Text => found.push(Leaf { path: below, is_array: false, is_signal: false }),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A schema's `ros2msg` text to a tree of types, every named type put in its place.
 
 use super::path::Step;
+use crate::ingest::number_type::NumberType;
 use re_ros_msg::MessageSchema;
 use re_ros_msg::message_spec::{
     ArraySize, BuiltInType, ComplexType, MessageSpecification, Type as Parsed, message_package,
@@ -22,16 +23,18 @@ pub(super) struct RosField {
 }
 
 impl RosField {
-    fn plain(name: &str, kind: BuiltInType) -> Self {
-        Self { name: name.to_owned(), type_name: None, kind: Type::Plain(kind) }
+    fn number(name: &str, number: NumberType) -> Self {
+        Self { name: name.to_owned(), type_name: None, kind: Type::Number(number) }
     }
 }
 
 /// What stands in a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Type {
-    /// A number or text.
-    Plain(BuiltInType),
+    Number(NumberType),
+    Text,
+    /// Text of wide letters.
+    WideText,
     Message(Vec<RosField>),
     /// Of so many elements, or as many as the message says.
     Array(Box<Type>, Option<usize>),
@@ -55,32 +58,32 @@ impl Type {
         }
     }
 
-    /// Bytes of a number, which are its alignment too; `None` for what is no number.
-    pub(super) fn bytes(&self) -> Option<usize> {
-        use BuiltInType::{
-            Bool, Byte, Char, Float32, Float64, Int8, Int16, Int32, Int64, UInt8, UInt16, UInt32, UInt64,
-        };
-        match self {
-            Self::Plain(Bool | Byte | Char | UInt8 | Int8) => Some(1),
-            Self::Plain(UInt16 | Int16) => Some(2),
-            Self::Plain(UInt32 | Int32 | Float32) => Some(4),
-            Self::Plain(UInt64 | Int64 | Float64) => Some(8),
-            _ => None,
-        }
+    /// What needs no other definition.
+    fn plain(kind: &BuiltInType) -> Self {
+        Self::Number(match kind {
+            BuiltInType::Bool | BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => NumberType::U8,
+            BuiltInType::UInt16 => NumberType::U16,
+            BuiltInType::UInt32 => NumberType::U32,
+            BuiltInType::UInt64 => NumberType::U64,
+            BuiltInType::Int8 => NumberType::I8,
+            BuiltInType::Int16 => NumberType::I16,
+            BuiltInType::Int32 => NumberType::I32,
+            BuiltInType::Int64 => NumberType::I64,
+            BuiltInType::Float32 => NumberType::F32,
+            BuiltInType::Float64 => NumberType::F64,
+            BuiltInType::String(_) => return Self::Text,
+            BuiltInType::WString(_) => return Self::WideText,
+        })
     }
 
     /// Whether text of wide letters stands in it.
     pub(super) fn has_wide_text(&self) -> bool {
         match self {
-            Self::Plain(plain) => matches!(plain, BuiltInType::WString(_)),
+            Self::WideText => true,
+            Self::Number(_) | Self::Text => false,
             Self::Message(fields) => fields.iter().any(|field| field.kind.has_wide_text()),
             Self::Array(element, _) => element.has_wide_text(),
         }
-    }
-
-    /// Whether f32 holds every value of it.
-    pub(super) fn is_narrow(&self) -> bool {
-        self.bytes().is_some_and(|bytes| bytes < 4) || *self == Self::Plain(BuiltInType::Float32)
     }
 }
 
@@ -131,7 +134,7 @@ impl Resolver<'_> {
         }
         if fields.is_empty() {
             // A message of constants alone takes one byte on the wire.
-            fields.push(RosField::plain("structure_needs_at_least_one_member", BuiltInType::UInt8));
+            fields.push(RosField::number("structure_needs_at_least_one_member", NumberType::U8));
         }
         Ok(fields)
     }
@@ -144,7 +147,7 @@ impl Resolver<'_> {
         left: &mut usize,
     ) -> Result<Type, String> {
         match ty {
-            Parsed::BuiltIn(plain) => Ok(Type::Plain(plain.clone())),
+            Parsed::BuiltIn(plain) => Ok(Type::plain(plain)),
             Parsed::Array { ty, size } => {
                 let length = if let ArraySize::Fixed(count) = size { Some(*count) } else { None };
                 Ok(Type::Array(Box::new(self.kind(ty, package, depth, left)?), length))
@@ -170,8 +173,8 @@ impl Resolver<'_> {
             Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
-                RosField::plain("sec", BuiltInType::Int32),
-                RosField::plain("nanosec", BuiltInType::UInt32),
+                RosField::number("sec", NumberType::I32),
+                RosField::number("nanosec", NumberType::U32),
             ])),
             None => Err(format!("its schema uses the type {name} and does not define it")),
         }
@@ -190,9 +193,9 @@ mod tests {
         let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
-        assert_eq!(fields[1].kind, Type::Message(vec![RosField::plain("x", BuiltInType::Float32)]));
-        assert_eq!(fields[2].kind, Type::Array(Box::new(Type::Plain(BuiltInType::Float64)), Some(9)));
-        assert_eq!(fields[3].kind, Type::Array(Box::new(Type::Plain(BuiltInType::Int16)), None));
+        assert_eq!(fields[1].kind, Type::Message(vec![RosField::number("x", NumberType::F32)]));
+        assert_eq!(fields[2].kind, Type::Array(Box::new(Type::Number(NumberType::F64)), Some(9)));
+        assert_eq!(fields[3].kind, Type::Array(Box::new(Type::Number(NumberType::I16)), None));
     }
 
     #[test]

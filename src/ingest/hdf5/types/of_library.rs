@@ -1,7 +1,7 @@
 //! A type as the C library tells it.
 
 use super::{Order, TypeField, ValueKind, ValueType};
-use crate::ingest::hdf5::answer::NumberType;
+use crate::ingest::number_type::NumberType;
 use hdf5_metno::Datatype;
 use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};

@@ -1,7 +1,7 @@
 //! A type as it stands in the file (HDF5 file format specification, IV.A.2.d).
 
 use super::{Order, TypeField, ValueKind, ValueType};
-use crate::ingest::hdf5::answer::NumberType;
+use crate::ingest::number_type::NumberType;
 use hdf5_reader::io::Cursor;
 use hdf5_reader::messages::datatype::parse_datatype_description;
 
