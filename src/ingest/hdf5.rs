@@ -161,8 +161,7 @@ impl MemoryTaken<'_> {
             (unpacked_bytes, unpacked, format!("the chunks of {source} and of those before unpack to")),
             (self.held_bytes, limits.samples_bytes(), "the samples of the channels read take".into()),
         ];
-        let passed = bounds.iter().find(|(bytes, most, _)| bytes > most);
-        passed.map_or(Ok(()), |(_, most, what)| Err(limits.refusal(path, what, *most)))
+        bounds.iter().try_for_each(|(bytes, most, what)| limits.hold(path, what, *bytes, *most))
     }
 
     /// Whether there is room for a column that is not kept.

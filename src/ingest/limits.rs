@@ -67,6 +67,20 @@ impl Limits {
         self.memory_bytes / 4096
     }
 
+    /// Holds `what` to so many bytes.
+    ///
+    /// # Errors
+    /// It takes more.
+    pub(super) fn hold(
+        self,
+        path: &Path,
+        what: &str,
+        bytes: u64,
+        most_bytes: u64,
+    ) -> Result<(), IngestError> {
+        if bytes > most_bytes { Err(self.refusal(path, what, most_bytes)) } else { Ok(()) }
+    }
+
     /// The refusal of `what`, which would pass `limit_bytes`.
     pub(super) fn refusal(self, path: &Path, what: &str, limit_bytes: u64) -> IngestError {
         let [limit, memory, more] =

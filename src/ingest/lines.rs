@@ -49,10 +49,7 @@ impl Text {
                 (UTF_16BE, "UTF-16 (big-endian)")
             };
             // It is turned into UTF-8 in memory as a whole.
-            if bytes > limits.part_bytes() {
-                let what = format!("it is a text in {name} and takes");
-                return Err(limits.refusal(path, &what, limits.part_bytes()));
-            }
+            limits.hold(path, &format!("it is a text in {name} and takes"), bytes, limits.part_bytes())?;
             file.read_to_end(&mut head).map_err(io)?;
             let text = coding.decode(&head).0.into_owned();
             return Self::of(Box::new(Cursor::new(text)), bytes, name).map_err(io);

@@ -35,13 +35,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         let channel = index::wanted(path, stated, cask_file.time.as_ref(), &listed)?;
         let mut read = ChannelFile::of(&files, channel, limits)?;
         held_bytes += 8 * read.values.len() as u64;
-        if held_bytes > limits.samples_bytes() {
-            return Err(limits.refusal(
-                path,
-                "the samples of the channels read take",
-                limits.samples_bytes(),
-            ));
-        }
+        limits.hold(path, "the samples of the channels read take", held_bytes, limits.samples_bytes())?;
         let unit = read.unit().map(|line| line.value.clone());
         let is_acceleration = unit.as_deref().and_then(acceleration_unit_m_s2).is_some();
         let other =

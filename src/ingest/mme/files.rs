@@ -96,8 +96,8 @@ impl MmeFiles {
     pub(super) fn bytes(&self, limits: Limits) -> Result<u64, IngestError> {
         let bytes = self.names().map(|name| self.bytes_of(name)).sum();
         let most_bytes = limits.unpacked_bytes(self.recording().length().unwrap_or_default());
-        if !self.zipped.is_empty() && bytes > most_bytes {
-            return Err(limits.refusal(&self.path, "its channels unpack to", most_bytes));
+        if !self.zipped.is_empty() {
+            limits.hold(&self.path, "its channels unpack to", bytes, most_bytes)?;
         }
         Ok(bytes)
     }
@@ -114,9 +114,7 @@ impl MmeFiles {
     pub(super) fn text(&self, name: &str, limits: Limits) -> Result<Text, IngestError> {
         // A line of two bytes becomes a sample of eight.
         let (place, bytes, most_bytes) = (self.path.join(name), self.bytes_of(name), limits.part_bytes() / 4);
-        if bytes > most_bytes {
-            return Err(limits.refusal(&self.path, &format!("{name} takes"), most_bytes));
-        }
+        limits.hold(&self.path, &format!("{name} takes"), bytes, most_bytes)?;
         let source: Box<dyn Read + Send> = match self.zipped.get(name) {
             None => Box::new(opened(&place).map_err(|source| error::io(&place, &source))?),
             Some(entry) => {
