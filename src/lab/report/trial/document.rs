@@ -40,7 +40,6 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
         page: Frame {
             title: HEADING.to_owned(),
             product: "Validation",
-            version: trial.version.to_owned(),
             heading: HEADING.to_owned(),
             about: trial.machine.when.clone(),
             footer: ACCEPTANCE_FOOT,
