@@ -8,7 +8,8 @@ findings! {
 /// A finding about two things that say when samples were taken.
 pub enum ClockFinding of Clock {
     /// A rate was taken, and another one is said.
-    #[error("{0}")]
+    #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write \
+             sample_rate_hz = {rate}", rate = hz(.0.other_hz))]
     Rates(apart: RatesApart) => (Code::Clock, Warning);
     /// Times were taken, and another column or dataset does not bear them out.
     #[error("{0}; the first was taken, and every velocity goes with it")]
@@ -22,9 +23,8 @@ pub enum ClockFinding of Clock {
 /// Two rates that contradict each other, each in Hz with what says it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit")]
-#[error("two rates contradict each other: {} Hz by {taken_by}, {other} Hz by {other_by}; the first was \
-         taken, and every velocity goes with the rate: if the second is right, write sample_rate_hz = \
-         {other}", hz(*.taken_hz), other = hz(*.other_hz))]
+#[error("two rates contradict each other: {} Hz by {taken_by}, {} Hz by \
+         {other_by}", hz(*.taken_hz), hz(*.other_hz))]
 pub struct RatesApart {
     pub taken_hz: f64,
     pub taken_by: String,

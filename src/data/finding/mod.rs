@@ -1,7 +1,7 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
-/// An enum of findings, each with its sentence, and behind the arrow its code and severity; `of` says of which
-/// kind they are where they are not of one channel.
+/// An enum of findings, each with its sentence, and behind the arrow its code and severity. `of` names their
+/// kind where they are not of one channel.
 macro_rules! findings {
     (
         $(#[$of_enum:meta])*
