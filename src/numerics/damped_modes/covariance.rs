@@ -65,7 +65,7 @@ fn uncertainties(series: &[Series], fit: &mut Fit, form: Form, projected: &Proje
         .collect();
     let mut information = DMatrix::zeros(2 * fit.modes.len(), 2 * fit.modes.len());
     for (own, variance) in slopes.iter().zip(&variances) {
-        information += own.left.tr_mul(&own.left) / *variance;
+        information += &own.information / *variance;
     }
     let of_modes = information.cholesky()?.inverse();
     let normals = projected.normals.each();

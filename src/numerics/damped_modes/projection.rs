@@ -16,6 +16,9 @@ const MAX_DAMPING: f64 = 0.3;
 const WEIGHS_ANEW: f64 = 2.0;
 const MOST_ROUNDS: usize = 3;
 
+/// Squares are held this share above what they are, so that rounding leaves a root of their products.
+const ROUNDED: f64 = 1e-12;
+
 /// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or
 /// their driven sum.
 pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
@@ -138,14 +141,14 @@ impl Normal {
         (solution, residual)
     }
 
-    /// Slopes to what the columns explain of them, in units of the coefficients, and what they leave.
-    fn parted(&self, slopes: DMatrix<f64>) -> Slopes {
+    /// What the columns explain of slopes, in units of the coefficients, and what they leave.
+    fn parted(&self, slopes: DMatrix<f64>) -> [DMatrix<f64>; 2] {
         let mut explained = self.cholesky.solve(&self.columns.tr_mul(&slopes));
         let left = slopes - &self.columns * &explained;
         for (mut row, scale) in explained.row_iter_mut().zip(&self.scales) {
             row /= *scale;
         }
-        Slopes { explained, left }
+        [explained, left]
     }
 
     /// Variance of a coefficient where the noise of the values is 1 and the modes are known.
@@ -157,11 +160,14 @@ impl Normal {
     }
 }
 
-/// What a series changes by with ln f and the damping of each mode, a column each: the coefficients that
-/// explain a part of it, and the part that is left.
+/// What a series changes by with ln f and the damping of each mode, a column each.
 pub(super) struct Slopes {
+    /// The coefficients that explain a part of it.
     pub explained: DMatrix<f64>,
-    pub left: DMatrix<f64>,
+    /// Products of what they leave, one column with another …
+    pub information: DMatrix<f64>,
+    /// … and with what the fit leaves of the series.
+    along: DVector<f64>,
 }
 
 /// The linear problem at given modes, solved.
@@ -185,10 +191,15 @@ impl Projected {
         let mut solved = self.solved.iter();
         let sharing = self.normals.groups(series).flat_map(|(normal, sharing)| {
             let fixed = fixed_columns(sharing[0], form.drift);
-            let parted = normal.parted(unit_slopes(sharing[0], &self.modes, form));
-            let own = solved.by_ref().take(sharing.len()).map(|(solution, _)| {
+            let [explained, left] = normal.parted(unit_slopes(sharing[0], &self.modes, form));
+            let products = left.tr_mul(&left);
+            let own = solved.by_ref().take(sharing.len()).map(|(solution, residual)| {
                 let mixing = mixing(&form.amplitudes(&self.modes, &solution.as_slice()[fixed..]));
-                Slopes { explained: &parted.explained * &mixing, left: &parted.left * mixing }
+                Slopes {
+                    explained: &explained * &mixing,
+                    information: mixing.tr_mul(&(&products * &mixing)),
+                    along: mixing.tr_mul(&left.tr_mul(residual)),
+                }
             });
             own.collect::<Vec<_>>()
         });
@@ -235,14 +246,16 @@ pub(super) fn rms(residual: &DVector<f64>) -> f64 {
 }
 
 /// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own
-/// size.
+/// size; as many rows as the products of slopes and residuals need.
 pub(super) struct Projection<'a> {
     series: &'a [Series],
     weights: Vec<f64>,
     form: Form<'a>,
     parameters: DVector<f64>,
-    /// The linear problem at these parameters, once it has been asked for.
+    /// The linear problem at these parameters, once it has been asked for …
     here: OnceCell<Option<Projected>>,
+    /// … and the root of those products, the residuals its last column.
+    root: OnceCell<Option<DMatrix<f64>>>,
 }
 
 fn to_parameters(modes: &[Oscillation]) -> DVector<f64> {
@@ -265,12 +278,44 @@ fn to_modes(parameters: &DVector<f64>) -> Vec<Oscillation> {
 
 impl<'a> Projection<'a> {
     pub fn new(series: &'a [Series], weights: Vec<f64>, form: Form<'a>, modes: &[Oscillation]) -> Self {
-        Self { series, weights, form, parameters: to_parameters(modes), here: OnceCell::new() }
+        let parameters = to_parameters(modes);
+        Self { series, weights, form, parameters, here: OnceCell::new(), root: OnceCell::new() }
     }
 
     fn here(&self) -> Option<&Projected> {
         let project = || Projected::new(self.series, to_modes(&self.parameters), self.form);
         self.here.get_or_init(project).as_ref()
+    }
+
+    /// [J r]ᵀ[J r] = RᵀR, J = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact
+    /// where nothing is left. R stands for [J r], which has as many rows as points.
+    fn root(&self) -> Option<&DMatrix<f64>> {
+        let make = || {
+            let here = self.here()?;
+            let last = self.parameters.len();
+            let mut products = DMatrix::zeros(last + 1, last + 1);
+            let slopes = here.slopes(self.series, self.form);
+            for ((own, (_, left)), weight) in slopes.iter().zip(&here.solved).zip(&self.weights) {
+                let square = weight * weight;
+                let mut among_slopes = products.view_mut((0, 0), (last, last));
+                among_slopes += &own.information * square;
+                let mut beside_residuals = products.view_mut((last, 0), (1, last));
+                beside_residuals -= own.along.transpose() * square;
+                products[(last, last)] += left.norm_squared() * square;
+            }
+            // From the damping to its logit.
+            for (i, mode) in here.modes.iter().enumerate() {
+                let by_logit = mode.damping * (1.0 - mode.damping / MAX_DAMPING);
+                products.column_mut(2 * i + 1).scale_mut(by_logit);
+                products.row_mut(2 * i + 1).scale_mut(by_logit);
+            }
+            for i in 0..=last {
+                products[(i, i)] = products[(i, i)] * (1.0 + ROUNDED) + f64::MIN_POSITIVE;
+            }
+            let root = products.cholesky()?.l().transpose();
+            root.iter().all(|x| x.is_finite()).then_some(root)
+        };
+        self.root.get_or_init(make).as_ref()
     }
 }
 
@@ -282,6 +327,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     fn set_params(&mut self, parameters: &DVector<f64>) {
         self.parameters.copy_from(parameters);
         self.here = OnceCell::new();
+        self.root = OnceCell::new();
     }
 
     fn params(&self) -> DVector<f64> {
@@ -289,31 +335,11 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let left = self.here()?.solved.iter().zip(&self.weights);
-        let all: Vec<f64> =
-            left.flat_map(|((_, left), weight)| left.iter().map(move |r| r * weight)).collect();
-        all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
+        Some(self.root()?.column(self.parameters.len()).into_owned())
     }
 
-    /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is
-    /// left.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let here = self.here()?;
-        let slopes = here.slopes(self.series, self.form);
-        let rows: usize = slopes.iter().map(|s| s.left.nrows()).sum();
-        let mut jacobian = DMatrix::zeros(rows, self.parameters.len());
-        let mut row = 0;
-        for (Slopes { left, .. }, weight) in slopes.into_iter().zip(&self.weights) {
-            let points = left.nrows();
-            jacobian.rows_mut(row, points).copy_from(&(left * -*weight));
-            row += points;
-        }
-        // From the damping to its logit.
-        for (i, mode) in here.modes.iter().enumerate() {
-            let by_logit = mode.damping * (1.0 - mode.damping / MAX_DAMPING);
-            jacobian.column_mut(2 * i + 1).scale_mut(by_logit);
-        }
-        jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
+        Some(self.root()?.columns(0, self.parameters.len()).into_owned())
     }
 }
 
@@ -389,17 +415,25 @@ mod tests {
         let mut problem = Projection::new(&series, vec![1.0, 2.0], form, &MODES);
         let slopes = problem.jacobian().expect("a Jacobian");
         let parameters = problem.params();
+        let mut at = |i: usize, step: f64| {
+            let mut moved = parameters.clone();
+            moved[i] += step;
+            problem.set_params(&moved);
+            let solved = &problem.here().expect("a solution").solved;
+            let weighted = solved
+                .iter()
+                .zip([1.0, 2.0])
+                .flat_map(|((_, left), weight)| left.iter().map(move |r| r * weight));
+            DVector::from_iterator(240, weighted)
+        };
+        let columns: Vec<DVector<f64>> =
+            (0..parameters.len()).map(|i| (at(i, 1e-5) - at(i, -1e-5)) / 2e-5).collect();
+        let differences = DMatrix::from_columns(&columns);
+        let (own, truth) = (slopes.tr_mul(&slopes), differences.tr_mul(&differences));
         for i in 0..parameters.len() {
-            let mut at = |step: f64| {
-                let mut moved = parameters.clone();
-                moved[i] += step;
-                problem.set_params(&moved);
-                problem.residuals().expect("residuals")
-            };
-            let differences = (at(1e-5) - at(-1e-5)) / 2e-5;
             // Kaufman's form is exact where nothing is left; the difference is off by h² of the third
             // derivative, (ω t)³ ~ 1e4.
-            let off = (slopes.column(i) - &differences).amax() / differences.amax();
+            let off = (own.column(i) - truth.column(i)).amax() / truth.column(i).amax();
             assert!(off < 1e-5, "{i}: {off}");
         }
     }
