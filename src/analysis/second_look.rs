@@ -63,7 +63,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         let mut others = recording.clone();
         others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
-        let analysis = analyzed(&others, file, Patience::EachBeginning);
+        let analysis = analyzed(&others, file, Patience::OneBeginning);
         (Doubt::of(&analysis), (*name).to_owned(), analysis)
     };
     let mut tried: Vec<_> = spare.iter().map(without).collect();
