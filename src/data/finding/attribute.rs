@@ -4,6 +4,7 @@ use super::{IssueCode as Code, Severity};
 
 findings! {
 /// A finding about the unit, scale or offset of a dataset.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AttributeFinding of Attribute {
     /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless
     /// where its value does nothing.

@@ -45,6 +45,7 @@ pub enum RotationCause {
 
 findings! {
 /// A finding about one channel; its words follow the name of the channel.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChannelFinding {
     /// Samples stand at a limit; `takes_step` where more velocity is cut off than a result may miss.
     #[error("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more \

@@ -6,6 +6,7 @@ use crate::data::shown::{digits, hz};
 
 findings! {
 /// A finding about two things that say when samples were taken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClockFinding of Clock {
     /// A rate was taken, and another one is said.
     #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write \

@@ -6,6 +6,7 @@ use crate::data::shown::digits;
 
 findings! {
 /// A finding about an MCAP file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum McapFinding of Mcap {
     /// The file ends before its time; the last message kept begins at `kept_s`.
     #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} \

@@ -12,7 +12,6 @@ macro_rules! findings {
         )*}
     ) => {
         $(#[$of_enum])*
-        #[derive(Debug, Clone, PartialEq, thiserror::Error)]
         #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
         pub enum $name {$(
             $(#[$of_variant])*

@@ -31,6 +31,7 @@ pub enum RestCause {
 
 findings! {
 /// A finding about a recording at rest; its words follow the name of the channel where it is about one.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RestFinding of Rest {
     /// The level at rest, and by how much it may be off.
     #[error("reads {reads_g:+.2} g at rest, where {expected_g:+.2} ± {most_g:.1} g is expected: {cause}")]

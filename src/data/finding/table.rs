@@ -4,6 +4,7 @@ use super::{IssueCode as Code, Severity};
 
 findings! {
 /// A finding about the rows of a table.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFinding of Table {
     /// The last line ends in the middle.
     #[error(

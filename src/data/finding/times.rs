@@ -5,6 +5,7 @@ use crate::data::shown::{digits, hz};
 
 findings! {
 /// A finding about the times of rows or blocks, in any format.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TimesFinding of Times {
     /// Times that run backward, first from one to another.
     #[error(
