@@ -89,8 +89,7 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
-    let is_followed = flight.landing.is_some();
-    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask, is_followed));
+    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask, flight.landing.as_ref()));
     found
 }
 

@@ -94,8 +94,8 @@ pub struct FlightFit {
     pub landing: Option<Landing>,
 }
 
-/// A touch of L between its flight and the slap-down.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Touches of L between its flight and the slap-down, as one.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Landing {
     /// When, s from the recording's first sample.
     pub time_s: f64,
@@ -103,6 +103,10 @@ pub struct Landing {
     pub steps_m_s: Vec<f64>,
     /// Standard uncertainty of each, m/s.
     pub u_m_s: Vec<f64>,
+    /// What it changes along the axis, and its standard uncertainty, m/s, where no axial channel shows that.
+    pub along_m_s: Option<[f64; 2]>,
+    /// What the channel nearest L has gained beyond it by the strike of R, m/s.
+    pub last_m_s: f64,
 }
 
 /// A step of all velocities within a flight.

@@ -95,25 +95,76 @@ impl Event {
 /// What a positive standard uncertainty does.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum InputShift {
-    Step { channel: usize, add_m_s: f64 },
-    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
-    Scale { channel: usize, share: f64 },
-    RateScale { sensor: usize, share: f64 },
-    Cross { channel: usize, share: f64, other_m_s: f64 },
-    Place { channel: usize, by_m: f64, gained_rad_s: f64 },
-    Angle { by_rad: f64 },
-    ImpactVelocity { share: f64 },
-    Event { event: Event, by_s: f64 },
-    CentreOfGravity { by_m: f64 },
-    Inertia { share: f64 },
-    Friction { ratio: f64, by: f64 },
-    Clock { share: f64 },
-    Length { by_m: f64 },
-    Section { by_m: f64 },
-    AngularVelocity { by_rad_s: f64 },
-    HorizontalVelocity { by_m_s: f64 },
-    OfSecondImpact { input: usize },
-    Landing { channel: usize, add_m_s: f64 },
+    Step {
+        channel: usize,
+        add_m_s: f64,
+    },
+    BaseStrain {
+        channel: usize,
+        add_m_s: f64,
+        share: f64,
+    },
+    Scale {
+        channel: usize,
+        share: f64,
+    },
+    RateScale {
+        sensor: usize,
+        share: f64,
+    },
+    Cross {
+        channel: usize,
+        share: f64,
+        other_m_s: f64,
+    },
+    Place {
+        channel: usize,
+        by_m: f64,
+        gained_rad_s: f64,
+    },
+    Angle {
+        by_rad: f64,
+    },
+    ImpactVelocity {
+        share: f64,
+    },
+    Event {
+        event: Event,
+        by_s: f64,
+    },
+    CentreOfGravity {
+        by_m: f64,
+    },
+    Inertia {
+        share: f64,
+    },
+    Friction {
+        ratio: f64,
+        by: f64,
+    },
+    Clock {
+        share: f64,
+    },
+    Length {
+        by_m: f64,
+    },
+    Section {
+        by_m: f64,
+    },
+    AngularVelocity {
+        by_rad_s: f64,
+    },
+    HorizontalVelocity {
+        by_m_s: f64,
+    },
+    OfSecondImpact {
+        input: usize,
+    },
+    /// Of a channel, or along the axis where none shows that.
+    Landing {
+        channel: Option<usize>,
+        add_m_s: f64,
+    },
 }
 
 /// The key of the cask file that states an input.
@@ -287,9 +338,10 @@ impl Inputs {
             InputShift::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
             InputShift::OfSecondImpact { input } => self.second_u[input] += by,
             InputShift::Landing { channel, add_m_s } => {
-                if let Some(landing) = &mut self.flight.landing {
-                    landing.steps_m_s[channel] += by * add_m_s;
-                }
+                let Some(landing) = &mut self.flight.landing else { return };
+                let along_m_s = landing.along_m_s.as_mut().map(|[along_m_s, _]| along_m_s);
+                let own = channel.map_or(along_m_s, |channel| landing.steps_m_s.get_mut(channel));
+                own.into_iter().for_each(|step_m_s| *step_m_s += by * add_m_s);
             }
         }
     }
@@ -311,6 +363,10 @@ pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput>
     let mut add = |name: &str, size: String, change: InputShift| {
         all.push(UncertainInput { name: name.into(), size, changes: vec![change] });
     };
+    if let Some([_, add_m_s]) = measured.flight.landing.as_ref().and_then(|landing| landing.along_m_s) {
+        let shift = InputShift::Landing { channel: None, add_m_s };
+        add("step by the touch along the axis", format!("{add_m_s:.3} m/s"), shift);
+    }
     let by_rad = known.angle_rad / 2.0;
     add("drop angle", format!("{:.2}°", by_rad.to_degrees()), InputShift::Angle { by_rad });
     let share = known.impact_velocity / 2.0;
@@ -424,7 +480,8 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion
     add("velocity step", format!("{u_m_s:.3} m/s"), InputShift::Step { channel, add_m_s: u_m_s });
     if let Some(landing) = &measured.flight.landing {
         let add_m_s = landing.u_m_s[channel];
-        add("step by the touch", format!("{add_m_s:.3} m/s"), InputShift::Landing { channel, add_m_s });
+        let shift = InputShift::Landing { channel: Some(channel), add_m_s };
+        add("step by the touch", format!("{add_m_s:.3} m/s"), shift);
     }
     if is_stood_in {
         // Its sensor's errors are those of the channel that it is made of.

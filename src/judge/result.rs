@@ -3,8 +3,8 @@
 use super::turned::turned_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
-    Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
-    SLOWEST_BENDING_HZ, Severity, Signal, planar,
+    Finding, FlightFit, GRAZE_SHARE, IssueCode, Landing, Motion, Observed, ObservedBeside, Plateau,
+    Quantities, SLOWEST_BENDING_HZ, Severity, Signal, planar,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -27,8 +27,8 @@ const PRESSED_PERIODS: f64 = 1.3;
 /// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
 /// to which corner and target are even.
 const TOUCHED_SHARE: f64 = 0.001;
-/// What one more touch may change of the speed behind one that is followed, as a share of its interval: with
-/// all of it one of 30 simulated drops was 2.1 half-widths off.
+/// What one more touch may change of the speed behind those that are followed, as a share of its interval:
+/// with all of it one of 30 simulated drops was 2.1 half-widths off.
 const AGAIN_SHARE: f64 = 0.6;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
@@ -94,42 +94,42 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
 /// prediction with the measured k.
 ///
 /// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
-/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it. Behind a
-/// touch that is followed that height is known.
+/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it. Behind
+/// touches that are followed the channel nearest L shows it.
 pub fn judge_touch(
     motion: &Motion,
     quantities: &Quantities,
     effect_m_s: f64,
     cask: &Cask,
-    is_followed: bool,
+    landing: Option<&Landing>,
 ) -> Option<Finding> {
     let interval_m_s = quantities.speed?.u95;
+    let share = share_of_landing(motion, cask);
+    if let Some(Landing { last_m_s, .. }) = landing {
+        let effect_m_s = share * last_m_s.abs();
+        return (effect_m_s > AGAIN_SHARE * interval_m_s)
+            .then(|| DropFinding::TouchesLast { effect_m_s }.into());
+    }
     let depth_m = -motion.lowest_first_end_m;
-    let even_m = TOUCHED_SHARE * cask.length_m;
-    let settles = depth_m > even_m && effect_m_s > interval_m_s && !is_followed;
-    let by_landing_m_s = landing_effect_m_s(motion, quantities.k.value, cask);
+    let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
+    let by_landing_m_s = share * (1.0 + quantities.k.value) * down_m_s.max(0.0);
     let above_m = motion.last_first_end_m;
-    let u_m = if is_followed { even_m } else { open_height_m(quantities, cask.cog_m) / 2.0 };
-    // Of a cask that has touched once it is likely that it does again.
-    let allowed_m_s = if is_followed { AGAIN_SHARE * interval_m_s } else { interval_m_s };
-    if settles {
+    let u_m = open_height_m(quantities, cask.cog_m) / 2.0;
+    if depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s {
         Some(DropFinding::Settles { depth_m, effect_m_s }.into())
     } else {
-        (above_m < u_m && by_landing_m_s > allowed_m_s)
+        (above_m < u_m && by_landing_m_s > interval_m_s)
             .then(|| DropFinding::MayLand { above_m, u_m, effect_m_s: by_landing_m_s }.into())
     }
 }
 
-/// What L changes of the vertical velocity of R's corner where it lands as R strikes, m/s: nothing where it
-/// goes up   (2), (5)
-fn landing_effect_m_s(motion: &Motion, k: f64, cask: &Cask) -> f64 {
-    let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
+/// What the vertical velocity of R's corner changes by where that of L's does as R strikes   (2), (5)
+fn share_of_landing(motion: &Motion, cask: &Cask) -> f64 {
     let angle = motion.slap_down.map_or(0.0, |at| at.angle_rad).sin_cos();
     let [a_m, behind_m] =
         [cask.cog_m, cask.cog_m - cask.length_m].map(|x| planar::arms_m(angle, x, cask.height_m).0);
     let square_m2 = cask.inertia_kg_m2 / cask.mass_kg;
-    let of_first = (1.0 + k) * down_m_s.max(0.0);
-    of_first * ((square_m2 + a_m * behind_m) / (square_m2 + a_m * a_m)).abs()
+    ((square_m2 + a_m * behind_m) / (square_m2 + a_m * a_m)).abs()
 }
 
 /// What rebound and angle may be off lets L sink by as much more, m: a 95 % half-width.

@@ -1,96 +1,213 @@
-//! A flight in which L touches the target once more, to what that changes the velocity of each channel by.
+//! A flight in which L touches the target again, to what that changes the velocity of each channel by.
 
-use super::flight::centrifugal_m_s2;
+use super::flight::{centrifugal_m_s2, oscillation, series};
 use super::histories::AlongAxis;
 use super::refit::with_modes;
-use super::{Integrated, Window};
+use super::{BEFORE_SLAP_DOWN_S, Integrated, Window};
 use crate::data::{Axis, Cask, End, FlightFit, Landing, Plateau, Signal};
+use crate::numerics::as_f64;
+use crate::numerics::damped_modes::{
+    Drive, Fit, Form, Oscillation, Series, SeriesFit, describe, uniform_ringing,
+};
 use crate::numerics::reduce::{block_means, block_of, peak};
 
 /// The touch is sought this long before R strikes, s, and in means over this rate, Hz: a touch lasts from a
 /// tenth of a millisecond to some.
-const SOUGHT_S: f64 = 0.12;
+const SOUGHT_S: [f64; 2] = [0.12, 0.25];
 const RATE_HZ: f64 = 10_000.0;
 /// A touch has this many times the largest mean before it …
 const STANDS_OUT: f64 = 3.0;
 /// … begins with this share of it …
 const BEGINS: f64 = 0.25;
-/// … and lasts one of these times, s: the first behind which modes ring on alone.
-const LASTS_S: [f64; 7] = [5e-4, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3];
+/// … and lasts one of these times, s: the first behind which modes ring on alone. Further touches may follow
+/// it, so that they end at one of its multiples.
+const LASTS_S: [f64; 6] = [5e-4, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3];
+const ENDS_S: f64 = 2e-3;
 /// What is left out beside it, and before R strikes, s.
 const CLEAR_S: f64 = 1e-3;
+/// Just before R strikes, s: between these times the channel nearest L is read once more.
+const JUST_BEFORE_S: [f64; 2] = [4e-4, 1e-4];
 /// Least stretch behind it, s and in periods of the slowest mode: what the touch has struck anew is told from
 /// a step then.
 const LEAST_S: f64 = 6e-3;
 const LEAST_PERIODS: f64 = 0.4;
+/// The same where the touch gives the modes their phases, s.
+const LEAST_STRUCK_S: f64 = 1.5e-3;
+/// The flight before it is read over this long, s.
+const BEFORE_S: f64 = 0.12;
 /// A stretch that plateau and modes explain leaves less, m/s.
 const LEFT_M_S: f64 = 0.02;
 /// What a push at L turns the cask by is known to this share: twice what contents leave open of the inertia.
 const TURNED: f64 = 0.2;
+/// Without an axial channel that push tells what changes along the axis; it leans no more than this from the
+/// normal, as tan.
+const MOST_LEAN: f64 = 1.5;
+/// A step known to less than this share, as a standard uncertainty, is not.
+const MOST_U: f64 = 0.1;
 /// Standard uncertainty of a step beside that of its two plateaus, as a share of it: room for what modes do
 /// that the flight no longer shows. Of 17 simulated touches none moved the speed by 1 % of its step.
 const SHARE: f64 = 0.03;
 
-/// The one touch that `flight` holds near its end; `None` where there is none, or more than one, where the
-/// stretch behind it is too short, where no axial channel tells what it changes along the axis, or where a
-/// push at L would turn the cask otherwise.
+/// The touches that `flight` holds near its end, as one; `None` where there is none, where the stretch behind
+/// them is too short, or where a push at L would turn the cask otherwise.
 #[must_use]
 pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cask: &Cask) -> Option<Landing> {
-    let (signals, cog_m) = (&integrated.signals, cask.cog_m);
-    if signals.iter().all(|s| s.axis == Axis::Transverse) || !cask.is_body {
-        return None;
-    }
-    let sought_s = (window.to_s - SOUGHT_S).max(flight.from_s)..window.to_s - CLEAR_S;
-    let from_s = touch_s(struck_first(signals)?, &sought_s)?;
-    let period_s = flight.modes.iter().map(|m| 1.0 / m.frequency_hz).fold(0.0, f64::max);
-    let stretch = |from_s: f64, to_s: f64, drift: bool, angular_velocity_rad_s: f64| {
-        let window = Window { from_s, to_s, drift, angular_velocity_rad_s };
-        let fit =
-            with_modes(integrated, &FlightFit { from_s, to_s, drift, ..flight.clone() }, &window, cog_m)?;
+    let signals = &integrated.signals;
+    let nearest = struck_first(signals).filter(|_| cask.is_body)?;
+    let to_s = window.to_s - CLEAR_S;
+    let of_last = |sought_s: f64| {
+        let from_s = touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s))?;
+        let until_s = from_s - CLEAR_S;
+        let since_s = (until_s - BEFORE_S).max(flight.from_s);
+        let over = FlightFit { from_s: since_s, to_s: until_s, drift: true, ..flight.clone() };
+        let before = with_modes(integrated, &over, &Window { drift: true, ..*window }, cask.cog_m)?;
         let is_explained = |(s, p): (&Signal, &Plateau)| s.axis == Axis::Axial || p.residual_m_s < LEFT_M_S;
-        signals.iter().zip(&fit.plateaus).all(is_explained).then_some(fit.plateaus)
+        let touched = Touched { integrated, cask, window, before, nearest, from_s, to_s };
+        let is_before = signals.iter().zip(&touched.before.plateaus).all(is_explained);
+        (until_s - since_s > LEAST_S && is_before).then(|| touched.read())?
     };
-    let turning_rad_s = window.angular_velocity_rad_s;
-    let before_s = (from_s - CLEAR_S - SOUGHT_S).max(flight.from_s);
-    if from_s - before_s < LEAST_S {
-        return None;
-    }
-    let before = stretch(before_s, from_s - CLEAR_S, true, turning_rad_s)?;
-    let latest_s = sought_s.end - LEAST_S.max(LEAST_PERIODS * period_s);
-    let is_over = |behind_s: &f64| stretch(*behind_s, sought_s.end, false, turning_rad_s).is_some();
-    let behind_s =
-        LASTS_S.map(|lasts_s| from_s + lasts_s).into_iter().filter(|s| *s < latest_s).find(is_over)?;
-    let line = AlongAxis::through(signals, cog_m)?;
-    let mut landing =
-        Landing { time_s: f64::midpoint(from_s, behind_s), steps_m_s: Vec::new(), u_m_s: Vec::new() };
-    // Behind it the cask turns faster, and axial channels read more for it.
-    let mut gained_rad_s = 0.0;
-    for _ in 0..2 {
-        let after = stretch(behind_s, sought_s.end, false, turning_rad_s + gained_rad_s)?;
-        let since_s = behind_s - before_s;
-        let step_m_s = |((signal, before), after): ((&Signal, &Plateau), &Plateau)| {
-            let gains_m_s2 = before.zero_shift_m_s2 + centrifugal_m_s2(signal, window, cog_m);
-            after.velocity_step_m_s - before.velocity_step_m_s - gains_m_s2 * since_s
-        };
-        landing.steps_m_s = signals.iter().zip(&before).zip(&after).map(step_m_s).collect();
-        let u_m_s = |((after, before), step): ((&Plateau, &Plateau), &f64)| {
-            let u_before_m_s = before.u_m_s.hypot(before.u_zero_shift_m_s2 * since_s);
-            after.u_m_s.hypot(u_before_m_s).hypot(SHARE * step)
-        };
-        landing.u_m_s = after.iter().zip(&before).zip(&landing.steps_m_s).map(u_m_s).collect();
-        gained_rad_s = -line.changed(&landing.steps_m_s)[1];
-    }
-    let [across_m_s, turned_rad_s, along_m_s] = line.changed(&landing.steps_m_s);
-    // Θ ΔΩ = m (h/2 Δv_ξ − a Δv_η)   (32)
-    let turning_m2_s = cask.height_m / 2.0 * along_m_s - cog_m * across_m_s;
-    let by_push_rad_s = turning_m2_s * cask.mass_kg / cask.inertia_kg_m2;
-    ((turned_rad_s - by_push_rad_s).abs() < TURNED * turned_rad_s.abs()).then_some(landing)
+    SOUGHT_S.into_iter().find_map(of_last)
 }
 
-/// The transverse channel nearest to L.
-fn struck_first(signals: &[Signal]) -> Option<&Signal> {
-    let of_first = signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == End::First);
-    of_first.min_by(|a, b| a.position_m.total_cmp(&b.position_m))
+/// A flight with touches near its end.
+struct Touched<'a> {
+    integrated: &'a Integrated<'a>,
+    cask: &'a Cask,
+    window: &'a Window,
+    /// The stretch before them.
+    before: FlightFit,
+    /// The channel nearest to L.
+    nearest: usize,
+    /// When they begin, s.
+    from_s: f64,
+    /// Where the flight ends that is read, s.
+    to_s: f64,
+}
+
+impl Touched<'_> {
+    fn read(&self) -> Option<Landing> {
+        let period_s = self.before.modes.iter().map(|m| 1.0 / m.frequency_hz).fold(0.0, f64::max);
+        let ends_s = |latest_s: f64| {
+            let several = (4..).map(|i| f64::from(i) * ENDS_S);
+            let ends_s = LASTS_S.into_iter().chain(several).map(|lasts_s| self.from_s + lasts_s);
+            ends_s.take_while(move |end_s| *end_s < latest_s)
+        };
+        // The modes ring on as they like; where R strikes too soon for that, as the touch has struck them.
+        let free = |end_s: f64| Some((end_s, None, self.behind(end_s, None, 0.0)?));
+        let struck = |end_s: f64| {
+            let drive = self.drive(end_s)?;
+            let fit = self.behind(end_s, Some(&drive), 0.0)?;
+            Some((end_s, Some(drive), fit))
+        };
+        let free_s = self.to_s - LEAST_S.max(LEAST_PERIODS * period_s);
+        let found = ends_s(free_s).find_map(free);
+        let (behind_s, drive, fit) = found.or_else(|| ends_s(self.to_s - LEAST_STRUCK_S).find_map(struck))?;
+        let line = AlongAxis::through(&self.integrated.signals, self.cask.cog_m)?;
+        let steps_m_s = |fit: &Fit| fit.series.iter().map(|own| own.plateau).collect::<Vec<_>>();
+        // Behind it the cask turns faster, and axial channels read more for it.
+        let gained_rad_s = -line.changed(&steps_m_s(&fit))[1];
+        let fit = self.behind(behind_s, drive.as_ref(), gained_rad_s)?;
+        let steps_m_s = steps_m_s(&fit);
+        let since_s = behind_s - self.before.from_s;
+        let u_m_s = |(own, before): (&SeriesFit, &Plateau)| {
+            let u_before_m_s = before.u_m_s.hypot(before.u_zero_shift_m_s2 * since_s);
+            own.u_plateau.hypot(u_before_m_s).hypot(SHARE * own.plateau)
+        };
+        let u_m_s: Vec<f64> = fit.series.iter().zip(&self.before.plateaus).map(u_m_s).collect();
+        let of_nearest_m_s = steps_m_s[self.nearest];
+        if u_m_s[self.nearest] > MOST_U * of_nearest_m_s.abs() {
+            return None;
+        }
+        // As one step it comes when the mean over it is right.
+        let share = (self.mean_m_s([self.from_s, behind_s], 0.0)? / of_nearest_m_s).clamp(0.0, 1.0);
+        let time_s = behind_s - share * (behind_s - self.from_s);
+        let late_s = JUST_BEFORE_S.map(|before_s| self.window.to_s + BEFORE_SLAP_DOWN_S - before_s);
+        let rings = |(mode, (a, b)): (&Oscillation, &(f64, f64))| {
+            let z = uniform_ringing(*mode, f64::midpoint(late_s[0], late_s[1]) - behind_s, 0.0).next();
+            z.map_or(0.0, |z| a * z.re + b * z.im)
+        };
+        let ringing_m_s: f64 = fit.modes.iter().zip(&fit.series[self.nearest].amplitudes).map(rings).sum();
+        let last_m_s = self.mean_m_s(late_s, gained_rad_s)? - of_nearest_m_s - ringing_m_s;
+        let changed = line.changed(&steps_m_s);
+        self.pushed(Landing { time_s, steps_m_s, u_m_s, along_m_s: None, last_m_s }, changed)
+    }
+
+    /// The touch, where what it changes, across the axis, of the rotation and along the axis, is what a push
+    /// at L does   (32)
+    fn pushed(&self, touch: Landing, [across_m_s, turned_rad_s, along_m_s]: [f64; 3]) -> Option<Landing> {
+        let cask = self.cask;
+        // Θ ΔΩ = m (h/2 Δv_ξ − a Δv_η)
+        let (square_m2, half_m) = (cask.inertia_kg_m2 / cask.mass_kg, cask.height_m / 2.0);
+        if self.integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
+            let by_push_rad_s = (half_m * along_m_s - cask.cog_m * across_m_s) / square_m2;
+            return ((turned_rad_s - by_push_rad_s).abs() < TURNED * turned_rad_s.abs()).then_some(touch);
+        }
+        let along_m_s = (square_m2 * turned_rad_s + cask.cog_m * across_m_s) / half_m;
+        let u_m_s = TURNED / 2.0 * (square_m2 * turned_rad_s / half_m).abs();
+        // R strikes with the axis along the target.
+        let to_turn_rad = self.window.angular_velocity_rad_s * (self.window.to_s - touch.time_s);
+        let (sin, cos) = to_turn_rad.sin_cos();
+        let (normal_m_s, friction_m_s) =
+            (across_m_s * cos + along_m_s * sin, along_m_s * cos - across_m_s * sin);
+        let is_push = friction_m_s.abs() < MOST_LEAN * normal_m_s;
+        is_push.then_some(Landing { along_m_s: Some([along_m_s, u_m_s]), ..touch })
+    }
+
+    /// What plateau and modes say of the changes from a time on, where they explain them.
+    fn behind(&self, from_s: f64, drive: Option<&Drive>, gained_rad_s: f64) -> Option<Fit> {
+        let changes = self.changes([from_s, self.to_s], gained_rad_s)?;
+        let modes = self.before.modes.iter().map(oscillation).collect();
+        let fit = describe(&changes, modes, Form { drift: false, drive })?;
+        let is_explained = |(s, own): (&Signal, &SeriesFit)| s.axis == Axis::Axial || own.residual < LEFT_M_S;
+        self.integrated.signals.iter().zip(&fit.series).all(is_explained).then_some(fit)
+    }
+
+    /// The touches as the channel nearest to L shows them, for modes that ring from a time on.
+    fn drive(&self, end_s: f64) -> Option<Drive> {
+        let changes = self.changes([self.from_s, end_s], 0.0)?;
+        let own = &changes[self.nearest];
+        let impulses: Vec<f64> = own.value.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let step_s = (end_s - self.from_s) / as_f64(impulses.len().max(1));
+        Some(Drive { age_s: end_s - self.from_s, step_s, impulses })
+    }
+
+    /// Mean change of the velocity of the channel nearest to L, m/s.
+    fn mean_m_s(&self, between_s: [f64; 2], gained_rad_s: f64) -> Option<f64> {
+        let own = &self.changes(between_s, gained_rad_s)?[self.nearest].value;
+        (!own.is_empty()).then(|| own.iter().sum::<f64>() / as_f64(own.len()))
+    }
+
+    /// Each velocity between two times, s, less what the stretch before the touches leads to; `None` where
+    /// samples are lost.
+    fn changes(&self, [from_s, to_s]: [f64; 2], gained_rad_s: f64) -> Option<Vec<Series>> {
+        let Self { integrated, window, before, .. } = self;
+        let cog_m = self.cask.cog_m;
+        let angular_velocity_rad_s = window.angular_velocity_rad_s + gained_rad_s;
+        let over = Window { from_s, to_s, drift: false, angular_velocity_rad_s };
+        let mut all = series(integrated, &over, cog_m);
+        let since_s = from_s - before.from_s;
+        for ((own, signal), plateau) in all.iter_mut().zip(&*integrated.signals).zip(&before.plateaus) {
+            // The centrifugal force behind `from_s` is taken off already.
+            let centrifugal_m_s = centrifugal_m_s2(signal, window, cog_m) * since_s;
+            let first_s = *own.time_s.first()?;
+            for (value, time_s) in own.value.iter_mut().zip(&own.time_s) {
+                let shifted_m_s = plateau.zero_shift_m_s2 * (since_s + time_s);
+                *value -= plateau.velocity_step_m_s + centrifugal_m_s + shifted_m_s;
+            }
+            for (mode, (a, b)) in before.modes.iter().zip(&plateau.ringing_m_s) {
+                let ringing = uniform_ringing(oscillation(mode), since_s + first_s, 2.0 * first_s);
+                own.value.iter_mut().zip(ringing).for_each(|(value, z)| *value -= a * z.re + b * z.im);
+            }
+        }
+        all.iter().all(|own| own.steps_s.is_empty()).then_some(all)
+    }
+}
+
+/// The place of the transverse channel nearest to L.
+fn struck_first(signals: &[Signal]) -> Option<usize> {
+    let is_of_first = |s: &Signal| s.axis == Axis::Transverse && s.end == End::First;
+    let of_first = signals.iter().enumerate().filter(|(_, s)| is_of_first(s));
+    of_first.min_by(|a, b| a.1.position_m.total_cmp(&b.1.position_m)).map(|(place, _)| place)
 }
 
 /// When the pulse begins that stands out of a stretch, s.

@@ -170,8 +170,10 @@ fn fly_on(
         return fly(setup, state, time_s);
     };
     let before = fly(setup, state, touched_s);
+    let [across_m_s, turned_rad_s, along_m_s] = line.changed(&landing.steps_m_s);
+    let along_m_s = landing.along_m_s.map_or(along_m_s, |[along_m_s, _]| along_m_s);
     let [across_m_s, turned_rad_s, along_m_s] =
-        line.changed(&landing.steps_m_s).map(|change| change * setup.second_s);
+        [across_m_s, turned_rad_s, along_m_s].map(|change| change * setup.second_s);
     let (sin, cos) = before.angle_rad.sin_cos();
     let behind = MotionState {
         angular_velocity_rad_s: before.angular_velocity_rad_s - turned_rad_s,
