@@ -89,7 +89,9 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
-    found.extend(judge::judge_touch(motion, quantities, touched_m_s, &file.cask, flight.landing.as_ref()));
+    let is_followed = flight.landing.is_some();
+    let left_out = || judge::judge_touch(motion, quantities, touched_m_s, &file.cask);
+    found.extend((!is_followed).then(left_out).flatten());
     found
 }
 

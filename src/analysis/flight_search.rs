@@ -55,6 +55,9 @@ const STAGE: f64 = 0.25;
 /// … and over so long after its peak, s.
 const STAGE_FADES_S: f64 = 1e-3;
 
+/// Touches of L are followed to a slap-down that is known to this, s: to half of what is left out before it.
+const STRUCK_U_S: f64 = 5e-4;
+
 /// The search starts this long before first contact, s: half the width of the moving mean by which a
 /// slap-down is found.
 const BEFORE_S: f64 = 0.05;
@@ -121,7 +124,7 @@ pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Opt
         let is_off =
             flight.plateaus.iter().any(|p| p.late_mismatch_m_s.is_some_and(|off_m_s| off_m_s != 0.0));
         let landing = || motion::landing(flight, integrated, window, &file.cask);
-        flight.landing = found.slap_down.filter(|_| is_off).and_then(|_| landing());
+        flight.landing = found.slap_down.filter(|at| is_off && at.u_s < STRUCK_U_S).and_then(|_| landing());
         if flight.landing.is_some() {
             // What it changes is known.
             flight.plateaus.iter_mut().for_each(|p| p.late_mismatch_m_s = None);

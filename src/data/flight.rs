@@ -105,8 +105,6 @@ pub struct Landing {
     pub u_m_s: Vec<f64>,
     /// What it changes along the axis, and its standard uncertainty, m/s, where no axial channel shows that.
     pub along_m_s: Option<[f64; 2]>,
-    /// What the channel nearest L has gained beyond it by the strike of R, m/s.
-    pub last_m_s: f64,
 }
 
 /// A step of all velocities within a flight.

@@ -3,8 +3,8 @@
 use super::turned::turned_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
-    Finding, FlightFit, GRAZE_SHARE, IssueCode, Landing, Motion, Observed, ObservedBeside, Plateau,
-    Quantities, SLOWEST_BENDING_HZ, Severity, Signal, planar,
+    Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
+    SLOWEST_BENDING_HZ, Severity, Signal, planar,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -27,9 +27,6 @@ const PRESSED_PERIODS: f64 = 1.3;
 /// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
 /// to which corner and target are even.
 const TOUCHED_SHARE: f64 = 0.001;
-/// What one more touch may change of the speed behind those that are followed, as a share of its interval:
-/// with all of it one of 30 simulated drops was 2.1 half-widths off.
-const AGAIN_SHARE: f64 = 0.6;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
 /// The same limit as a share of v0 for a flight too short to tell its modes apart: three modes may fit a
@@ -94,25 +91,17 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
 /// prediction with the measured k.
 ///
 /// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
-/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it. Behind
-/// touches that are followed the channel nearest L shows it.
+/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
 pub fn judge_touch(
     motion: &Motion,
     quantities: &Quantities,
     effect_m_s: f64,
     cask: &Cask,
-    landing: Option<&Landing>,
 ) -> Option<Finding> {
     let interval_m_s = quantities.speed?.u95;
-    let share = share_of_landing(motion, cask);
-    if let Some(Landing { last_m_s, .. }) = landing {
-        let effect_m_s = share * last_m_s.abs();
-        return (effect_m_s > AGAIN_SHARE * interval_m_s)
-            .then(|| DropFinding::TouchesLast { effect_m_s }.into());
-    }
     let depth_m = -motion.lowest_first_end_m;
     let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
-    let by_landing_m_s = share * (1.0 + quantities.k.value) * down_m_s.max(0.0);
+    let by_landing_m_s = share_of_landing(motion, cask) * (1.0 + quantities.k.value) * down_m_s.max(0.0);
     let above_m = motion.last_first_end_m;
     let u_m = open_height_m(quantities, cask.cog_m) / 2.0;
     if depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s {

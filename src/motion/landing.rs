@@ -59,8 +59,8 @@ pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cas
         let from_s = touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s))?;
         let until_s = from_s - CLEAR_S;
         let since_s = (until_s - BEFORE_S).max(flight.from_s);
-        let over = FlightFit { from_s: since_s, to_s: until_s, drift: true, ..flight.clone() };
-        let before = with_modes(integrated, &over, &Window { drift: true, ..*window }, cask.cog_m)?;
+        let over = FlightFit { from_s: since_s, to_s: until_s, ..flight.clone() };
+        let before = with_modes(integrated, &over, window, cask.cog_m)?;
         let is_explained = |(s, p): (&Signal, &Plateau)| s.axis == Axis::Axial || p.residual_m_s < LEFT_M_S;
         let touched = Touched { integrated, cask, window, before, nearest, from_s, to_s };
         let is_before = signals.iter().zip(&touched.before.plateaus).all(is_explained);
@@ -107,29 +107,33 @@ impl Touched<'_> {
         // Behind it the cask turns faster, and axial channels read more for it.
         let gained_rad_s = -line.changed(&steps_m_s(&fit))[1];
         let fit = self.behind(behind_s, drive.as_ref(), gained_rad_s)?;
-        let steps_m_s = steps_m_s(&fit);
-        let since_s = behind_s - self.before.from_s;
-        let u_m_s = |(own, before): (&SeriesFit, &Plateau)| {
-            let u_before_m_s = before.u_m_s.hypot(before.u_zero_shift_m_s2 * since_s);
-            own.u_plateau.hypot(u_before_m_s).hypot(SHARE * own.plateau)
-        };
-        let u_m_s: Vec<f64> = fit.series.iter().zip(&self.before.plateaus).map(u_m_s).collect();
+        let mut steps_m_s = steps_m_s(&fit);
         let of_nearest_m_s = steps_m_s[self.nearest];
-        if u_m_s[self.nearest] > MOST_U * of_nearest_m_s.abs() {
-            return None;
-        }
         // As one step it comes when the mean over it is right.
         let share = (self.mean_m_s([self.from_s, behind_s], 0.0)? / of_nearest_m_s).clamp(0.0, 1.0);
-        let time_s = behind_s - share * (behind_s - self.from_s);
-        let late_s = JUST_BEFORE_S.map(|before_s| self.window.to_s + BEFORE_SLAP_DOWN_S - before_s);
+        let once_s = behind_s - share * (behind_s - self.from_s);
+        let strike_s = self.window.to_s + BEFORE_SLAP_DOWN_S;
+        let late_s = JUST_BEFORE_S.map(|before_s| strike_s - before_s);
         let rings = |(mode, (a, b)): (&Oscillation, &(f64, f64))| {
             let z = uniform_ringing(*mode, f64::midpoint(late_s[0], late_s[1]) - behind_s, 0.0).next();
             z.map_or(0.0, |z| a * z.re + b * z.im)
         };
         let ringing_m_s: f64 = fit.modes.iter().zip(&fit.series[self.nearest].amplitudes).map(rings).sum();
         let last_m_s = self.mean_m_s(late_s, gained_rad_s)? - of_nearest_m_s - ringing_m_s;
+        // A push that goes on into the strike is one more of the same kind, known to half of it.
+        let more = (last_m_s / of_nearest_m_s).max(0.0);
+        steps_m_s.iter_mut().for_each(|step_m_s| *step_m_s *= 1.0 + more);
+        let time_s = (once_s + more * strike_s) / (1.0 + more);
+        let since_s = behind_s - self.before.from_s;
+        let u_m_s = |(own, before): (&SeriesFit, &Plateau)| {
+            let u_before_m_s = before.u_m_s.hypot(before.u_zero_shift_m_s2 * since_s);
+            own.u_plateau.hypot(u_before_m_s).hypot(SHARE.hypot(more / 2.0) * own.plateau)
+        };
+        let u_m_s: Vec<f64> = fit.series.iter().zip(&self.before.plateaus).map(u_m_s).collect();
         let changed = line.changed(&steps_m_s);
-        self.pushed(Landing { time_s, steps_m_s, u_m_s, along_m_s: None, last_m_s }, changed)
+        let is_known = u_m_s[self.nearest] < MOST_U * of_nearest_m_s.abs();
+        let touch = Landing { time_s, steps_m_s, u_m_s, along_m_s: None };
+        is_known.then(|| self.pushed(touch, changed))?
     }
 
     /// The touch, where what it changes, across the axis, of the rotation and along the axis, is what a push

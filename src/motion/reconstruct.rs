@@ -34,17 +34,14 @@ pub fn reconstruct(
     });
     let height_m = |state: &MotionState| corner_height_m(setup, state, setup.cog_m);
     let left_m = height_m(&separation).min(0.0);
-    // The place of a touch on the way is the target's.
-    let touched = fit.landing.as_ref().map(|landing| {
-        let time_s = touched_s(integrated, setup, landing);
-        (time_s, height_m(&fly(setup, &separation, time_s)))
-    });
     for state in flight {
         record(&state);
-        let behind = touched.filter(|(time_s, _)| *time_s < state.time_s);
-        let above_m = height_m(&state) - behind.map_or(left_m, |(_, touched_m)| touched_m);
-        motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
-        motion.last_first_end_m = above_m;
+        // Touches on the way that are followed as one hold L up at other times.
+        if fit.landing.is_none() {
+            let above_m = height_m(&state) - left_m;
+            motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
+            motion.last_first_end_m = above_m;
+        }
     }
     motion.curve = uniform(&curve);
     Some(motion)

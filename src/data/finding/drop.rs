@@ -95,10 +95,6 @@ pub enum DropFinding of Drop {
              {:.0} ± {:.0} mm above where it left, and a landing before that changes the slap-down speed by \
              up to {effect_m_s:.2} m/s", 1e3 * .above_m, 2e3 * .u_m)]
     MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning);
-    /// L touches once more as R strikes.
-    #[error("the first end touches once more just before the second end strikes: that changes the slap-down \
-             speed by about {effect_m_s:.2} m/s; take it from film")]
-    TouchesLast { effect_m_s: f64 } => (Code::SecondContact, Warning);
     /// The velocities step in the flight.
     #[error("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
              than ringing does: contents that strike the cask, a cable or a second touch; k and the \
