@@ -45,8 +45,8 @@ impl Measured {
             findings.extend(of_motion);
             let landed = flight.landing.as_ref().zip(events.slap_down_s());
             findings.extend(landed.map(|(landing, struck_s)| {
-                Finding::from(DropFinding::Landed { before_s: struck_s - landing.time_s })
-                    .between(landing.time_s, landing.time_s)
+                Finding::from(DropFinding::Landed { before_s: struck_s - landing.begin_s })
+                    .between(landing.begin_s, landing.begin_s)
             }));
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {

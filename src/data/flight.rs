@@ -97,7 +97,9 @@ pub struct FlightFit {
 /// Touches of L between its flight and the slap-down, as one.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Landing {
-    /// When, s from the recording's first sample.
+    /// When the first of them begins, s from the recording's first sample.
+    pub begin_s: f64,
+    /// When they are taken to act, s: as one step they lead on as they do.
     pub time_s: f64,
     /// What it changes the velocity of each channel by, m/s, in the order of the plateaus.
     pub steps_m_s: Vec<f64>,

@@ -110,6 +110,8 @@ pub struct Motion {
     pub second_end_m_s: Option<(f64, f64)>,
     /// Height of R's corner then, m: 0 but for errors of angle, velocity and time.
     pub second_end_height_m: Option<f64>,
+    /// Height of L's corner over where it left as it touches again, m: 0 likewise.
+    pub touch_height_m: Option<f64>,
     /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no
     /// curve was asked for.
     pub lowest_first_end_m: f64,

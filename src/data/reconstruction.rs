@@ -42,6 +42,8 @@ pub struct ReconstructionCandidate {
 pub enum ClosureKind {
     /// R's corner is on the target when it strikes: angle, velocities, times.
     Height,
+    /// L's corner is on the target as it touches again.
+    Touch,
     /// The impulse of the first impact turns the cask: the channels against each other and against the mass
     /// properties.
     Turning,

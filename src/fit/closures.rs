@@ -6,6 +6,9 @@ use crate::data::{Axis, ClosureKind, Motion, RestLevel, RotationRate, U_RELEASE_
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
+/// Height of L's corner as it touches again, as a share of the length: 5 mm of 5 m, where 37 simulated drops
+/// miss it by 1 to 3 mm.
+const U_TOUCH_SHARE: f64 = 0.001;
 /// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is
 /// finite and rings.
 const U_TURNING: f64 = 0.005;
@@ -15,6 +18,8 @@ const U_TURNING: f64 = 0.005;
 pub(super) enum Observable {
     /// R's corner is on the target when it strikes.
     Height,
+    /// L's corner is on the target when it touches again.
+    Touch,
     /// The angular impulse about S is Θ ω.
     Turning { u_rad_s: f64 },
     /// The angular impulse of the second impact about S is Θ times what it changes ω by.
@@ -31,6 +36,7 @@ impl Observable {
     pub fn kind(&self) -> ClosureKind {
         match self {
             Self::Height => ClosureKind::Height,
+            Self::Touch => ClosureKind::Touch,
             Self::Turning { .. } => ClosureKind::Turning,
             Self::SecondTurning { .. } => ClosureKind::SecondTurning,
             Self::Rest { .. } => ClosureKind::Rest,
@@ -51,6 +57,7 @@ impl Observable {
     pub fn name(&self) -> String {
         match self {
             Self::Height => "height of the second end at slap-down".into(),
+            Self::Touch => "height of the first end as it touches again".into(),
             Self::Turning { .. } => "rotation against the impulse of the first impact".into(),
             Self::SecondTurning { .. } => "rotation against the impulse of the second impact".into(),
             Self::Rest { name, .. } => format!("rest level of {name}"),
@@ -68,6 +75,7 @@ impl Observable {
         match self {
             // z_R = 0   (33)
             Self::Height => motion.second_end_height_m,
+            Self::Touch => motion.touch_height_m,
             // Δω − ∫(a f_z − b f_x) dt m / Θ = 0   (32)
             Self::Turning { .. } => Some(
                 motion.separation.angular_velocity_rad_s
@@ -99,6 +107,7 @@ impl Observable {
     fn u(&self, measured: &FitData) -> f64 {
         match self {
             Self::Height => U_HEIGHT_M,
+            Self::Touch => U_TOUCH_SHARE * measured.setup.length_m,
             Self::Turning { u_rad_s } | Self::SecondTurning { u_rad_s } => *u_rad_s,
             Self::Rest { u_m_s2, .. } => *u_m_s2,
             Self::Fall { .. } => measured.setup.gravity_m_s2 * U_RELEASE_S,
@@ -115,7 +124,7 @@ impl Observable {
     pub fn words(&self, measured: &FitData, motion: &Motion, residual: f64) -> String {
         let miss = residual * self.u(measured);
         match self {
-            Self::Height => format!("{:+.0} mm", 1e3 * miss),
+            Self::Height | Self::Touch => format!("{:+.0} mm", 1e3 * miss),
             Self::Turning { .. } => {
                 format!("{:+.1} % of ω", 100.0 * miss / motion.separation.angular_velocity_rad_s.abs())
             }
@@ -141,6 +150,7 @@ pub(super) fn observables(measured: &FitData, motion: &Motion) -> Vec<Observable
     if motion.second_end_height_m.is_some() {
         all.push(Observable::Height);
     }
+    all.extend(motion.touch_height_m.map(|_| Observable::Touch));
     let u_rad_s = U_TURNING * motion.separation.angular_velocity_rad_s.abs();
     if u_rad_s > 0.0 && measured.inertia_m2.is_some() {
         all.push(Observable::Turning { u_rad_s });

@@ -132,7 +132,7 @@ impl Touched<'_> {
         let u_m_s: Vec<f64> = fit.series.iter().zip(&self.before.plateaus).map(u_m_s).collect();
         let changed = line.changed(&steps_m_s);
         let is_known = u_m_s[self.nearest] < MOST_U * of_nearest_m_s.abs();
-        let touch = Landing { time_s, steps_m_s, u_m_s, along_m_s: None };
+        let touch = Landing { begin_s: self.from_s, time_s, steps_m_s, u_m_s, along_m_s: None };
         is_known.then(|| self.pushed(touch, changed))?
     }
 

@@ -3,9 +3,7 @@
 use super::Integrated;
 use super::curves::uniform;
 use super::histories::{AlongAxis, Histories};
-use crate::data::{
-    AxialClosure, Events, FlightFit, Landing, Motion, MotionCurve, MotionState, Setup, planar,
-};
+use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
 use crate::numerics::as_f64;
 
 /// Steps over the flight, for the curves.
@@ -101,9 +99,13 @@ fn follow(
     let impulse_ratio = (separation.horizontal_velocity_m_s - contact.horizontal_velocity_m_s)
         / (separation.vertical_velocity_m_s - contact.vertical_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
-    let strikes =
-        |t| fly_on(integrated, fit, setup, &separation, contact_s + (t - contact_s) * setup.second_s);
+    let strikes = |t| fly_on(integrated, fit, setup, &separation, by_clock_s(integrated, setup, t));
     let slap_down = events.slap_down_s().map(strikes);
+    let height_m = |state: &MotionState| corner_height_m(setup, state, setup.cog_m);
+    let touch_height_m = fit.landing.as_ref().map(|landing| {
+        let begins = fly(setup, &separation, by_clock_s(integrated, setup, landing.begin_s));
+        height_m(&begins) - height_m(&separation).min(0.0)
+    });
     let behind_m = setup.cog_m - setup.length_m;
     Some(Motion {
         contact,
@@ -116,6 +118,7 @@ fn follow(
         slap_down,
         second_end_m_s: slap_down.map(|s| corner(setup, &s, behind_m)),
         second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, behind_m)),
+        touch_height_m,
         lowest_first_end_m: f64::INFINITY,
         last_first_end_m: f64::INFINITY,
         curve: MotionCurve::default(),
@@ -146,9 +149,9 @@ fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle
     a_m * up_m_s - b_m * along_m_s
 }
 
-/// When L touches by the clock as it is taken to go, s.
-fn touched_s(integrated: &Integrated, setup: &Setup, landing: &Landing) -> f64 {
-    integrated.contact_s + (landing.time_s - integrated.contact_s) * setup.second_s
+/// A time of the recording by the clock as it is taken to go, s.
+fn by_clock_s(integrated: &Integrated, setup: &Setup, time_s: f64) -> f64 {
+    integrated.contact_s + (time_s - integrated.contact_s) * setup.second_s
 }
 
 /// [`fly`] with the touch of L on the way, which changes the velocities by what the channels say.
@@ -159,7 +162,8 @@ fn fly_on(
     state: &MotionState,
     time_s: f64,
 ) -> MotionState {
-    let touched = fit.landing.as_ref().map(|landing| (landing, touched_s(integrated, setup, landing)));
+    let touched =
+        fit.landing.as_ref().map(|landing| (landing, by_clock_s(integrated, setup, landing.time_s)));
     let touched = touched.filter(|(_, touched_s)| *touched_s < time_s);
     // Asked for at each step of the fit: the line over the channels is drawn where there is a touch alone.
     let line = || AlongAxis::through(&integrated.signals, setup.cog_m);

@@ -189,9 +189,11 @@ pub enum DropFinding of Drop {
 
 fn code_of(closure: ClosureKind) -> Code {
     match closure {
-        ClosureKind::Height | ClosureKind::Fall | ClosureKind::SecondTurning | ClosureKind::RateBefore => {
-            Code::Geometry
-        }
+        ClosureKind::Height
+        | ClosureKind::Touch
+        | ClosureKind::Fall
+        | ClosureKind::SecondTurning
+        | ClosureKind::RateBefore => Code::Geometry,
         ClosureKind::Turning => Code::NotRigid,
         ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
     }
@@ -254,6 +256,10 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
         ClosureKind::Height => format!(
             "the second end would be {how_far} from the target when it strikes: drop angle, drop height, a \
              scale, the clock or a sensor position is not as stated"
+        ),
+        ClosureKind::Touch => format!(
+            "the first end would be {how_far} from the target when it touches it again: drop angle, drop \
+             height, a scale, the clock or a sensor position is not as stated"
         ),
         ClosureKind::Turning => format!(
             "the measured rotation differs by {how_far} from what the first impact would give a rigid body \
