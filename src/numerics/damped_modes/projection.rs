@@ -364,9 +364,9 @@ pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Op
         let problem = Projection::new(series, by_weight, form, &refined);
         let (solved, report) = LevenbergMarquardt::new()
             .with_patience(8)
-            .with_ftol(1e-9)
-            .with_xtol(1e-7)
-            .with_gtol(1e-9)
+            .with_ftol(1e-7)
+            .with_xtol(1e-6)
+            .with_gtol(1e-8)
             .minimize(problem);
         // A fit that stopped for lack of patience still stands at its best point; only numbers that are none
         // are useless.
