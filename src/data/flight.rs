@@ -95,7 +95,7 @@ pub struct FlightFit {
 }
 
 /// Touches of L between its flight and the slap-down, as one.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Landing {
     /// When the first of them begins, s from the recording's first sample.
     pub begin_s: f64,

@@ -92,79 +92,28 @@ impl Event {
     }
 }
 
-/// What a positive standard uncertainty does.
+/// What a positive standard uncertainty does; to a landing along the axis, where it names no channel.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum InputShift {
-    Step {
-        channel: usize,
-        add_m_s: f64,
-    },
-    BaseStrain {
-        channel: usize,
-        add_m_s: f64,
-        share: f64,
-    },
-    Scale {
-        channel: usize,
-        share: f64,
-    },
-    RateScale {
-        sensor: usize,
-        share: f64,
-    },
-    Cross {
-        channel: usize,
-        share: f64,
-        other_m_s: f64,
-    },
-    Place {
-        channel: usize,
-        by_m: f64,
-        gained_rad_s: f64,
-    },
-    Angle {
-        by_rad: f64,
-    },
-    ImpactVelocity {
-        share: f64,
-    },
-    Event {
-        event: Event,
-        by_s: f64,
-    },
-    CentreOfGravity {
-        by_m: f64,
-    },
-    Inertia {
-        share: f64,
-    },
-    Friction {
-        ratio: f64,
-        by: f64,
-    },
-    Clock {
-        share: f64,
-    },
-    Length {
-        by_m: f64,
-    },
-    Section {
-        by_m: f64,
-    },
-    AngularVelocity {
-        by_rad_s: f64,
-    },
-    HorizontalVelocity {
-        by_m_s: f64,
-    },
-    OfSecondImpact {
-        input: usize,
-    },
-    /// Of a channel, or along the axis where none shows that.
-    Landing {
-        channel: Option<usize>,
-        add_m_s: f64,
-    },
+    Step { channel: usize, add_m_s: f64 },
+    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
+    Scale { channel: usize, share: f64 },
+    RateScale { sensor: usize, share: f64 },
+    Cross { channel: usize, share: f64, other_m_s: f64 },
+    Place { channel: usize, by_m: f64, gained_rad_s: f64 },
+    Angle { by_rad: f64 },
+    ImpactVelocity { share: f64 },
+    Event { event: Event, by_s: f64 },
+    CentreOfGravity { by_m: f64 },
+    Inertia { share: f64 },
+    Friction { ratio: f64, by: f64 },
+    Clock { share: f64 },
+    Length { by_m: f64 },
+    Section { by_m: f64 },
+    AngularVelocity { by_rad_s: f64 },
+    HorizontalVelocity { by_m_s: f64 },
+    OfSecondImpact { input: usize },
+    Landing { channel: Option<usize>, add_m_s: f64 },
 }
 
 /// The key of the cask file that states an input.

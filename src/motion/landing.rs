@@ -234,8 +234,14 @@ mod tests {
 
     const RATE_HZ: f64 = 2e4;
 
-    /// A contact of 5 ms from 20 ms on, a touch of 2 ms at 0.25 s, and a mode of 80 Hz that both strike.
-    fn signal(name: &str, (end, axis): (End, Axis), steps_m_s: [f64; 2], rings_m_s: [f64; 2]) -> Signal {
+    /// A contact of 5 ms from 20 ms on, touches of 2 ms at these times, and a mode of 80 Hz that all strike.
+    fn signal(
+        name: &str,
+        (end, axis): (End, Axis),
+        steps_m_s: [f64; 2],
+        rings_m_s: [f64; 2],
+        touches_s: &[f64],
+    ) -> Signal {
         let pulse = |t: f64, from_s: f64, length_s: f64, area_m_s: f64| {
             let x = (t - from_s) / length_s;
             if (0.0..1.0).contains(&x) { area_m_s * PI / (2.0 * length_s) * (PI * x).sin() } else { 0.0 }
@@ -248,7 +254,9 @@ mod tests {
         let force = |i: u32| {
             let t = f64::from(i) / RATE_HZ;
             let struck = pulse(t, 0.02, 5e-3, steps_m_s[0]) + ring(t - 0.02, rings_m_s[0]);
-            struck + pulse(t, 0.25, 2e-3, steps_m_s[1]) + ring(t - 0.251, rings_m_s[1]) + noise(i)
+            let touch =
+                |at_s: &f64| pulse(t, *at_s, 2e-3, steps_m_s[1]) + ring(t - at_s - 1e-3, rings_m_s[1]);
+            struck + touches_s.iter().map(touch).sum::<f64>() + noise(i)
         };
         Signal {
             name: name.into(),
@@ -261,41 +269,80 @@ mod tests {
         }
     }
 
-    fn found(steps_m_s: [f64; 3]) -> Option<Landing> {
+    fn found([first, second, along]: [f64; 3], touches_s: &[f64], is_axial: bool) -> Option<Landing> {
         let across = [(End::First, Axis::Transverse), (End::Second, Axis::Transverse)];
-        let signals = [
-            signal("A1", across[0], [16.0, steps_m_s[0]], [4.0, 0.4 * steps_m_s[0]]),
-            signal("A2", across[1], [-5.0, steps_m_s[1]], [3.5, 0.4 * steps_m_s[0]]),
-            signal("A3", (End::First, Axis::Axial), [4.0, steps_m_s[2]], [0.1, 0.0]),
+        let mut signals = vec![
+            signal("A1", across[0], [16.0, first], [4.0, 0.4 * first], touches_s),
+            signal("A2", across[1], [-5.0, second], [3.5, 0.4 * first], touches_s),
         ];
+        if is_axial {
+            signals.push(signal("A3", (End::First, Axis::Axial), [4.0, along], [0.1, 0.0], touches_s));
+        }
         let window = Window { from_s: 0.026, to_s: 0.2995, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::over(&signals, 0.02);
         let flight = fit_flight(&integrated, &window, None, 2.5).expect("a flight");
         landing(&flight, &integrated, &window, &Cask::block("a", 4000.0, 5.0, 1.0))
     }
 
-    /// A push of 0.2 m/s across the axis and of −1.2 m/s along it, at the corner of L.
-    const PUSH_M_S: [f64; 3] = {
-        let turned_rad_s = (0.5 * -1.2 - 2.5 * 0.2) * 12.0 / 26.0;
-        [0.2 - 2.4 * turned_rad_s, 0.2 + 2.4 * turned_rad_s, -1.2]
-    };
+    /// The steps of A1, A2 and A3 by a push across the axis and one along it, m/s, at the corner of L.
+    const fn by_push([across_m_s, along_m_s]: [f64; 2]) -> [f64; 3] {
+        let turned_rad_s = (0.5 * along_m_s - 2.5 * across_m_s) * 12.0 / 26.0;
+        [across_m_s - 2.4 * turned_rad_s, across_m_s + 2.4 * turned_rad_s, along_m_s]
+    }
 
-    #[test]
-    fn a_touch_is_what_lies_between_two_plateaus() {
-        let landing = found(PUSH_M_S).expect("a touch");
-        assert!((landing.time_s - 0.251).abs() < 2e-3, "{landing:?}");
-        for ((step, u), truth) in landing.steps_m_s.iter().zip(&landing.u_m_s).zip(PUSH_M_S) {
-            assert!((step - truth).abs() < u.min(0.02), "{landing:?}");
+    /// The steps of transverse channels as found are those of `touches` such pushes.
+    #[track_caller]
+    fn is_followed(landing: &Landing, push: [f64; 3], touches: f64) {
+        for ((step, u), truth) in landing.steps_m_s.iter().zip(&landing.u_m_s).zip(push).take(2) {
+            assert!((step - touches * truth).abs() < u.min(0.04), "{landing:?}");
         }
     }
 
     #[test]
+    fn a_touch_is_what_lies_between_two_plateaus() {
+        let push = by_push([0.2, -1.2]);
+        let landing = found(push, &[0.25], true).expect("a touch");
+        assert!(
+            (landing.time_s - 0.251).abs() < 2e-3 && (landing.begin_s - 0.25).abs() < 1e-3,
+            "{landing:?}"
+        );
+        is_followed(&landing, push, 1.0);
+        assert!((landing.steps_m_s[2] - push[2]).abs() < landing.u_m_s[2].min(0.02), "{landing:?}");
+    }
+
+    #[test]
+    fn touches_that_follow_one_another_are_one_step() {
+        let push = by_push([0.5, -0.2]);
+        let landing = found(push, &[0.2, 0.23, 0.26], true).expect("touches");
+        is_followed(&landing, push, 3.0);
+        assert!((landing.time_s - 0.231).abs() < 3e-3 && (landing.begin_s - 0.2).abs() < 1e-3, "{landing:?}");
+    }
+
+    #[test]
+    fn a_touch_shortly_before_the_strike_gives_the_modes_their_phases() {
+        let push = by_push([0.5, -0.2]);
+        is_followed(&found(push, &[0.293], true).expect("a touch"), push, 1.0);
+    }
+
+    #[test]
+    fn a_push_at_the_corner_tells_what_no_channel_shows() {
+        let push = by_push([0.5, -0.2]);
+        let landing = found(push, &[0.25], false).expect("a touch");
+        is_followed(&landing, push, 1.0);
+        let [along_m_s, u_m_s] = landing.along_m_s.expect("a velocity along the axis");
+        assert!((along_m_s - push[2]).abs() < u_m_s, "{landing:?}");
+    }
+
+    #[test]
     fn a_flight_without_a_touch_has_none() {
-        assert_eq!(found([0.0; 3]), None);
+        assert_eq!(found([0.0; 3], &[0.25], true), None);
     }
 
     #[test]
     fn what_one_channel_shows_alone_is_no_touch() {
-        assert_eq!(found([1.3, 0.0, 0.0]), None);
+        for is_axial in [true, false] {
+            assert_eq!(found([1.3, 0.0, 0.0], &[0.25], is_axial), None);
+            assert_eq!(found([0.0, 1.3, 0.0], &[0.25], is_axial), None);
+        }
     }
 }
