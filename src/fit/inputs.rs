@@ -290,7 +290,9 @@ impl Inputs {
                 let Some(landing) = &mut self.flight.landing else { return };
                 let along_m_s = landing.along_m_s.as_mut().map(|[along_m_s, _]| along_m_s);
                 let own = channel.map_or(along_m_s, |channel| landing.steps_m_s.get_mut(channel));
-                own.into_iter().for_each(|step_m_s| *step_m_s += by * add_m_s);
+                if let Some(step_m_s) = own {
+                    *step_m_s += by * add_m_s;
+                }
             }
         }
     }

@@ -122,7 +122,9 @@ impl Touched<'_> {
         let last_m_s = self.mean_m_s(late_s, gained_rad_s)? - of_nearest_m_s - ringing_m_s;
         // A push that goes on into the strike is one more of the same kind, known to half of it.
         let more = (last_m_s / of_nearest_m_s).max(0.0);
-        steps_m_s.iter_mut().for_each(|step_m_s| *step_m_s *= 1.0 + more);
+        for step_m_s in &mut steps_m_s {
+            *step_m_s *= 1.0 + more;
+        }
         let time_s = (once_s + more * strike_s) / (1.0 + more);
         let since_s = behind_s - self.before.from_s;
         let u_m_s = |(own, before): (&SeriesFit, &Plateau)| {
