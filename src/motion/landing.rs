@@ -55,18 +55,25 @@ pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cas
     let signals = &integrated.signals;
     let nearest = struck_first(signals).filter(|_| cask.is_body)?;
     let to_s = window.to_s - CLEAR_S;
-    let of_last = |sought_s: f64| {
-        let from_s = touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s))?;
+    let begin_s =
+        |sought_s: f64| touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s));
+    let mut begins_s: Vec<f64> = SOUGHT_S.into_iter().filter_map(begin_s).collect();
+    begins_s.dedup();
+    let read = |from_s: f64| {
         let until_s = from_s - CLEAR_S;
         let since_s = (until_s - BEFORE_S).max(flight.from_s);
         let over = FlightFit { from_s: since_s, to_s: until_s, ..flight.clone() };
         let before = with_modes(integrated, &over, window, cask.cog_m)?;
-        let is_explained = |(s, p): (&Signal, &Plateau)| s.axis == Axis::Axial || p.residual_m_s < LEFT_M_S;
-        let touched = Touched { integrated, cask, window, before, nearest, from_s, to_s };
-        let is_before = signals.iter().zip(&touched.before.plateaus).all(is_explained);
-        (until_s - since_s > LEAST_S && is_before).then(|| touched.read())?
+        let left_m_s = before.plateaus.iter().map(|plateau| plateau.residual_m_s);
+        let is_read = until_s - since_s > LEAST_S && is_explained(signals, left_m_s);
+        is_read.then(|| Touched { integrated, cask, window, before, nearest, from_s, to_s }.read())?
     };
-    SOUGHT_S.into_iter().find_map(of_last)
+    begins_s.into_iter().find_map(read)
+}
+
+/// Whether what plateau and modes leave of the transverse channels is little.
+fn is_explained(signals: &[Signal], left_m_s: impl Iterator<Item = f64>) -> bool {
+    signals.iter().zip(left_m_s).all(|(signal, left_m_s)| signal.axis == Axis::Axial || left_m_s < LEFT_M_S)
 }
 
 /// A flight with touches near its end.
@@ -164,8 +171,7 @@ impl Touched<'_> {
         let changes = self.changes([from_s, self.to_s], gained_rad_s)?;
         let modes = self.before.modes.iter().map(oscillation).collect();
         let fit = describe(&changes, modes, Form { drift: false, drive })?;
-        let is_explained = |(s, own): (&Signal, &SeriesFit)| s.axis == Axis::Axial || own.residual < LEFT_M_S;
-        self.integrated.signals.iter().zip(&fit.series).all(is_explained).then_some(fit)
+        is_explained(&self.integrated.signals, fit.series.iter().map(|own| own.residual)).then_some(fit)
     }
 
     /// The touches as the channel nearest to L shows them, for modes that ring from a time on.
