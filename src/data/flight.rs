@@ -145,6 +145,11 @@ const SLOWEST_HZ: f64 = 16.5;
 const SECOND_MODE: f64 = 1.8;
 /// No mount of contents that weigh tons is stiffer, Hz.
 const FASTEST_SWING_HZ: f64 = 100.0;
+/// In its first bending mode a uniform beam goes nearly straight from its end to a node at this share of its
+/// length.
+const NODE: f64 = 0.2155;
+/// Ends that would differ by this factor in bending tell it from swinging.
+const TELLS: f64 = 1.3;
 /// A mode with less than this share of the largest says nothing of how the cask moves.
 const SHOWN: f64 = 0.1;
 
@@ -184,37 +189,38 @@ impl FlightFit {
     }
 
     /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
-    /// body does not bend so: slower than any cask; or both ends go apart, which bending does in its second
-    /// mode.
+    /// body does not bend so: slower than any cask; both ends go apart, or together in a second mode, near the
+    /// slowest in which they go together; or as far as one another where bending would let them differ.
     #[must_use]
-    pub fn swinging(&self, signals: &[Signal]) -> usize {
+    pub fn swinging(&self, signals: &[Signal], length_m: f64) -> usize {
         let largest_m_s = self.modes.iter().map(|m| m.amplitude_m_s).fold(0.0, f64::max);
-        let slowest_hz = |goes: fn(f64) -> bool| {
-            let shown = |(i, m): &(usize, &Mode)| {
-                m.amplitude_m_s > SHOWN * largest_m_s && goes(self.goes_along(*i, signals))
-            };
-            self.modes.iter().enumerate().find(shown).map(|(_, m)| m.frequency_hz)
+        let goes = |(i, m): (usize, &Mode)| {
+            let along = self.goes_along(i, signals);
+            (m.amplitude_m_s > SHOWN * largest_m_s).then_some((m.frequency_hz, along))
         };
-        let together_hz = slowest_hz(|along| along > 1.0 / ALONE);
-        let apart_hz = slowest_hz(|along| (-ALONE..-1.0 / ALONE).contains(&along));
-        let near = |apart_hz: &f64| {
-            *apart_hz < together_hz.map_or(FASTEST_SWING_HZ, |hz| FASTEST_SWING_HZ.min(SECOND_MODE * hz))
-        };
-        let up_to_hz = apart_hz.filter(near).map_or(0.0, |apart_hz| {
-            let also_hz = together_hz.filter(|hz| *hz < SECOND_MODE * apart_hz);
-            also_hz.map_or(apart_hz, |hz| hz.max(apart_hz))
+        let shown: Vec<(f64, f64)> = self.modes.iter().enumerate().filter_map(goes).collect();
+        let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ALONE);
+        let mut apart = shown.iter().filter(|(_, along)| (-ALONE..-1.0 / ALONE).contains(along));
+        let (slowest, next, apart) = (together.next(), together.next(), apart.next());
+        let is_near = |hz: f64, than_hz: f64| hz < SECOND_MODE * than_hz;
+        let apart_hz = apart.map(|apart| apart.0).filter(|apart_hz| {
+            slowest.map_or(*apart_hz < FASTEST_SWING_HZ, |slowest| is_near(*apart_hz, slowest.0))
         });
-        self.modes
-            .iter()
-            .take_while(|m| m.frequency_hz < SLOWEST_BENDING_HZ || m.frequency_hz <= up_to_hz)
-            .count()
+        let swings = |(hz, along): &&(f64, f64)| {
+            (*hz < FASTEST_SWING_HZ && goes_straight(*along, signals, length_m))
+                || next.is_some_and(|next| is_near(next.0, *hz))
+                || apart_hz.is_some_and(|apart_hz| is_near(*hz, apart_hz))
+        };
+        let together_hz = slowest.filter(swings).map(|(hz, _)| *hz);
+        let up_to_hz = [apart_hz, together_hz].into_iter().flatten().fold(SLOWEST_BENDING_HZ, f64::max);
+        self.modes.iter().take_while(|m| m.frequency_hz <= up_to_hz).count()
     }
 
     /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
     /// together, and which of these it is; 0 where the cask swings.
     #[must_use]
-    pub fn bending_orders(&self, signals: &[Signal]) -> Vec<u8> {
-        let (swinging, mut together) = (self.swinging(signals), 0);
+    pub fn bending_orders(&self, signals: &[Signal], length_m: f64) -> Vec<u8> {
+        let (swinging, mut together) = (self.swinging(signals, length_m), 0);
         let order = |mode: usize| {
             let goes = mode >= swinging && self.goes_along(mode, signals) > 0.0;
             together += u8::from(goes);
@@ -264,6 +270,15 @@ impl FlightFit {
     }
 }
 
+/// Whether the first end goes along with the second by nearly as much as in a straight motion, where the first
+/// bending mode would let them differ.
+fn goes_straight(along: f64, signals: &[Signal], length_m: f64) -> bool {
+    let across = || signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.position_m / length_m);
+    let (first, last) = (across().fold(f64::INFINITY, f64::min), across().fold(0.0, f64::max));
+    let bent = (NODE - first) / (NODE - (1.0 - last));
+    bent.ln().abs() > TELLS.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -289,23 +304,29 @@ mod tests {
     #[test]
     fn ends_that_go_apart_slowly_swing_and_do_not_bend() {
         let signal = |end, position_m| Signal { end, position_m, ..example::signal(1e4, vec![]) };
-        let signals = [signal(End::First, 0.3), signal(End::Second, 4.7)];
-        // Of each mode the frequency and how the first end goes along.
-        let swinging = |modes: &[(f64, f64)]| {
+        // Of each mode the frequency and how the first end goes along; the place of the second sensor.
+        let of_modes = |modes: &[(f64, f64)], second_m: f64| {
+            let signals = [signal(End::First, 0.3), signal(End::Second, second_m)];
             let plateau = |share: fn(f64) -> f64| Plateau {
                 ringing_m_s: modes.iter().map(|mode| (0.0, share(mode.1))).collect(),
                 ..example::plateau("A", 0.0)
             };
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
             let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
-            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals)
+            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0)
         };
+        let swinging = |modes: &[(f64, f64)]| of_modes(modes, 4.7);
         assert_eq!(swinging(&[(80.0, 1.0), (220.0, -1.0)]), 0, "a uniform beam");
         assert_eq!(swinging(&[(20.0, 1.0), (80.0, 1.0)]), 1, "slower than any cask");
         assert_eq!(swinging(&[(40.0, 1.0), (55.0, -2.0), (120.0, 1.0)]), 2);
         assert_eq!(swinging(&[(40.0, -2.0), (50.0, 1.0), (90.0, 1.0)]), 2);
         assert_eq!(swinging(&[(40.0, -2.0), (120.0, 1.0)]), 1);
         assert_eq!(swinging(&[(60.0, -0.05), (90.0, 1.0)]), 0, "the first end stands on a node");
+        assert_eq!(swinging(&[(65.0, 1.0), (108.0, -1.1)]), 2, "contents of half the mass");
+        assert_eq!(swinging(&[(86.0, 0.9), (106.0, 0.7)]), 1, "a beam goes together in one of two such modes");
+        // At 0.06 and 0.86 of its length a beam that bends goes twice as far at the first place.
+        assert_eq!(of_modes(&[(45.0, 1.9), (150.0, 1.9)], 4.3), 0);
+        assert_eq!(of_modes(&[(45.0, 1.0), (150.0, 1.9)], 4.3), 1, "ends that go as far as one another");
     }
 
     #[test]

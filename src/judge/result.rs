@@ -142,7 +142,7 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, le
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
     findings.extend(bends(flight, signals, v0_m_s));
-    findings.extend(swings(flight, signals, v0_m_s));
+    findings.extend(swings(flight, signals, v0_m_s, length_m));
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
@@ -199,13 +199,13 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 }
 
 /// The slowest mode where a cask that bends has none, and both ends go along.
-fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Option<Finding> {
+fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, length_m: f64) -> Option<Finding> {
     let across = || signals.iter().zip(&flight.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
     let size_m_s = |mode: usize| {
         let sizes_m_s = across().filter_map(|(_, p)| p.ringing_m_s.get(mode)).map(|(a, b)| a.hypot(*b));
         sizes_m_s.fold(0.0, f64::max)
     };
-    let mut modes = (0..flight.swinging(signals)).filter(|mode| !flight.is_bend(*mode, signals));
+    let mut modes = (0..flight.swinging(signals, length_m)).filter(|mode| !flight.is_bend(*mode, signals));
     let mode = modes.find(|mode| size_m_s(*mode) > LARGE_BEND * v0_m_s)?;
     let found =
         DropFinding::Swings { frequency_hz: flight.modes[mode].frequency_hz, size_m_s: size_m_s(mode) };
@@ -270,7 +270,7 @@ mod tests {
     fn what_moves_more_slowly_than_a_cask_bends_swings() {
         let found = |frequency_hz, v0_m_s| {
             let (flight, signals) = flight(frequency_hz);
-            swings(&flight, &signals, v0_m_s).map(|f| f.code)
+            swings(&flight, &signals, v0_m_s, 5.0).map(|f| f.code)
         };
         assert_eq!(found(15.0, 13.3), Some(IssueCode::Swings));
         assert_eq!(found(30.0, 13.3), None);

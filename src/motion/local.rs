@@ -42,7 +42,7 @@ pub fn ringing_of_second_end(
     let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, window, setup.cog_m);
     let own_m_s = integrated.gained_m_s(channel, before_s) - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
-    let orders = flight.bending_orders(&integrated.signals);
+    let orders = flight.bending_orders(&integrated.signals, setup.length_m);
     for (i, (mode, order)) in flight.modes.iter().zip(orders).enumerate() {
         let Some(size) = plateau.ringing_m_s.get(i) else { continue };
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };
@@ -50,9 +50,9 @@ pub fn ringing_of_second_end(
         let (square, ratio) = (size.0 * size.0 + size.1 * size.1, flight.goes_along(i, &integrated.signals));
         let shares = [first, last].map(|s| s.position_m / setup.length_m);
         let straight = 1.0 + (1.0 - ratio) * (1.0 - shares[1]) / (shares[1] - shares[0]).max(0.1);
-        let by_shape = if order == 0 { straight } else { of_corner(order, shares[1]) };
-        carried_m_s += own_m_s * (by_shape - 1.0);
-        u_shape_m_s += (SHAPE_SHARE * own_m_s * (by_shape - straight)).abs();
+        let bent = of_corner(if ratio > 0.0 { order.max(1) } else { 2 }, shares[1]);
+        carried_m_s += own_m_s * (if order == 0 { straight } else { bent } - 1.0);
+        u_shape_m_s += (SHAPE_SHARE * own_m_s * (bent - straight)).abs();
         // R may strike a little earlier or later: to the second order, since ringing may be at its largest.
         let omega = std::f64::consts::TAU * mode.frequency_hz;
         let bent_m_s2 = 0.5 * omega * omega * slap_down.u_s * square.sqrt() * z.norm();
