@@ -1,12 +1,11 @@
-//! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's
-//! inputs with them moved.
+//! The uncertain inputs of the reconstruction, each with its standard uncertainty and what a move of it does to
+//! the reconstruction's inputs.
 
 use super::FitData;
 use super::steps::{u_base_strain_m_s, u_step_m_s};
 use crate::data::planar::first_arm_m;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MeasuredRotation, Motion, MotionState, Setup,
-    StoodIn,
+    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, Motion, MotionState, Setup, Signal, StoodIn,
 };
 
 /// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
@@ -16,13 +15,14 @@ const ROLL_RAD_S: f64 = 1.0;
 pub(super) const REST: &str = "record the cask at rest before the release";
 pub(super) const RELEASE: &str = "begin the recording before the release";
 pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
-const SECOND_RATE_SENSOR: &str = "a second angular-rate sensor";
 const MEASURE: &str = "measure between the edges that strike";
-const FILM: &str = "high-speed video of the fall";
-const GYRO: &str = "an angular-rate sensor and the rest before the release";
 
+/// The key of the tolerance of the friction.
+const FRICTION: &str = "friction_percent";
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// One set of inputs, as a reconstruction is followed with them.
 #[derive(Debug, Clone)]
@@ -50,79 +50,39 @@ pub struct Inputs {
     stood_in: Option<StoodIn>,
 }
 
+/// The time of an event.
+type EventTime = fn(&mut Events) -> &mut Option<At>;
+
+/// What so many standard uncertainties of an input do.
+type Shift = Box<dyn Fn(&mut Inputs, f64) + Send + Sync>;
+
 /// One input that is uncertain.
-#[derive(Debug, Clone)]
 pub struct UncertainInput {
     pub(super) name: String,
     /// Its standard uncertainty, as a person reads it.
     pub(super) size: String,
+    /// The key that states it; `None` where the recording itself gives it.
+    pub(super) stated: Option<StatedKey>,
     /// More than one where channels share it.
-    pub(super) changes: Vec<InputShift>,
+    shifts: Vec<Shift>,
 }
 
 impl UncertainInput {
     /// Whether the motion is discontinuous in this input, so that it has no derivative at zero: any change of
     /// the friction lets a cask that sticks slide.
     pub(super) fn jumps(&self) -> bool {
-        self.changes.iter().any(|change| matches!(change, InputShift::Friction { .. }))
+        self.stated.as_ref().is_some_and(|stated| stated.tolerance == FRICTION)
     }
-
-    /// The key of `[tolerance]` that its uncertainty is from; `None` where the recording gives it.
-    pub(super) fn tolerance(&self, setup: &Setup) -> Option<&'static str> {
-        Some(self.changes.first()?.stated(setup)?.tolerance)
-    }
-}
-
-/// An event whose time is uncertain.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Event {
-    FirstContact,
-    Separation,
-    SlapDown,
-}
-
-impl Event {
-    /// Its time.
-    fn of(self, events: &mut Events) -> Option<&mut At> {
-        match self {
-            Self::FirstContact => events.first_contact.as_mut(),
-            Self::Separation => events.separation.as_mut(),
-            Self::SlapDown => events.slap_down.as_mut(),
-        }
-    }
-}
-
-/// What a positive standard uncertainty does; to a landing along the axis, where it names no channel.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum InputShift {
-    Step { channel: usize, add_m_s: f64 },
-    BaseStrain { channel: usize, add_m_s: f64, share: f64 },
-    Scale { channel: usize, share: f64 },
-    RateScale { sensor: usize, share: f64 },
-    Cross { channel: usize, share: f64, other_m_s: f64 },
-    Place { channel: usize, by_m: f64, gained_rad_s: f64 },
-    Angle { by_rad: f64 },
-    ImpactVelocity { share: f64 },
-    Event { event: Event, by_s: f64 },
-    CentreOfGravity { by_m: f64 },
-    Inertia { share: f64 },
-    Friction { ratio: f64, by: f64 },
-    Clock { share: f64 },
-    Length { by_m: f64 },
-    Section { by_m: f64 },
-    AngularVelocity { by_rad_s: f64 },
-    HorizontalVelocity { by_m_s: f64 },
-    OfSecondImpact { input: usize },
-    Landing { channel: Option<usize>, add_m_s: f64 },
 }
 
 /// The key of the cask file that states an input.
-#[derive(Clone, Copy)]
 pub(super) struct StatedKey {
     /// The key of `[tolerance]` that says how well it is known.
     pub tolerance: &'static str,
     /// The key itself; of a channel without its table.
     pub key: &'static str,
+    /// The channel whose key it is.
+    pub channel: Option<String>,
     /// A mistake as a person makes it, and how many standard uncertainties of the input it is.
     pub by: &'static str,
     pub by_u: f64,
@@ -130,68 +90,25 @@ pub(super) struct StatedKey {
     pub remedy: &'static str,
 }
 
-impl InputShift {
-    /// The key that states it; `None` where the recording itself gives it.
-    pub(super) fn stated(&self, setup: &Setup) -> Option<StatedKey> {
-        const DEGREE: f64 = std::f64::consts::PI / 180.0;
-        let row = |tolerance, key, by, mistake: f64, u: f64, remedy| {
-            Some(StatedKey { tolerance, key, by, by_u: mistake / u, remedy })
-        };
-        match *self {
-            Self::Step { .. } | Self::Event { .. } | Self::OfSecondImpact { .. } | Self::Landing { .. } => {
-                None
-            }
-            Self::Scale { share, .. } => {
-                row("calibration_percent", "calibration_percent", "1 %", 0.01, share, REST)
-            }
-            Self::RateScale { share, .. } => {
-                row("calibration_percent", "calibration_percent", "1 %", 0.01, share, SECOND_RATE_SENSOR)
-            }
-            Self::BaseStrain { share, .. } => {
-                row("base_strain_percent", "tolerance.base_strain_percent", "1 %", 0.01, share, SECOND_SENSOR)
-            }
-            Self::Place { by_m, .. } => row("position_m", "position_m", "10 mm", 0.01, by_m, SECOND_SENSOR),
-            Self::Cross { share, .. } => {
-                row("cross_axis_percent", "axis", "1°", DEGREE, share, "check how the sensor sits")
-            }
-            // v0 is that of the root of the height.
-            Self::ImpactVelocity { share } if setup.is_of_fall => {
-                row("impact_velocity_percent", "drop.height_m", "1 %", 0.005, share, REST)
-            }
-            Self::ImpactVelocity { share } => {
-                row("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01, share, REST)
-            }
-            Self::Angle { by_rad } => {
-                let remedy = "an inclinometer on the rigged cask";
-                row("angle_deg", "drop.angle_deg", "1°", DEGREE, by_rad, remedy)
-            }
-            Self::CentreOfGravity { by_m } => {
-                row("cog_m", "cask.cog_m", "10 mm", 0.01, by_m, "weigh the cask on two supports")
-            }
-            Self::Inertia { share } => {
-                let remedy = "high-speed video of both ends";
-                row("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1, share, remedy)
-            }
-            Self::Friction { by, .. } => {
-                let remedy = "an axial sensor at the first end";
-                row("friction_percent", "contact.friction", "0.1", 0.1, by, remedy)
-            }
-            Self::Clock { share } => {
-                row("clock_percent", "tolerance.clock_percent", "1 %", 0.01, share, REST)
-            }
-            Self::Length { by_m } => {
-                row("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m, by_m, MEASURE)
-            }
-            Self::Section { by_m } => {
-                row("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m, by_m, MEASURE)
-            }
-            Self::AngularVelocity { by_rad_s } => {
-                row("angular_velocity_deg_s", "drop.angular_velocity_deg_s", "1°/s", DEGREE, by_rad_s, GYRO)
-            }
-            Self::HorizontalVelocity { by_m_s } => {
-                row("horizontal_velocity_m_s", "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1, by_m_s, FILM)
-            }
-        }
+fn stated(
+    tolerance: &'static str,
+    key: &'static str,
+    by: &'static str,
+    by_u: f64,
+    remedy: &'static str,
+) -> StatedKey {
+    StatedKey { tolerance, key, channel: None, by, by_u, remedy }
+}
+
+/// The key of a channel's scale.
+fn calibration(channel: &str, share: f64, remedy: &'static str) -> StatedKey {
+    stated("calibration_percent", "calibration_percent", "1 %", 0.01 / share, remedy).of(channel)
+}
+
+impl StatedKey {
+    /// The same in the table of a channel.
+    fn of(self, channel: &str) -> Self {
+        Self { channel: Some(channel.to_owned()), ..self }
     }
 }
 
@@ -220,247 +137,277 @@ impl Inputs {
     /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
     pub(super) fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
         let mut moved = self.clone();
-        for (input, &by) in inputs.iter().zip(by_u) {
-            for change in input.changes.iter().filter(|_| by != 0.0) {
-                moved.apply(self, *change, by);
-            }
+        for (input, by) in inputs.iter().zip(by_u).filter(|(_, by)| **by != 0.0) {
+            input.shifts.iter().for_each(|shift| shift(&mut moved, *by));
         }
         moved
     }
 
-    fn apply(&mut self, base: &Self, change: InputShift, by: f64) {
-        let stood_in = self.stood_in;
-        let mut step = |channel: usize, add_m_s: f64| {
-            let other = stood_in.filter(|s| s.by == channel).map(|s| (s.channel, s.share * add_m_s));
-            for (channel, add_m_s) in [Some((channel, add_m_s)), other].into_iter().flatten() {
-                if let Some(plateau) = self.flight.plateaus.get_mut(channel) {
-                    plateau.velocity_step_m_s += add_m_s;
-                }
+    /// Adds to a channel's velocity step, and its share of that to the one which is made of it.
+    fn step(&mut self, channel: usize, add_m_s: f64) {
+        let other = self.stood_in.filter(|s| s.by == channel).map(|s| (s.channel, s.share * add_m_s));
+        for (channel, add_m_s) in [Some((channel, add_m_s)), other].into_iter().flatten() {
+            if let Some(plateau) = self.flight.plateaus.get_mut(channel) {
+                plateau.velocity_step_m_s += add_m_s;
             }
-        };
-        match change {
-            InputShift::Step { channel, add_m_s } | InputShift::BaseStrain { channel, add_m_s, .. } => {
-                step(channel, by * add_m_s);
-            }
-            InputShift::Scale { channel, share } => {
-                let value = base.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
-                step(channel, by * share * value);
-                self.scales[channel] += by * share;
-            }
-            InputShift::RateScale { sensor, share } => self.rate_scales[sensor] += by * share,
-            InputShift::Cross { channel, share, other_m_s } => {
-                step(channel, -by * share * other_m_s);
-                self.crosses[channel] += by * share;
-            }
-            InputShift::Place { channel, by_m, gained_rad_s } => {
-                // A sensor farther from L by δ reads Ω δ = −ω δ more.
-                step(channel, by * gained_rad_s * by_m);
-                self.places_m[channel] += by * by_m;
-            }
-            InputShift::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
-            InputShift::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
-            InputShift::Event { event, by_s } => {
-                if let Some(at) = event.of(&mut self.events) {
-                    at.time_s += by * by_s;
-                }
-            }
-            InputShift::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
-            InputShift::Inertia { share } => {
-                self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share));
-            }
-            InputShift::Friction { ratio, by: u } => {
-                // A force along the axis' own slope and no other has none across it: f_η says nothing of it.
-                let most = MOST_FRICTION / self.setup.angle_rad.tan();
-                self.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
-            }
-            InputShift::Clock { share } => self.setup.second_s += by * share,
-            InputShift::Length { by_m } => self.setup.length_m += by * by_m,
-            InputShift::Section { by_m } => self.setup.height_m += by * by_m,
-            InputShift::AngularVelocity { by_rad_s } => {
-                self.setup.angular_velocity_rad_s += by * by_rad_s;
-                if self.setup.is_of_fall {
-                    // ż_S is that of the fall: L strikes ω a more slowly   (3)
-                    let Setup { cog_m, height_m, angle_rad, .. } = self.setup;
-                    self.setup.impact_velocity_m_s -= by * by_rad_s * first_arm_m(cog_m, height_m, angle_rad);
-                }
-            }
-            InputShift::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
-            InputShift::OfSecondImpact { input } => self.second_u[input] += by,
-            InputShift::Landing { channel, add_m_s } => {
-                let Some(landing) = &mut self.flight.landing else { return };
-                let along_m_s = landing.along_m_s.as_mut().map(|[along_m_s, _]| along_m_s);
-                let own = channel.map_or(along_m_s, |channel| landing.steps_m_s.get_mut(channel));
-                if let Some(step_m_s) = own {
-                    *step_m_s += by * add_m_s;
-                }
-            }
+        }
+    }
+
+    fn turn_faster(&mut self, by_rad_s: f64) {
+        self.setup.angular_velocity_rad_s += by_rad_s;
+        if self.setup.is_of_fall {
+            // ż_S is that of the fall: L strikes ω a more slowly   (3)
+            let Setup { cog_m, height_m, angle_rad, .. } = self.setup;
+            self.setup.impact_velocity_m_s -= by_rad_s * first_arm_m(cog_m, height_m, angle_rad);
         }
     }
 }
 
 /// Every input that is uncertain, with its size; `motion` is the one that the stated inputs give.
 pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput> {
-    let mut all = Vec::new();
-    for (channel, signal) in measured.signals.iter().enumerate() {
+    let mut all = Gathered(Vec::new());
+    for (channel, signal) in measured.signals.iter().enumerate().take(measured.flight.plateaus.len()) {
         if signal.axis == Axis::Transverse || measured.setup.axial == AxialClosure::Measured {
-            of_channel(&mut all, measured, motion, channel);
+            all.add_channel(measured, motion, channel);
         }
     }
-    all.extend(shared_calibrations(measured));
-    all.extend(roll(measured));
-    all.extend(measured.rotations.iter().enumerate().map(|rotation| rate_calibration(measured, rotation)));
-    // Half of a 95 % half-width is a standard uncertainty.
-    let known = &measured.tolerances;
-    let mut add = |name: &str, size: String, change: InputShift| {
-        all.push(UncertainInput { name: name.into(), size, changes: vec![change] });
-    };
+    all.add_shared_calibrations(measured);
+    all.add_roll(measured);
+    for (sensor, rotation) in measured.rotations.iter().enumerate() {
+        let share = rotation.calibration.unwrap_or(measured.tolerances.calibration) / 2.0;
+        let (name, channel) = (format!("calibration of {}", rotation.channel), &rotation.channel);
+        let key = calibration(channel, share, "a second angular-rate sensor");
+        all.add(name, percent(share), Some(key), move |inputs, by| inputs.rate_scales[sensor] += by * share);
+    }
     if let Some([_, add_m_s]) = measured.flight.landing.as_ref().and_then(|landing| landing.along_m_s) {
-        let shift = InputShift::Landing { channel: None, add_m_s };
-        add("step by the touch along the axis", format!("{add_m_s:.3} m/s"), shift);
+        all.add("step by the touch along the axis", format!("{add_m_s:.3} m/s"), None, move |inputs, by| {
+            if let Some([along_m_s, _]) = inputs.flight.landing.as_mut().and_then(|l| l.along_m_s.as_mut()) {
+                *along_m_s += by * add_m_s;
+            }
+        });
     }
-    let by_rad = known.angle_rad / 2.0;
-    add("drop angle", format!("{:.2}°", by_rad.to_degrees()), InputShift::Angle { by_rad });
-    let share = known.impact_velocity / 2.0;
-    add("impact velocity", percent(share), InputShift::ImpactVelocity { share });
-    let events = measured.events;
-    for (event, at, name) in [
-        (Event::FirstContact, events.first_contact, "time of first contact"),
-        (Event::Separation, events.separation, "time of separation"),
-        (Event::SlapDown, events.slap_down, "time of slap-down"),
-    ] {
-        let by_s = at.map_or(0.0, |at| at.u_s);
-        add(name, format!("{:.3} ms", 1e3 * by_s), InputShift::Event { event, by_s });
+    all.add_fall(measured);
+    all.add_body(measured);
+    all.add_further(measured);
+    all.0
+}
+
+/// The inputs found so far.
+struct Gathered(Vec<UncertainInput>);
+
+// Half of a 95 % half-width is a standard uncertainty.
+impl Gathered {
+    fn add(
+        &mut self,
+        name: impl Into<String>,
+        size: String,
+        stated: Option<StatedKey>,
+        shift: impl Fn(&mut Inputs, f64) + Send + Sync + 'static,
+    ) {
+        let shifts: Vec<Shift> = vec![Box::new(shift)];
+        self.0.push(UncertainInput { name: name.into(), size, stated, shifts });
     }
-    let by_m = known.cog_m / 2.0;
-    add("centre of gravity", format!("{:.0} mm", 1e3 * by_m), InputShift::CentreOfGravity { by_m });
-    if measured.inertia_m2.is_some() {
-        let share = known.inertia / 2.0;
-        add("inertia", percent(share), InputShift::Inertia { share });
+
+    /// Angle, impact velocity and the times of the events.
+    fn add_fall(&mut self, measured: &FitData) {
+        let by_rad = measured.tolerances.angle_rad / 2.0;
+        let remedy = "an inclinometer on the rigged cask";
+        let key = stated("angle_deg", "drop.angle_deg", "1°", DEGREE / by_rad, remedy);
+        let size = format!("{:.2}°", by_rad.to_degrees());
+        self.add("drop angle", size, Some(key), move |inputs, by| inputs.setup.angle_rad += by * by_rad);
+        let share = measured.tolerances.impact_velocity / 2.0;
+        let key = if measured.setup.is_of_fall {
+            // v0 is that of the root of the height.
+            stated("impact_velocity_percent", "drop.height_m", "1 %", 0.005 / share, REST)
+        } else {
+            stated("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01 / share, REST)
+        };
+        self.add("impact velocity", percent(share), Some(key), move |inputs, by| {
+            inputs.setup.impact_velocity_m_s *= 1.0 + by * share;
+        });
+        let events: [(&str, EventTime); 3] = [
+            ("time of first contact", |events| &mut events.first_contact),
+            ("time of separation", |events| &mut events.separation),
+            ("time of slap-down", |events| &mut events.slap_down),
+        ];
+        let mut stated = *measured.events;
+        for (name, event) in events {
+            let by_s = event(&mut stated).map_or(0.0, |at| at.u_s);
+            self.add(name, format!("{:.3} ms", 1e3 * by_s), None, move |inputs, by| {
+                if let Some(at) = event(&mut inputs.events) {
+                    at.time_s += by * by_s;
+                }
+            });
+        }
     }
-    if let Some(AssumedFriction { ratio, u }) = measured.friction {
-        add("friction of the first contact", format!("{u:.3}"), InputShift::Friction { ratio, by: u });
+
+    /// Mass properties, the friction of the contact, and the size of the cask.
+    fn add_body(&mut self, measured: &FitData) {
+        let (known, setup) = (&measured.tolerances, measured.setup);
+        let by_m = known.cog_m / 2.0;
+        let key = stated("cog_m", "cask.cog_m", "10 mm", 0.01 / by_m, "weigh the cask on two supports");
+        self.add("centre of gravity", mm(by_m), Some(key), move |inputs, by| inputs.setup.cog_m += by * by_m);
+        if measured.inertia_m2.is_some() {
+            let share = known.inertia / 2.0;
+            let remedy = "high-speed video of both ends";
+            let key = stated("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1 / share, remedy);
+            self.add("inertia", percent(share), Some(key), move |inputs, by| {
+                inputs.inertia_m2 = inputs.inertia_m2.map(|i| i * (1.0 + by * share));
+            });
+        }
+        if let Some(AssumedFriction { ratio, u }) = measured.friction {
+            let remedy = "an axial sensor at the first end";
+            let key = stated(FRICTION, "contact.friction", "0.1", 0.1 / u, remedy);
+            self.add("friction of the first contact", format!("{u:.3}"), Some(key), move |inputs, by| {
+                // A force along the axis' own slope and no other has none across it: f_η says nothing of it.
+                let most = MOST_FRICTION / inputs.setup.angle_rad.tan();
+                inputs.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
+            });
+        }
+        let by_m = known.length * setup.length_m / 2.0;
+        let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
+        self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);
+        let by_m = known.height * setup.height_m / 2.0;
+        let key = stated("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
+        self.add("section", mm(by_m), Some(key), move |inputs, by| inputs.setup.height_m += by * by_m);
     }
-    let by_m = known.length * measured.setup.length_m / 2.0;
-    add("length", format!("{:.0} mm", 1e3 * by_m), InputShift::Length { by_m });
-    let by_m = known.height * measured.setup.height_m / 2.0;
-    add("section", format!("{:.0} mm", 1e3 * by_m), InputShift::Section { by_m });
-    let by_rad_s = known.angular_velocity_rad_s / 2.0;
-    let size = format!("{:.2}°/s", by_rad_s.to_degrees());
-    add("rotation at first contact", size, InputShift::AngularVelocity { by_rad_s });
-    let by_m_s = known.horizontal_velocity_m_s / 2.0;
-    add(
-        "sideways velocity at first contact",
-        format!("{by_m_s:.3} m/s"),
-        InputShift::HorizontalVelocity { by_m_s },
-    );
-    let share = known.clock / 2.0;
-    add("recorder's clock", format!("{:.3} %", 100.0 * share), InputShift::Clock { share });
-    for (input, [name, size]) in measured.second.iter().flat_map(|second| second.inputs).enumerate() {
-        add(name, size.clone(), InputShift::OfSecondImpact { input });
+
+    /// Rotation and sideways velocity, the recorder's clock, and what the second impact has of its own.
+    fn add_further(&mut self, measured: &FitData) {
+        let known = &measured.tolerances;
+        let by_rad_s = known.angular_velocity_rad_s / 2.0;
+        let remedy = "an angular-rate sensor and the rest before the release";
+        let (tolerance, by_u) = ("angular_velocity_deg_s", DEGREE / by_rad_s);
+        let key = stated(tolerance, "drop.angular_velocity_deg_s", "1°/s", by_u, remedy);
+        let size = format!("{:.2}°/s", by_rad_s.to_degrees());
+        self.add("rotation at first contact", size, Some(key), move |inputs, by| inputs.turn_faster(by * by_rad_s));
+        let by_m_s = known.horizontal_velocity_m_s / 2.0;
+        let (tolerance, remedy) = ("horizontal_velocity_m_s", "high-speed video of the fall");
+        let key = stated(tolerance, "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1 / by_m_s, remedy);
+        self.add("sideways velocity at first contact", format!("{by_m_s:.3} m/s"), Some(key), move |inputs, by| {
+            inputs.setup.horizontal_velocity_m_s += by * by_m_s;
+        });
+        let share = known.clock / 2.0;
+        let key = stated("clock_percent", "tolerance.clock_percent", "1 %", 0.01 / share, REST);
+        let size = format!("{:.3} %", 100.0 * share);
+        self.add("recorder's clock", size, Some(key), move |inputs, by| inputs.setup.second_s += by * share);
+        for (input, [name, size]) in measured.second.iter().flat_map(|second| second.inputs).enumerate() {
+            self.add(name, size.clone(), None, move |inputs, by| inputs.second_u[input] += by);
+        }
     }
-    all
+
+    /// The scales of channels that were calibrated with the same thing: one input each, since they are off
+    /// together.
+    fn add_shared_calibrations(&mut self, measured: &FitData) {
+        let first = self.0.len();
+        for (channel, signal) in measured.signals.iter().enumerate().take(measured.flight.plateaus.len()) {
+            let Some(reference) = measured.spec(channel).and_then(|spec| spec.reference.as_ref()) else {
+                continue;
+            };
+            let name = format!("calibration by {reference}");
+            let (share, shift) = scale(measured, channel);
+            match self.0[first..].iter_mut().find(|input| input.name == name) {
+                Some(input) => input.shifts.push(shift),
+                None => self.add(name, percent(share), Some(calibration(&signal.name, share, REST)), shift),
+            }
+        }
+    }
+
+    /// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads
+    /// roll × place.
+    fn add_roll(&mut self, measured: &FitData) {
+        let place = |(channel, signal): (usize, &Signal)| {
+            let spec = measured.spec(channel).filter(|_| signal.axis == Axis::Transverse)?;
+            (spec.lateral_m != 0.0).then_some((channel, ROLL_RAD_S * spec.lateral_m))
+        };
+        let own = measured.signals.iter().enumerate().take(measured.flight.plateaus.len());
+        let steps_m_s: Vec<(usize, f64)> = own.filter_map(place).collect();
+        if !steps_m_s.is_empty() {
+            let size = format!("{:.0}°/s", ROLL_RAD_S.to_degrees());
+            self.add("roll after the first contact", size, None, move |inputs, by| {
+                for (channel, add_m_s) in &steps_m_s {
+                    inputs.step(*channel, by * add_m_s);
+                }
+            });
+        }
+    }
+
+    /// Step, calibration, cross axis and position of one channel.
+    fn add_channel(&mut self, measured: &FitData, motion: &Motion, channel: usize) {
+        let (signal, known) = (&measured.signals[channel], &measured.tolerances);
+        let name = |what: &str| format!("{what} of {}", signal.name);
+        let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
+        let u_m_s =
+            if is_stood_in { measured.flight.plateaus[channel].u_m_s } else { u_step_m_s(measured, channel) };
+        let step = move |inputs: &mut Inputs, by: f64| inputs.step(channel, by * u_m_s);
+        self.add(name("velocity step"), format!("{u_m_s:.3} m/s"), None, step);
+        if let Some(landing) = &measured.flight.landing {
+            let add_m_s = landing.u_m_s[channel];
+            self.add(name("step by the touch"), format!("{add_m_s:.3} m/s"), None, move |inputs, by| {
+                let steps_m_s = inputs.flight.landing.as_mut().map(|landing| &mut landing.steps_m_s);
+                if let Some(step_m_s) = steps_m_s.and_then(|steps_m_s| steps_m_s.get_mut(channel)) {
+                    *step_m_s += by * add_m_s;
+                }
+            });
+        }
+        if is_stood_in {
+            // Its sensor's errors are those of the channel that it is made of.
+            return;
+        }
+        if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
+            let (share, shift) = scale(measured, channel);
+            self.add(name("calibration"), percent(share), Some(calibration(&signal.name, share, REST)), shift);
+        }
+        let (share, add_m_s) = (known.base_strain / 2.0, u_base_strain_m_s(measured, channel));
+        let (tolerance, key) = ("base_strain_percent", "tolerance.base_strain_percent");
+        let strain = stated(tolerance, key, "1 %", 0.01 / share, SECOND_SENSOR);
+        let step = move |inputs: &mut Inputs, by: f64| inputs.step(channel, by * add_m_s);
+        self.add(name("base strain"), percent(share), Some(strain), step);
+        let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
+        let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
+        let omega = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
+        let is_transverse = signal.axis == Axis::Transverse;
+        let other_m_s = if is_transverse {
+            axial_m_s
+        } else {
+            transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
+        };
+        let share = known.cross_axis / 2.0;
+        let cross = stated("cross_axis_percent", "axis", "1°", DEGREE / share, "check how the sensor sits");
+        self.add(name("cross axis"), percent(share), Some(cross.of(&signal.name)), move |inputs, by| {
+            inputs.step(channel, -by * share * other_m_s);
+            inputs.crosses[channel] += by * share;
+        });
+        if is_transverse {
+            let by_m = known.position_m / 2.0;
+            let place = stated("position_m", "position_m", "10 mm", 0.01 / by_m, SECOND_SENSOR);
+            self.add(name("position"), mm(by_m), Some(place.of(&signal.name)), move |inputs, by| {
+                // A sensor farther from L by δ reads Ω δ = −ω δ more.
+                inputs.step(channel, by * omega * by_m);
+                inputs.places_m[channel] += by * by_m;
+            });
+        }
+    }
+}
+
+/// Standard uncertainty of a channel's scale, and what it does.
+fn scale(measured: &FitData, channel: usize) -> (f64, Shift) {
+    let own = measured.spec(channel).and_then(|spec| spec.calibration);
+    let share = own.unwrap_or(measured.tolerances.calibration) / 2.0;
+    let step_m_s = measured.flight.plateaus[channel].velocity_step_m_s;
+    let shift = move |inputs: &mut Inputs, by: f64| {
+        inputs.step(channel, by * share * step_m_s);
+        inputs.scales[channel] += by * share;
+    };
+    (share, Box::new(shift))
 }
 
 fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
-/// Standard uncertainty of a channel's scale.
-fn u_scale(measured: &FitData, channel: usize) -> f64 {
-    let own = measured.spec(channel).and_then(|spec| spec.calibration);
-    own.unwrap_or(measured.tolerances.calibration) / 2.0
-}
-
-/// The scales of channels that were calibrated with the same thing: one input each, since they are off
-/// together.
-fn shared_calibrations(measured: &FitData) -> Vec<UncertainInput> {
-    let mut shared: Vec<UncertainInput> = Vec::new();
-    for channel in 0..measured.flight.plateaus.len().min(measured.signals.len()) {
-        let Some(reference) = measured.spec(channel).and_then(|spec| spec.reference.as_ref()) else {
-            continue;
-        };
-        let share = u_scale(measured, channel);
-        let (name, change) = (format!("calibration by {reference}"), InputShift::Scale { channel, share });
-        match shared.iter_mut().find(|input| input.name == name) {
-            Some(input) => input.changes.push(change),
-            None => shared.push(UncertainInput { name, size: percent(share), changes: vec![change] }),
-        }
-    }
-    shared
-}
-
-/// The scale of an angular-rate sensor.
-fn rate_calibration(measured: &FitData, (sensor, rotation): (usize, &MeasuredRotation)) -> UncertainInput {
-    let share = rotation.calibration.unwrap_or(measured.tolerances.calibration) / 2.0;
-    UncertainInput {
-        name: format!("calibration of {}", rotation.channel),
-        size: percent(share),
-        changes: vec![InputShift::RateScale { sensor, share }],
-    }
-}
-
-/// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads roll
-/// × place.
-fn roll(measured: &FitData) -> Option<UncertainInput> {
-    let at = |channel: usize| measured.spec(channel).map_or(0.0, |spec| spec.lateral_m);
-    let is_beside =
-        |&channel: &usize| measured.signals[channel].axis == Axis::Transverse && at(channel) != 0.0;
-    let beside = (0..measured.flight.plateaus.len().min(measured.signals.len())).filter(is_beside);
-    let step = |channel| InputShift::Step { channel, add_m_s: ROLL_RAD_S * at(channel) };
-    let changes: Vec<InputShift> = beside.map(step).collect();
-    let size = format!("{:.0}°/s", ROLL_RAD_S.to_degrees());
-    (!changes.is_empty()).then(|| UncertainInput {
-        name: "roll after the first contact".into(),
-        size,
-        changes,
-    })
-}
-
-/// Step, calibration, cross axis and position of one channel.
-fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion, channel: usize) {
-    let (signal, known) = (&measured.signals[channel], &measured.tolerances);
-    if channel >= measured.flight.plateaus.len() {
-        return;
-    }
-    let mut add = |name: &str, size: String, change: InputShift| {
-        all.push(UncertainInput { name: format!("{name} of {}", signal.name), size, changes: vec![change] });
-    };
-    let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
-    let u_m_s =
-        if is_stood_in { measured.flight.plateaus[channel].u_m_s } else { u_step_m_s(measured, channel) };
-    add("velocity step", format!("{u_m_s:.3} m/s"), InputShift::Step { channel, add_m_s: u_m_s });
-    if let Some(landing) = &measured.flight.landing {
-        let add_m_s = landing.u_m_s[channel];
-        let shift = InputShift::Landing { channel: Some(channel), add_m_s };
-        add("step by the touch", format!("{add_m_s:.3} m/s"), shift);
-    }
-    if is_stood_in {
-        // Its sensor's errors are those of the channel that it is made of.
-        return;
-    }
-    if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
-        let share = u_scale(measured, channel);
-        add("calibration", percent(share), InputShift::Scale { channel, share });
-    }
-    let share = known.base_strain / 2.0;
-    let strain = InputShift::BaseStrain { channel, add_m_s: u_base_strain_m_s(measured, channel), share };
-    add("base strain", percent(share), strain);
-    let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
-    let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
-    let omega = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
-    let is_transverse = signal.axis == Axis::Transverse;
-    let other_m_s = if is_transverse {
-        axial_m_s
-    } else {
-        transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
-    };
-    let share = known.cross_axis / 2.0;
-    add("cross axis", percent(share), InputShift::Cross { channel, share, other_m_s });
-    if is_transverse {
-        let by_m = known.position_m / 2.0;
-        let place = InputShift::Place { channel, by_m, gained_rad_s: omega };
-        add("position", format!("{:.0} mm", 1e3 * by_m), place);
-    }
+fn mm(length_m: f64) -> String {
+    format!("{:.0} mm", 1e3 * length_m)
 }
 
 /// Velocity of S along the body axes, m/s: transverse, axial.

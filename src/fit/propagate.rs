@@ -139,7 +139,7 @@ impl<'a> Model<'a> {
     /// One line a datum: the inputs, then the observables; largest first.
     fn budget(&self, by_datum: &DMatrix<f64>, strikes: bool) -> Vec<Contribution> {
         let inputs =
-            self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), i.tolerance(self.measured.setup)));
+            self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), i.stated.as_ref().map(|s| s.tolerance)));
         let own =
             |o: &Observable| (o.name(), o.words(self.measured, &self.motion, 1.0).replace('+', ""), None);
         let names = inputs.chain(self.observables.iter().map(own));

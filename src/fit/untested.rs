@@ -2,7 +2,7 @@
 //! the half-width of its interval is found by no check.
 
 use super::FitData;
-use super::inputs::{InputShift, Inputs, RELEASE, REST, SECOND_SENSOR, StatedKey, UncertainInput};
+use super::inputs::{Inputs, RELEASE, REST, SECOND_SENSOR, UncertainInput};
 use crate::data::{FlightFit, MISSED_U, Quantities, Untested, UntestedMoves};
 
 /// A number so many half-widths off is wrong.
@@ -75,34 +75,22 @@ pub(super) fn untested(
 /// An input that a file states, what a mistake in it moves left open, and how many of its standard
 /// uncertainties a mistake is; `None` where the recording gives it.
 fn of_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)> {
-    let change = input.changes.first()?;
-    let mut own = change.stated(measured.setup)?;
-    let what = match own.key {
+    let stated = input.stated.as_ref()?;
+    let what = match stated.key {
         "axis" => input.name.replace("cross axis", "tilt"),
         "drop.height_m" => "drop height".into(),
         "cask.inertia_kg_m2" => "inertia, with contents that move".into(),
         _ => input.name.clone(),
     };
-    let key = match *change {
-        InputShift::Scale { channel, .. }
-        | InputShift::Cross { channel, .. }
-        | InputShift::Place { channel, .. } => {
-            let name = &measured.signals[channel].name;
-            if own.remedy == REST && measured.rests.iter().any(|rest| rest.channel == *name) {
-                own.remedy = SECOND_SENSOR;
-            }
-            format!("channel.{}.{}", measured.spec(channel)?.name, own.key)
-        }
-        InputShift::RateScale { sensor, .. } => {
-            format!("channel.{}.{}", measured.rotations[sensor].channel, own.key)
-        }
-        _ => {
-            if own.remedy == REST && !measured.rests.is_empty() && measured.fall_s.is_none() {
-                own.remedy = RELEASE;
-            }
-            own.key.to_owned()
-        }
+    let (rests, by_rest) = (measured.rests, stated.remedy == REST);
+    let (key, remedy) = if let Some(name) = &stated.channel {
+        let is_at_rest = by_rest && rests.iter().any(|rest| rest.channel == *name);
+        let remedy = if is_at_rest { SECOND_SENSOR } else { stated.remedy };
+        (format!("channel.{name}.{}", stated.key), remedy)
+    } else {
+        let lacks_fall = by_rest && !rests.is_empty() && measured.fall_s.is_none();
+        (stated.key.to_owned(), if lacks_fall { RELEASE } else { stated.remedy })
     };
-    let StatedKey { by, by_u, remedy, .. } = own;
-    Some((Untested { what, key, by, moves: UntestedMoves::default(), remedy }, by_u))
+    let untested = Untested { what, key, by: stated.by, moves: UntestedMoves::default(), remedy };
+    Some((untested, stated.by_u))
 }
