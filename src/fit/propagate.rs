@@ -30,12 +30,11 @@ pub(super) struct Propagated {
 
 /// The reconstruction as a function of its inputs' moves.
 pub(super) struct Model<'a> {
-    measured: &'a FitData<'a>,
     reconstruct: Reconstruct<'a>,
     pub(super) base: Inputs,
     motion: Motion,
     pub(super) inputs: Vec<UncertainInput>,
-    observables: Vec<Observable>,
+    observables: Vec<Observable<'a>>,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
 }
@@ -46,15 +45,7 @@ impl<'a> Model<'a> {
         let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);
         let observables = observables(measured, &motion);
-        Some(Self {
-            measured,
-            reconstruct,
-            base,
-            motion,
-            inputs,
-            observables,
-            known_slopes: Mutex::default(),
-        })
+        Some(Self { reconstruct, base, motion, inputs, observables, known_slopes: Mutex::default() })
     }
 
     fn follow(&self, inputs: &Inputs) -> Option<Motion> {
@@ -64,7 +55,7 @@ impl<'a> Model<'a> {
     /// The quantities, and the observables' misses, each over its own standard uncertainty.
     fn read(&self, inputs: &Inputs) -> Option<(Quantities<f64>, Vec<f64>)> {
         let motion = self.follow(inputs)?;
-        let missed = self.observables.iter().map(|o| o.residual(self.measured, inputs, &motion));
+        let missed = self.observables.iter().map(|o| o.residual(inputs, &motion));
         Some((Quantities::of(&motion), missed.collect::<Option<_>>()?))
     }
 
@@ -140,8 +131,7 @@ impl<'a> Model<'a> {
     fn budget(&self, by_datum: &DMatrix<f64>, strikes: bool) -> Vec<Contribution> {
         let inputs =
             self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), i.stated.as_ref().map(|s| s.tolerance)));
-        let own =
-            |o: &Observable| (o.name(), o.words(self.measured, &self.motion, 1.0).replace('+', ""), None);
+        let own = |o: &Observable| (o.name.clone(), o.words(1.0).replace('+', ""), None);
         let names = inputs.chain(self.observables.iter().map(own));
         let mut budget: Vec<Contribution> = names
             .zip(by_datum.column_iter())
@@ -167,10 +157,10 @@ impl<'a> Model<'a> {
         let in_u = MissesInU::of(&slopes);
         let beside = in_u.beside_others(&misses);
         let closure = |(i, observable): (usize, &Observable)| Closure {
-            name: observable.name(),
-            kind: observable.kind(),
-            channel: observable.channel().map(str::to_owned),
-            miss: observable.words(self.measured, &self.motion, misses[i]),
+            name: observable.name.clone(),
+            kind: observable.kind,
+            channel: observable.channel.clone(),
+            miss: observable.words(misses[i]),
             miss_in_u: misses[i] / in_u.u[i],
             beside_others_in_u: beside[i],
         };
