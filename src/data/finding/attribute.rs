@@ -4,19 +4,16 @@ use super::{IssueCode as Code, Severity};
 
 findings! {
 /// A finding about the unit, scale or offset of a dataset.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AttributeFinding of Attribute {
     /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless
     /// where its value does nothing.
-    #[error(
-        "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of \
-         the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete \
-         that of the group where each dataset has its own"
-    )]
     GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool }
-        => (Code::Scale, if *is_harmless { Note } else { Warning });
+        => (Code::Scale, if *is_harmless { Note } else { Warning }),
+        ("the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of \
+         the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete \
+         that of the group where each dataset has its own");
     /// Reading would refuse them: the problem and its remedy.
-    #[error("{0}")]
-    Refused(words: String) => (Code::Scale, Warning);
+    Refused(words: String) => (Code::Scale, Warning),
+        ("{words}");
 }
 }

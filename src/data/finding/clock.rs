@@ -6,18 +6,17 @@ use crate::data::shown::{digits, hz};
 
 findings! {
 /// A finding about two things that say when samples were taken.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClockFinding of Clock {
     /// A rate was taken, and another one is said.
-    #[error("{0}; the first was taken, and every velocity goes with the rate: if the second is right, write \
-             sample_rate_hz = {rate}", rate = hz(.0.other_hz))]
-    Rates(apart: RatesApart) => (Code::Clock, Warning);
+    Rates(apart: RatesApart) => (Code::Clock, Warning),
+        ("{apart}; the first was taken, and every velocity goes with the rate: if the second is right, write \
+         sample_rate_hz = {rate}", rate = hz(apart.other_hz));
     /// Times were taken, and another column or dataset does not bear them out.
-    #[error("{0}; the first was taken, and every velocity goes with it")]
-    Times(apart: TimesApart) => (Code::Clock, Warning);
+    Times(apart: TimesApart) => (Code::Clock, Warning),
+        ("{apart}; the first was taken, and every velocity goes with it");
     /// A listing has no rate, for reading would refuse: the problem and its remedy.
-    #[error("{0}")]
-    Refused(words: String) => (Code::Clock, Warning);
+    Refused(words: String) => (Code::Clock, Warning),
+        ("{words}");
 }
 }
 

@@ -1,17 +1,18 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
-/// An enum of findings, each with its sentence, and behind the arrow its code and severity. `of` names their
-/// kind where they are not of one channel.
+/// An enum of findings: behind the arrow of each its code and severity, then its sentence, as `format` takes
+/// it. `of` names their kind where they are not of one channel.
 macro_rules! findings {
     (
         $(#[$of_enum:meta])*
         pub enum $name:ident $(of $kind:ident)? {$(
             $(#[$of_variant:meta])*
             $variant:ident $({ $($field:ident: $type:ty),* $(,)? })? $(($inner:ident: $inner_type:ty))?
-                => $code:expr;
+                => $code:expr, ($($sentence:tt)*);
         )*}
     ) => {
         $(#[$of_enum])*
+        #[derive(Debug, Clone, PartialEq)]
         #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
         pub enum $name {$(
             $(#[$of_variant])*
@@ -26,6 +27,15 @@ macro_rules! findings {
                 use Severity::{Error, Note, Warning};
                 match self {$(
                     Self::$variant $({ $($field),* })? $(($inner))? => $code,
+                )*}
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            #[allow(unused_variables, reason = "not every number of a variant is told")]
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                match self {$(
+                    Self::$variant $({ $($field),* })? $(($inner))? => write!(f, $($sentence)*),
                 )*}
             }
         }
