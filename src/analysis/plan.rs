@@ -235,16 +235,10 @@ fn half_sine(spec: &ChannelSpec, step_m_s: f64, lasts_s: f64, flight_s: f64) -> 
         axis: spec.axis,
         position_m: spec.position_m,
         offset_m: spec.offset_m,
-        start_s: 0.0,
         sample_rate_hz,
         force_m_s2: (0..count).map(|i| force(f64::from(i) / sample_rate_hz)).collect(),
-        removed_offset_m_s2: 0.0,
-        u_offset_m_s2: 0.0,
-        noise_m_s2: 0.0,
-        noise_spectrum: Vec::new(),
         free_fall_s: CONTACT_S,
-        clipped: Vec::new(),
-        gaps: Vec::new(),
+        ..Signal::default()
     };
     let plateau = Plateau {
         channel: spec.name.clone(),

@@ -121,9 +121,6 @@ fn result(
     DropResult {
         schema: "dropcheck.result/1",
         version: env!("CARGO_PKG_VERSION"),
-        program: None,
-        command: Vec::new(),
-        analysed: None,
         input: Input {
             recording: recording.path.display().to_string(),
             recording_sha256: recording.sha256.clone(),
@@ -137,27 +134,16 @@ fn result(
         first_impact: FirstImpact::new(events.first_contact.map(time), quantities),
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),
         k: quantities.map(|q| q.k),
-        amplification: None,
-        prototype: None,
         impacts: [End::First, End::Second].map(ImpactTable::unknown),
-        reconstruction: None,
-        model: None,
         predictions: predictions(file, None),
-        comparison: None,
         test: file.test.clone(),
-        observed: Vec::new(),
-        limits: Vec::new(),
         quality: findings,
         verdict,
         events,
         channels,
-        other_channels: Vec::new(),
-        flight: None,
-        budget: Vec::new(),
-        untested: Vec::new(),
         settings: of_cask_file(file, &events).into_iter().chain(of_rest(recording, &events)).collect(),
-        keys: serde_json::Value::Null,
         cask_text: file.text.clone(),
+        ..DropResult::default()
     }
 }
 

@@ -117,13 +117,9 @@ fn signal(
         start_s: channel.time_s(from),
         sample_rate_hz: channel.sample_rate_hz,
         force_m_s2: force,
-        removed_offset_m_s2: 0.0,
-        u_offset_m_s2: 0.0,
-        noise_m_s2: 0.0,
-        noise_spectrum: vec![],
-        free_fall_s: 0.0,
         clipped,
         gaps,
+        ..Signal::default()
     };
     findings.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
     findings.extend(hum::treat(&mut signal, event.near_s, corrections.hum));

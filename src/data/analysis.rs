@@ -18,10 +18,11 @@ use super::test_record::{Limit, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The overall word on a result, in the order of their gravity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// No check found a problem.
+    #[default]
     Pass,
     /// A warning is to be read before the numbers are used.
     Review,
@@ -30,7 +31,7 @@ pub enum Verdict {
 }
 
 /// Which files went in.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Input {
     /// The recording, as given.
     pub recording: String,
@@ -231,7 +232,7 @@ impl Program {
 }
 
 /// The result as `result.json` has it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DropResult {
     /// "dropcheck.result/1".
     pub schema: &'static str,

@@ -44,17 +44,18 @@ impl std::fmt::Display for End {
 }
 
 /// A body axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
     /// η, away from the target.
+    #[default]
     Transverse,
     /// ξ, from L to R.
     Axial,
 }
 
 /// How the first end meets the target tangentially.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Contact {
     /// The contact point does not slide.
     Rough,
@@ -63,6 +64,7 @@ pub enum Contact {
     /// Coulomb friction with this coefficient.
     Coulomb(f64),
     /// Nobody says: anything from smooth to rough.
+    #[default]
     Unknown,
 }
 
@@ -84,9 +86,10 @@ impl Serialize for Contact {
 }
 
 /// How a sensor is coupled.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Coupling {
     /// Down to 0 Hz.
+    #[default]
     Dc,
     /// A first-order high-pass with this time constant, s.
     Ac {
@@ -146,6 +149,12 @@ impl std::fmt::Display for RowsOf {
     }
 }
 
+impl Default for Source {
+    fn default() -> Self {
+        Self::Path(String::new())
+    }
+}
+
 impl std::fmt::Display for Source {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -159,9 +168,10 @@ impl std::fmt::Display for Source {
 }
 
 /// The `[filter]` table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum FilterChoice {
     /// Chosen from the mass and the data.
+    #[default]
     Auto,
     /// A channel frequency class of SAE J211 / ISO 6487.
     Cfc(f64),
@@ -170,7 +180,7 @@ pub enum FilterChoice {
 }
 
 /// The `[cask]` table with its defaults filled in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Cask {
     /// The cask's name.
     pub name: String,
@@ -192,7 +202,7 @@ pub struct Cask {
 }
 
 /// The `[drop]` table with its defaults filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Drop {
     /// Free-fall height of the lowest point, of the centre of gravity where the cask rotates, m.
     pub height_m: f64,
@@ -250,11 +260,8 @@ impl Drop {
             height_m,
             angle_rad,
             impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(),
-            impact_velocity_given: false,
             gravity_m_s2: 9.81,
-            angular_velocity_rad_s: 0.0,
-            horizontal_velocity_m_s: 0.0,
-            contact_duration_s: 0.0,
+            ..Self::default()
         }
     }
 
@@ -287,7 +294,7 @@ impl Drop {
 pub const BENDING_WAVE_M_S: f64 = 1000.0;
 
 /// One `[[channel]]` table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ChannelSpec {
     /// Name, unique in the file.
     pub name: String,
@@ -330,24 +337,7 @@ impl ChannelSpec {
     /// is stated.
     #[must_use]
     pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            end,
-            axis: Axis::Transverse,
-            source: Source::Path(source.to_owned()),
-            unit: None,
-            position_m,
-            offset_m: 0.0,
-            polarity: 1.0,
-            full_scale: None,
-            sample_rate_hz: None,
-            rows: None,
-            time: None,
-            coupling: Coupling::Dc,
-            calibration: None,
-            reference: None,
-            lateral_m: 0.0,
-            sensor: SensorRecord::default(),
-        }
+        let (name, source) = (name.to_owned(), Source::Path(source.to_owned()));
+        Self { name, end, source, position_m, polarity: 1.0, ..Self::default() }
     }
 }

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// A cask file, checked.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct CaskFile {
     /// The file.
     pub path: PathBuf,
@@ -73,27 +73,6 @@ impl CaskFile {
     /// A file that states cask, drop and contact alone, with the usual tolerances.
     #[must_use]
     pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
-        Self {
-            path: "cask.toml".into(),
-            sha256: String::new(),
-            text: String::new(),
-            cask,
-            scale: None,
-            drop,
-            contact,
-            filter: FilterChoice::Auto,
-            tolerances: Tolerances::default(),
-            corrections: Corrections::default(),
-            time: None,
-            rest: None,
-            channels: Vec::new(),
-            others: Vec::new(),
-            test: TestRecord::default(),
-            observed: Vec::new(),
-            limits: Vec::new(),
-            letterhead: Letterhead::default(),
-            is_rotation_measured: false,
-            defaults: Vec::new(),
-        }
+        Self { path: "cask.toml".into(), cask, drop, contact, ..Self::default() }
     }
 }

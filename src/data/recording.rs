@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A container format, told by content.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum RecordingFormat {
     /// MCAP, version 0.
     #[serde(rename = "MCAP")]
@@ -23,6 +23,7 @@ pub enum RecordingFormat {
     #[serde(rename = "ISO-MME")]
     Mme,
     /// None: samples in memory.
+    #[default]
     #[serde(rename = "samples")]
     Samples,
 }

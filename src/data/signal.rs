@@ -10,7 +10,7 @@ pub const MOST_LOST_M_S: f64 = 0.27;
 /// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
 ///
 /// Sample i was taken at `start_s + i / sample_rate_hz`. Missing samples are 0 and listed in `gaps`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Signal {
     /// The channel's name.
     pub name: String,
