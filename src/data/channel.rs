@@ -19,6 +19,21 @@ pub enum Samples {
     F64(Vec<f64>),
 }
 
+/// What is made alike of samples of either precision.
+macro_rules! of_either {
+    ($samples:expr, $values:ident => $made:expr) => {
+        match $samples {
+            $crate::data::Samples::F32($values) => $made,
+            $crate::data::Samples::F64($values) => $made,
+        }
+    };
+}
+pub(crate) use of_either;
+
+fn wide<T: Copy + Into<f64>>(sample: &T) -> f64 {
+    (*sample).into()
+}
+
 impl Default for Samples {
     fn default() -> Self {
         Self::F32(Vec::new())
@@ -29,10 +44,7 @@ impl Samples {
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
-        match self {
-            Self::F32(v) => v.len(),
-            Self::F64(v) => v.len(),
-        }
+        of_either!(self, v => v.len())
     }
 
     /// Whether there are none.
@@ -44,10 +56,7 @@ impl Samples {
     /// Sample `index` as f64; panics beyond the end, as a slice does.
     #[must_use]
     pub fn get(&self, index: usize) -> f64 {
-        match self {
-            Self::F32(v) => f64::from(v[index]),
-            Self::F64(v) => v[index],
-        }
+        of_either!(self, v => wide(&v[index]))
     }
 
     /// All as f64.
@@ -69,10 +78,7 @@ impl Samples {
 
     /// How many are no numbers.
     pub(crate) fn missing(&self) -> usize {
-        match self {
-            Self::F32(v) => v.iter().filter(|x| !is_number(f64::from(**x))).count(),
-            Self::F64(v) => v.iter().filter(|x| !is_number(**x)).count(),
-        }
+        of_either!(self, v => v.iter().filter(|x| !is_number(wide(*x))).count())
     }
 
     /// Puts what `f` makes of each in its place.
@@ -86,18 +92,12 @@ impl Samples {
 
     /// Gives back the memory that they do not need.
     pub(crate) fn shrink(&mut self) {
-        match self {
-            Self::F32(v) => v.shrink_to_fit(),
-            Self::F64(v) => v.shrink_to_fit(),
-        }
+        of_either!(self, v => v.shrink_to_fit());
     }
 
     /// Keeps the first `count` of them.
     pub(crate) fn truncate(&mut self, count: usize) {
-        match self {
-            Self::F32(v) => v.truncate(count),
-            Self::F64(v) => v.truncate(count),
-        }
+        of_either!(self, v => v.truncate(count));
     }
 
     /// Those at the indices given, in that order.
@@ -214,10 +214,7 @@ impl Channel {
     pub fn force_m_s2(&self, from: usize, to: usize) -> Vec<f64> {
         let to = to.min(self.samples.len());
         let from = from.min(to);
-        match &self.samples {
-            Samples::F32(v) => v[from..to].iter().map(|&x| f64::from(x) * self.scale_m_s2).collect(),
-            Samples::F64(v) => v[from..to].iter().map(|&x| x * self.scale_m_s2).collect(),
-        }
+        of_either!(&self.samples, v => v[from..to].iter().map(|x| wide(x) * self.scale_m_s2).collect())
     }
 
     /// The smallest and the largest sample, in `unit`, each the first of its size; `None` where no sample is

@@ -14,7 +14,7 @@ pub use release::{FreeFall, at_rest, feels_gravity, free_fall, rest_over_fall};
 pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
 pub use taps::blow_answers;
 
-use crate::data::{Axis, Channel, End, Samples, Signal};
+use crate::data::{Axis, Channel, End, Signal, of_either};
 use crate::numerics::reduce;
 use std::ops::Range;
 
@@ -62,10 +62,7 @@ pub fn without_first_mode(
 
 /// Means of the finite samples of blocks of `size` over a range of a channel, m/s²; NaN where there is none.
 fn block_means_m_s2(channel: &Channel, range: Range<usize>, size: usize) -> Vec<f64> {
-    let mut means = match &channel.samples {
-        Samples::F32(v) => reduce::finite_block_means(&v[range], size),
-        Samples::F64(v) => reduce::finite_block_means(&v[range], size),
-    };
+    let mut means = of_either!(&channel.samples, v => reduce::finite_block_means(&v[range], size));
     for mean in &mut means {
         *mean *= channel.scale_m_s2;
     }

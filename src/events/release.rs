@@ -2,7 +2,7 @@
 //! it.
 
 use super::block_means_m_s2;
-use crate::data::{AtRest, Channel, Drop, RestLevel, RestReading, Samples};
+use crate::data::{AtRest, Channel, Drop, RestLevel, RestReading, of_either};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -207,12 +207,8 @@ impl<'a> Record<'a> {
     fn converter_step_m_s2(&self) -> f64 {
         *self.converter_step_m_s2.get_or_init(|| {
             let scale = self.channel.scale_m_s2.abs();
-            let Range { start, end } = self.samples.clone();
-            let least = scale
-                * match &self.channel.samples {
-                    Samples::F32(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
-                    Samples::F64(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
-                };
+            let (samples, range) = (&self.channel.samples, self.samples.clone());
+            let least = scale * of_either!(samples, v => reduce::least_step(&v[range], 1e-9 / scale));
             if least.is_finite() { least } else { 0.0 }
         })
     }

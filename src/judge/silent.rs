@@ -1,6 +1,6 @@
 //! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
 
-use crate::data::{Channel, ChannelFinding, Finding, Samples};
+use crate::data::{Channel, ChannelFinding, Finding, of_either};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
@@ -38,10 +38,7 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
 
 fn reach(channel: &Channel) -> Excursion {
     let scale = channel.scale_m_s2.abs();
-    match &channel.samples {
-        Samples::F32(v) => reach_of(v, scale),
-        Samples::F64(v) => reach_of(v, scale),
-    }
+    of_either!(&channel.samples, v => reach_of(v, scale))
 }
 
 fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
