@@ -36,7 +36,6 @@ pub use analysis::*;
 pub use cask::*;
 pub use cask_file::*;
 pub use channel::*;
-pub(crate) use channel::of_either;
 pub use check::*;
 pub use curves::*;
 pub use estimate::*;

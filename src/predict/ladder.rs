@@ -3,7 +3,6 @@
 use super::held::Held;
 use super::impact::{Struck, strike_first_end};
 use super::path::{PathEnd, Way};
-use super::resting::RestEnd;
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{predict, rod, thin_rod};
@@ -93,10 +92,8 @@ impl Case<'_> {
     fn held(&self, after: &State) -> PathEnd {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
-                match Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after) {
-                    RestEnd::Strikes(at, time_s) => Some((at, time_s)),
-                    RestEnd::LiftsOff(..) | RestEnd::Never => None,
-                }
+                let end = Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after);
+                end.filter(|end| end.strikes).map(|end| (end.at, end.time_s))
             }
             _ => self.closed_form(after).and_then(|held| {
                 let time_s = Some(held.time_s()).filter(|time_s| time_s.is_finite())?;

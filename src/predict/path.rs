@@ -2,7 +2,7 @@
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::{Struck, strike_first_end};
-use super::pulse::{PulseEnd, push_first_end};
+use super::pulse::push_first_end;
 use super::resting::RestEnd;
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
@@ -48,28 +48,23 @@ impl<'a> Way<'a> {
             graze_m: graze_share.map(|share| share * body.length_m),
         }
     }
-}
 
-impl Way<'_> {
     /// L's first impact, as long as the drop says, and the way after it.
     pub fn from(mut self, start: &State, drop: &Drop, k: f64) -> (Struck, PathEnd) {
         let body = self.support.body;
-        match push_first_end(body, start, drop, self.support.contact, k) {
-            PulseEnd::Strikes(struck, time_s) => {
-                let second_end = Some((struck.after, time_s)).filter(|(at, _)| self.is_slap_down(at));
-                (struck, PathEnd { second_end, impacts: 1, regime: FlightRegime::Contact })
-            }
-            PulseEnd::Leaves(struck) => {
-                if drop.contact_duration_s > 0.0 {
-                    self.support.sunk_m = -struck.after.corner(body, body.cog_m).height_m;
-                }
-                let mut outcome = self.follow(struck.after, k);
-                if let Some((_, time_s)) = &mut outcome.second_end {
-                    *time_s += drop.contact_duration_s;
-                }
-                (struck, outcome)
-            }
+        let (struck, strikes_s) = push_first_end(body, start, drop, self.support.contact, k);
+        if let Some(time_s) = strikes_s {
+            let second_end = Some((struck.after, time_s)).filter(|(at, _)| self.is_slap_down(at));
+            return (struck, PathEnd { second_end, impacts: 1, regime: FlightRegime::Contact });
         }
+        if drop.contact_duration_s > 0.0 {
+            self.support.sunk_m = -struck.after.corner(body, body.cog_m).height_m;
+        }
+        let mut outcome = self.follow(struck.after, k);
+        if let Some((_, time_s)) = &mut outcome.second_end {
+            *time_s += drop.contact_duration_s;
+        }
+        (struck, outcome)
     }
 
     /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
@@ -81,22 +76,18 @@ impl Way<'_> {
         loop {
             if self.rests(&state) {
                 let (end, held) = self.rest(&state);
-                match end {
-                    RestEnd::Strikes(at, time_s) => {
-                        let whole = held && outcome.impacts == 1 && elapsed_s == 0.0;
-                        outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
-                        outcome.second_end = Some((at, elapsed_s + time_s));
-                        return outcome;
-                    }
-                    RestEnd::LiftsOff(at, time_s) => {
-                        if time_s > 0.0 {
-                            outcome.regime = FlightRegime::Mixed;
-                        }
-                        state = at;
-                        elapsed_s += time_s;
-                    }
-                    RestEnd::Never => return outcome,
+                let Some(RestEnd { at, time_s, strikes }) = end else { return outcome };
+                if strikes {
+                    let whole = held && outcome.impacts == 1 && elapsed_s == 0.0;
+                    outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
+                    outcome.second_end = Some((at, elapsed_s + time_s));
+                    return outcome;
                 }
+                if time_s > 0.0 {
+                    outcome.regime = FlightRegime::Mixed;
+                }
+                state = at;
+                elapsed_s += time_s;
             }
             let second_s = second_end_touches(body, gravity_m_s2, &state);
             match self.strikes_again(&state, second_s) {
@@ -132,22 +123,16 @@ impl Way<'_> {
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0,
     /// unless it sinks deeper than a graze: then it has not left the target at all and slides on until it
     /// rises by itself. The flag says whether the contact law held L all the time.
-    fn rest(&self, from: &State) -> (RestEnd, bool) {
+    fn rest(&self, from: &State) -> (Option<RestEnd>, bool) {
         let end = self.support.rest(from);
-        let RestEnd::LiftsOff(at, time_s) = end else { return (end, true) };
-        let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
-        if self
-            .strikes_again(&at, second_s)
-            .is_none_or(|again_s| again_s > LET_GO_S / self.gravity_share().sqrt())
-        {
-            return (RestEnd::LiftsOff(at, time_s), true);
+        let Some(lifted) = end.filter(|end| !end.strikes) else { return (end, true) };
+        let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &lifted.at);
+        let again_s = self.strikes_again(&lifted.at, second_s);
+        if again_s.is_none_or(|again_s| again_s > LET_GO_S / self.gravity_share().sqrt()) {
+            return (end, true);
         }
-        let end = match (Support { hold: Hold::Yields, ..self.support }).rest(&at) {
-            RestEnd::Strikes(at, more_s) => RestEnd::Strikes(at, time_s + more_s),
-            RestEnd::LiftsOff(at, more_s) => RestEnd::LiftsOff(at, time_s + more_s),
-            RestEnd::Never => RestEnd::Never,
-        };
-        (end, false)
+        let slid = (Support { hold: Hold::Yields, ..self.support }).rest(&lifted.at);
+        (slid.map(|end| RestEnd { time_s: lifted.time_s + end.time_s, ..end }), false)
     }
 
     /// When L strikes again before R does, deeper than a graze   (9)

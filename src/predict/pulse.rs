@@ -18,14 +18,6 @@ const CLOSE_M_S: f64 = 1e-5;
 /// A corner slower than this does not slide, m/s.
 const STOPPED_M_S: f64 = 1e-9;
 
-/// How a pulse ends.
-pub(super) enum PulseEnd {
-    /// L leaves the target.
-    Leaves(Struck),
-    /// R strikes while L is still pressed on: the motion then, and the time since first contact.
-    Strikes(Struck, f64),
-}
-
 /// A half-sine of force on L's corner.
 struct Pulse<'a> {
     body: &'a Body,
@@ -39,12 +31,19 @@ struct Pulse<'a> {
 /// impulse   (41)
 ///
 /// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by
-/// moment. Where no such force is found the impulse stands.
-pub(super) fn push_first_end(body: &Body, before: &State, drop: &Drop, contact: Contact, k: f64) -> PulseEnd {
+/// moment. Where no such force is found the impulse stands. Where R strikes while L is still pressed on, the
+/// motion is that, with the time since first contact, s.
+pub(super) fn push_first_end(
+    body: &Body,
+    before: &State,
+    drop: &Drop,
+    contact: Contact,
+    k: f64,
+) -> (Struck, Option<f64>) {
     let struck = strike_first_end(body, before, contact, k);
     let duration_s = drop.contact_duration_s;
     if duration_s <= 0.0 || struck.vertical_impulse_n_s <= 0.0 {
-        return PulseEnd::Leaves(struck);
+        return (struck, None);
     }
     let friction = coefficient(contact);
     Pulse { body, gravity_m_s2: drop.gravity_m_s2, friction, duration_s, steps: STEPS }.push(before, struck)
@@ -52,7 +51,7 @@ pub(super) fn push_first_end(body: &Body, before: &State, drop: &Drop, contact: 
 
 impl Pulse<'_> {
     /// The pulse that lets L's corner go as fast as `struck` does.
-    fn push(&self, before: &State, struck: Struck) -> PulseEnd {
+    fn push(&self, before: &State, struck: Struck) -> (Struck, Option<f64>) {
         let Self { body, gravity_m_s2, duration_s, .. } = *self;
         let leaves_m_s = struck.after.corner(body, body.cog_m).vertical_velocity_m_s;
         let start = self.stopped(before);
@@ -62,9 +61,7 @@ impl Pulse<'_> {
         };
         // ∫ F sin(π t/T) dt = 2 F T/π
         let first_n = struck.vertical_impulse_n_s * PI / (2.0 * duration_s);
-        let Some(force_n) = secant(missed, first_n) else {
-            return PulseEnd::Leaves(struck);
-        };
+        let Some(force_n) = secant(missed, first_n) else { return (struck, None) };
         let (left, time_s) = self.end(&start, force_n, true);
         let momentum = |after: f64, before: f64| (after - before) * body.mass_kg;
         let fallen_m_s = time_s * gravity_m_s2;
@@ -77,7 +74,7 @@ impl Pulse<'_> {
             after: left,
             ..struck
         };
-        if time_s < duration_s { PulseEnd::Strikes(pushed, time_s) } else { PulseEnd::Leaves(pushed) }
+        (pushed, Some(time_s).filter(|time_s| *time_s < duration_s))
     }
 
     /// Friction without limit stops the corner before the normal force has done anything.
@@ -244,9 +241,7 @@ mod tests {
                     let friction = coefficient(contact);
                     let end = |steps| {
                         let pulse = Pulse { body: &body, gravity_m_s2: 9.81, friction, duration_s, steps };
-                        match pulse.push(&start, struck()) {
-                            PulseEnd::Leaves(struck) | PulseEnd::Strikes(struck, _) => struck.after,
-                        }
+                        pulse.push(&start, struck()).0.after
                     };
                     let (few, many) = (end(STEPS), end(16 * STEPS));
                     none += u32::from(few == struck().after);

@@ -20,13 +20,13 @@ const LONGEST: f64 = 40.0;
 const STILL: f64 = 1e-9;
 
 /// How a rest of L on the target ends.
-pub(super) enum RestEnd {
-    /// R strikes: the motion then, and the time since the start, s.
-    Strikes(State, f64),
-    /// L lifts off.
-    LiftsOff(State, f64),
-    /// The body stands, or turns over the other way.
-    Never,
+#[derive(Clone, Copy)]
+pub(super) struct RestEnd {
+    pub at: State,
+    /// Since the start, s.
+    pub time_s: f64,
+    /// Whether R strikes; else L lifts off.
+    pub strikes: bool,
 }
 
 /// What is used up when a stretch with one grip ends.
@@ -40,24 +40,22 @@ enum Margin {
 }
 
 impl Support<'_> {
-    /// Follows L's rest on the target to its end. Whole turns that the body made in flight do not count.
-    pub fn rest(&self, from: &State) -> RestEnd {
+    /// Follows L's rest on the target to its end; `None` where the body stands, or turns over the other way.
+    /// Whole turns that the body made in flight do not count.
+    pub fn rest(&self, from: &State) -> Option<RestEnd> {
         let turns_rad = TAU * (from.angle_rad / TAU).round();
-        match self.rest_within_a_turn(&from.turned(-turns_rad)) {
-            RestEnd::Strikes(at, time_s) => RestEnd::Strikes(at.turned(turns_rad), time_s),
-            RestEnd::LiftsOff(at, time_s) => RestEnd::LiftsOff(at.turned(turns_rad), time_s),
-            RestEnd::Never => RestEnd::Never,
-        }
+        let end = self.rest_within_a_turn(&from.turned(-turns_rad))?;
+        Some(RestEnd { at: end.at.turned(turns_rad), ..end })
     }
 
     /// Past the vertical L does not bring R down on this side.
-    fn rest_within_a_turn(&self, from: &State) -> RestEnd {
+    fn rest_within_a_turn(&self, from: &State) -> Option<RestEnd> {
         let mut elapsed_s = 0.0;
         if from.angle_rad.cos() <= 0.0 {
-            return RestEnd::Never;
+            return None;
         }
         if from.angle_rad <= self.down_rad() {
-            return RestEnd::Strikes(*from, elapsed_s);
+            return Some(RestEnd { at: *from, time_s: elapsed_s, strikes: true });
         }
         let mut at = Turning::of(self.body, from);
         let unit_s = (self.body.length_m / self.gravity_m_s2).sqrt();
@@ -71,11 +69,11 @@ impl Support<'_> {
             if self.hold != Hold::Pulls && forces.normal_m_s2 <= 0.0 {
                 // What lifts off at once moves as the impact left it.
                 let lifted = if elapsed_s == 0.0 { *from } else { self.state(&at) };
-                return RestEnd::LiftsOff(lifted, elapsed_s);
+                return Some(RestEnd { at: lifted, time_s: elapsed_s, strikes: false });
             }
             let turning_rad_s = at.angular_velocity_rad_s.abs();
             if turning_rad_s < STILL && forces.angular_acceleration_rad_s2.abs() < STILL {
-                return RestEnd::Never;
+                return None;
             }
             let step_s = (STEP / turning_rad_s).min(STEP * unit_s);
             let next = self.step(&at, grip, step_s);
@@ -87,14 +85,15 @@ impl Support<'_> {
             let (taken_s, ended) = self.until_used_up(&at, grip, step_s);
             at = self.step(&at, grip, taken_s);
             elapsed_s += taken_s;
-            match ended {
-                Margin::Angle => return RestEnd::Strikes(self.state(&at), elapsed_s),
-                Margin::Lift => return RestEnd::LiftsOff(self.state(&at), elapsed_s),
-                Margin::Hold if grip != Grip::Sticks => at.slip_m_s = 0.0,
-                Margin::Hold => {}
+            if !matches!(ended, Margin::Hold) {
+                let strikes = matches!(ended, Margin::Angle);
+                return Some(RestEnd { at: self.state(&at), time_s: elapsed_s, strikes });
+            }
+            if grip != Grip::Sticks {
+                at.slip_m_s = 0.0;
             }
         }
-        RestEnd::Never
+        None
     }
 
     /// The time within a step of `step_s` at which the first margin is used up, and which one.
@@ -142,12 +141,10 @@ mod tests {
         })
     }
 
-    fn second_end(end: &RestEnd) -> (State, f64) {
-        match end {
-            RestEnd::Strikes(state, time_s) => (*state, *time_s),
-            RestEnd::LiftsOff(..) => panic!("L lifts off"),
-            RestEnd::Never => panic!("R never strikes"),
-        }
+    fn second_end(end: Option<RestEnd>) -> (State, f64) {
+        let RestEnd { at, time_s, strikes } = end.expect("R strikes some time");
+        assert!(strikes, "L lifts off");
+        (at, time_s)
     }
 
     #[test]
@@ -157,7 +154,7 @@ mod tests {
             for (angle_rad, w) in [(0.1, 4.0), (0.5, 2.0), (1.0, 0.3)] {
                 let start = turning(&body, angle_rad, w);
                 let support = support(&body, contact, Hold::Pulls);
-                let (state, time_s) = second_end(&support.rest(&start));
+                let (state, time_s) = second_end(support.rest(&start));
                 let held = Held { body: &body, gravity_m_s2: 9.81, slides, start };
                 let (closed, closed_s) = (held.at_second_end().expect("R strikes"), held.time_s());
                 // Fourth order with 0.02 rad a step: 3e-9; Simpson with 64 steps: 1e-7 of the time.
@@ -171,12 +168,9 @@ mod tests {
     #[test]
     fn a_pivot_lifts_off_where_the_rods_force_changes_sign() {
         let rod = thin_rod(1000.0, 5.0);
-        let RestEnd::LiftsOff(at, time_s) =
-            support(&rod, Contact::Rough, Hold::Pushes).rest(&turning(&rod, 1.3, 1.0))
-        else {
-            panic!("it stays");
-        };
-        assert!(time_s > 0.0);
+        let end = support(&rod, Contact::Rough, Hold::Pushes).rest(&turning(&rod, 1.3, 1.0));
+        let RestEnd { at, time_s, strikes } = end.expect("it does not stay");
+        assert!(!strikes && time_s > 0.0);
         // physics: N/m = g (1 − ¾ cos² φ) − (l/2) ω² sin φ for the rough rod.
         let (sin, cos) = at.angle_rad.sin_cos();
         let normal_m_s2 = 9.81 * (1.0 - 0.75 * cos * cos) - 2.5 * at.angular_velocity_rad_s.powi(2) * sin;
@@ -188,7 +182,7 @@ mod tests {
         let body = Body { height_m: 0.6, ..thin_rod(1000.0, 5.0) };
         let start = turning(&body, 0.9, 0.5);
         let energy_j = |state: &State| state.kinetic_energy_j(&body) + body.mass_kg * 9.81 * state.height_m;
-        let with = |contact| second_end(&support(&body, contact, Hold::Pulls).rest(&start)).0;
+        let with = |contact| second_end(support(&body, contact, Hold::Pulls).rest(&start)).0;
         let before_j = energy_j(&start);
         for contact in [Contact::Rough, Contact::Smooth] {
             assert!((energy_j(&with(contact)) / before_j - 1.0).abs() < 3e-9);
@@ -204,8 +198,8 @@ mod tests {
         let body = Body { height_m: 0.8, ..thin_rod(1000.0, 5.0) };
         let rest =
             |angle_rad| support(&body, Contact::Rough, Hold::Pushes).rest(&turning(&body, angle_rad, 0.0));
-        assert!(matches!(rest(std::f64::consts::FRAC_PI_2 - 0.05), RestEnd::Never));
-        assert!(matches!(rest((5.0_f64 / 0.8).atan()), RestEnd::Never));
-        assert!(matches!(rest(1.3), RestEnd::LiftsOff(..)));
+        assert!(rest(std::f64::consts::FRAC_PI_2 - 0.05).is_none());
+        assert!(rest((5.0_f64 / 0.8).atan()).is_none());
+        assert!(rest(1.3).is_some_and(|end| !end.strikes));
     }
 }

@@ -71,9 +71,7 @@ impl<'a> Support<'a> {
     pub fn of(body: &'a Body, drop: &Drop, contact: Contact, hold: Hold) -> Self {
         Self { body, gravity_m_s2: drop.gravity_m_s2, contact, hold, sunk_m: 0.0 }
     }
-}
 
-impl Support<'_> {
     /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T
     /// N: ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
     pub fn forces(&self, at: &Turning, grip: Grip) -> Forces {
