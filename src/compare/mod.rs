@@ -1,7 +1,7 @@
 //! Measured beside predicted: the models tried, the one taken and whether it agrees.
 
 use crate::data::{
-    Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, LADDER_TOLERANCE_PERCENT, ModelCandidate,
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, ModelCandidate,
     ModelChoice, Prediction, Quantities, Rung,
 };
 
@@ -83,7 +83,7 @@ impl Comparing<'_> {
             let candidate = self.candidate(rung);
             let always = rung == Rung::Rod || (rung == Rung::Body && self.body.model == BodyModel::Body);
             let below = candidates.last().and_then(|c| c.predicted);
-            if always || differ(below, candidate.predicted) {
+            if always || !Rung::say_the_same(below, candidate.predicted) {
                 candidates.push(candidate);
             }
         }
@@ -185,15 +185,6 @@ pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
     match stated {
         Contact::Unknown => Contact::Coulomb(measured.friction.value.max(0.0)),
         stated => stated,
-    }
-}
-
-/// Whether a rung changes what the one below says.
-fn differ(below: Option<f64>, richer: Option<f64>) -> bool {
-    match (below, richer) {
-        (Some(below), Some(richer)) => (richer - below).abs() > LADDER_TOLERANCE_PERCENT / 100.0 * below,
-        (None, None) => false,
-        _ => true,
     }
 }
 

@@ -35,6 +35,16 @@ impl Rung {
         Self::ALL.into_iter().filter(move |rung| is_timed || *rung != Self::FinitePulse)
     }
 
+    /// Whether the speeds by a rung and by a richer one are the same, within the tolerance of the ladder.
+    #[must_use]
+    pub fn say_the_same(speed: Option<f64>, richer: Option<f64>) -> bool {
+        match (speed, richer) {
+            (Some(own), Some(richer)) => (richer - own).abs() <= LADDER_TOLERANCE_PERCENT / 100.0 * own,
+            (None, None) => true,
+            _ => false,
+        }
+    }
+
     /// Its name for a person.
     #[must_use]
     pub fn words(self) -> &'static str {

@@ -4,7 +4,7 @@ use crate::data::{
     Closure, ClosureKind, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U,
     ReconstructionChoice, ReconstructionRung, Signal,
 };
-use crate::numerics::as_f64;
+use crate::numerics::pooled::chi_square_quantile;
 
 /// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a
 /// scale is not as stated.
@@ -13,6 +13,10 @@ const GROSS_U: f64 = 12.0;
 /// The second impact's rotation is named from here on, by chance in one of 400: it is the one closure that
 /// tells a length off by 5 %, and by no more than this in half of the drops.
 const LENGTH_U: f64 = 3.0;
+
+/// χ² at this normal quantile is passed by chance as often as one closure passes [`MISSED_U`]: a normal deviate
+/// is above 3.31 as often as it is beyond ± 3.5.
+const CHANCE: f64 = 3.31;
 
 /// A gap within this time of the first contact may hide the contact, s.
 const CONTACT_S: f64 = 1e-3;
@@ -61,18 +65,10 @@ fn together(choice: &ReconstructionChoice) -> Option<Finding> {
     let (chi_square, degrees) = choice.chi_square?;
     let most_u = |c: &Closure| if c.kind == ClosureKind::SecondTurning { LENGTH_U } else { MISSED_U };
     let apart = choice.closures.iter().any(|c| c.most_in_u() > most_u(c));
-    (apart || chi_square > most_chi_square(degrees)).then(|| {
+    (apart || chi_square > chi_square_quantile(degrees, CHANCE)).then(|| {
         let closures = choice.closures.iter().filter(|c| c.most_in_u() > 1.0).cloned().collect();
         DropFinding::AllMissed { chi_square, degrees, closures }.into()
     })
-}
-
-/// χ² that chance passes as often as one closure passes [`MISSED_U`] (Wilson & Hilferty 1931).
-fn most_chi_square(degrees: usize) -> f64 {
-    let n = as_f64(degrees);
-    // A normal deviate is above 3.31 as often as it is beyond ± 3.5.
-    let share = 2.0 / (9.0 * n);
-    n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
 /// A closure that is missed, as a finding.

@@ -75,7 +75,7 @@ impl Pooled {
 
 /// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three
 /// degrees of freedom on.
-fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
+pub fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
     let nu = as_f64(degrees);
     let share = 2.0 / (9.0 * nu);
     nu * (1.0 - share + z * share.sqrt()).max(0.0).powi(3)

@@ -7,7 +7,7 @@ use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{predict, rod, thin_rod};
 use crate::data::{
-    Body, Contact, Drop, FlightRegime, LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Prediction, Rung,
+    Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung,
 };
 
 /// What is predicted: a body, its drop, the contact law and k.
@@ -43,7 +43,7 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
 }
 
 /// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than
-/// [`LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
+/// [`crate::data::LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
 #[must_use]
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
@@ -56,20 +56,11 @@ pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     }
     let speeds: Vec<Option<f64>> = steps.iter().map(|step| step.prediction.slap_down_speed_m_s).collect();
     let suffices = (0..steps.len())
-        .find(|&i| speeds[i..].iter().all(|richer| alike(speeds[i], *richer)))
+        .find(|&i| speeds[i..].iter().all(|richer| Rung::say_the_same(speeds[i], *richer)))
         .map_or(Rung::FinitePulse, |i| steps[i].rung);
     // Free of the last digits of the conversion.
     let angle_deg = (drop.angle_rad.to_degrees() * 1e9).round() / 1e9;
     Ladder { angle_deg, contact, k, steps, suffices }
-}
-
-/// Whether two rungs say the same, within the tolerance of the ladder.
-fn alike(one: Option<f64>, other: Option<f64>) -> bool {
-    match (one, other) {
-        (Some(one), Some(other)) => (other - one).abs() <= LADDER_TOLERANCE_PERCENT / 100.0 * one,
-        (None, None) => true,
-        _ => false,
-    }
 }
 
 /// An impact law: body, motion before, contact law and k to the motion after.
