@@ -3,6 +3,7 @@
 
 use super::flight::Flown;
 use super::impact::Impact;
+use super::impacts::Tabulated;
 use crate::data::{
     BodyModel, CaskFile, Comparison, DropFinding, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice,
 };
@@ -68,6 +69,10 @@ impl Measured {
         let (model, comparison) = compared.unzip();
         let comparison = comparison.flatten();
         findings.extend(comparison.as_ref().and_then(judge::judge_comparison));
+        let tabulated = flown.tabulated.as_ref();
+        let untold = tabulated.and_then(|t| t.untold(impact.recorded(), events));
+        findings.extend(untold.filter(|_| flight.landing.is_none()));
+        findings.extend(tabulated.and_then(Tabulated::two_maxima));
         Some(Self { model, comparison })
     }
 }

@@ -10,7 +10,6 @@ mod impacts;
 pub mod missing_end;
 mod others;
 mod plan;
-mod progress;
 mod rest;
 mod result;
 mod rotation;
@@ -31,8 +30,6 @@ use comparison::Measured;
 use flight::Flown;
 use flight_search::Patience;
 use impact::Impact;
-use impacts::Tabulated;
-use progress::Reached;
 use std::borrow::Cow;
 
 /// From a recording and a cask file to everything that can be said of the drop.
@@ -135,21 +132,10 @@ fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analy
         || result::ShownSignals::of(&impact.signals, &events, file),
     );
     findings.extend(on_channels);
-    let reached = match flown {
-        None => Reached::Impact,
-        Some(flown) => match Measured::of(&flown, &impact, &events, file, &mut findings) {
-            None => Reached::Flown(Box::new(flown)),
-            Some(measured) => {
-                let tabulated = flown.tabulated.as_ref();
-                let untold = tabulated.and_then(|t| t.untold(impact.recorded(), &events));
-                findings.extend(untold.filter(|_| flown.flight.landing.is_none()));
-                findings.extend(tabulated.and_then(Tabulated::two_maxima));
-                Reached::Measured(Box::new(flown), measured)
-            }
-        },
-    };
-    if !matches!(reached, Reached::Measured(..)) {
+    let judged = |flown: &Flown| Measured::of(flown, &impact, &events, file, &mut findings);
+    let measured = flown.as_ref().and_then(judged);
+    if measured.is_none() {
         findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
     }
-    result::of(recording, file, findings, result::Examined { impact, events, shown, reached })
+    result::of(recording, file, findings, result::Examined { impact, events, shown, flown, measured })
 }

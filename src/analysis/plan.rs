@@ -36,8 +36,14 @@ fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
         plan.why_no_intervals = Some("the cask file has no transverse channel on each end");
         return plan;
     }
-    let intervals = candidates(file).into_iter().map(|candidate| candidate.intervals(file, k));
-    match intervals.collect() {
+    // By the budget of the fit of the predicted impact, a half sine in each channel, without noise and
+    // ringing   (48)
+    let expected = |(with, specs): (&'static str, Vec<ChannelSpec>)| {
+        let quantities = ExpectedDrop::of(file, &specs, k)?.quantities(file, &specs)?;
+        let slap_down_speed_u95_m_s = quantities.speed?.u95;
+        Some(ExpectedIntervals { with, slap_down_speed_u95_m_s, k_u95: quantities.k.u95 })
+    };
+    match candidates(file).into_iter().map(expected).collect() {
         Some(intervals) => plan.intervals = intervals,
         None => plan.why_no_intervals = Some("no single flight to a slap-down is predicted"),
     }
@@ -81,18 +87,8 @@ fn largest_step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction)
     }
 }
 
-/// Channels whose intervals are expected.
-struct Candidate {
-    with: &'static str,
-    specs: Vec<ChannelSpec>,
-}
-
 /// The channels as they are, and with one thing more each.
-fn candidates(file: &CaskFile) -> Vec<Candidate> {
-    let candidate = |with, added: Vec<ChannelSpec>| Candidate {
-        with,
-        specs: file.channels.iter().cloned().chain(added).collect(),
-    };
+fn candidates(file: &CaskFile) -> [(&'static str, Vec<ChannelSpec>); 3] {
     let like = |end: End, axis: Axis| {
         let of_end = |spec: &&ChannelSpec| spec.end == end && spec.axis == Axis::Transverse;
         let name = format!("another at the {end:?} end, {axis:?}");
@@ -104,23 +100,15 @@ fn candidates(file: &CaskFile) -> Vec<Candidate> {
             ..spec.clone()
         })
     };
-    let each = |axis| [End::First, End::Second].into_iter().filter_map(|end| like(end, axis)).collect();
-    vec![
-        candidate("", Vec::new()),
-        candidate("an axial channel on each end", each(Axis::Axial)),
-        candidate("another transverse channel on each end", each(Axis::Transverse)),
+    let and_each = |axis| {
+        let added = [End::First, End::Second].into_iter().filter_map(|end| like(end, axis));
+        file.channels.iter().cloned().chain(added).collect()
+    };
+    [
+        ("", file.channels.clone()),
+        ("an axial channel on each end", and_each(Axis::Axial)),
+        ("another transverse channel on each end", and_each(Axis::Transverse)),
     ]
-}
-
-impl Candidate {
-    /// The intervals by the budget of the fit of the predicted impact, a half sine in each channel, without
-    /// noise and ringing   (48)
-    fn intervals(&self, file: &CaskFile, k: f64) -> Option<ExpectedIntervals> {
-        let expected = ExpectedDrop::of(file, &self.specs, k)?;
-        let quantities = expected.quantities(file, self)?;
-        let slap_down_speed_u95_m_s = quantities.speed?.u95;
-        Some(ExpectedIntervals { with: self.with, slap_down_speed_u95_m_s, k_u95: quantities.k.u95 })
-    }
 }
 
 /// The predicted impact as an analysis would have it.
@@ -152,13 +140,8 @@ impl ExpectedDrop {
         };
         let mut specs: Vec<&ChannelSpec> = specs.iter().collect();
         specs.sort_by_key(|spec| spec.axis == Axis::Axial);
-        let steps_m_s = specs.iter().map(|spec| step_m_s(spec, file, &predicted));
-        let read: Vec<(Signal, Plateau)> = specs
-            .iter()
-            .zip(steps_m_s)
-            .map(|(spec, step_m_s)| half_sine(spec, step_m_s, lasts_s, flight_s))
-            .collect();
-        let (signals, plateaus): (Vec<_>, Vec<_>) = read.into_iter().unzip();
+        let read = |spec: &&ChannelSpec| half_sine(spec, step_m_s(spec, file, &predicted), lasts_s, flight_s);
+        let (signals, plateaus): (Vec<_>, Vec<_>) = specs.iter().map(read).unzip();
         let flight = FlightFit {
             from_s: left_s,
             to_s: struck_s,
@@ -173,7 +156,7 @@ impl ExpectedDrop {
         Some(Self { integrated, flight, events })
     }
 
-    fn quantities(mut self, file: &CaskFile, candidate: &Candidate) -> Option<Quantities> {
+    fn quantities(mut self, file: &CaskFile, specs: &[ChannelSpec]) -> Option<Quantities> {
         let (setup, friction) = flight::contact(file, &self.integrated, &self.flight, &self.events);
         let moved = |flight: &FlightFit, events: &Events, setup: &_| {
             motion::outcome(&self.integrated, flight, events, setup)
@@ -191,7 +174,7 @@ impl ExpectedDrop {
             events: &self.events,
             setup: &setup,
             friction,
-            specs: &candidate.specs,
+            specs,
             tolerances: file.tolerances,
             // That of the half sine, by which its closure is met: the stated one but for what turning adds.
             inertia_m2: file.cask.is_body.then_some(motion.angular_impulse_m2_s / turned_rad_s),

@@ -2,8 +2,8 @@
 
 use super::flight::Flown;
 use super::impact::Impact;
+use super::comparison::Measured;
 use super::impacts;
-use super::progress::Reached;
 use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
@@ -23,7 +23,10 @@ pub(super) struct Examined {
     pub impact: Impact,
     pub events: Events,
     pub shown: ShownSignals,
-    pub reached: Reached,
+    /// The motion, where it could be had …
+    pub flown: Option<Flown>,
+    /// … and where what it says is to be stated.
+    pub measured: Option<Measured>,
 }
 
 /// The result where no impact was found.
@@ -40,13 +43,10 @@ pub(super) fn of(
     findings: Vec<Finding>,
     found: Examined,
 ) -> Analysis {
-    let Examined { impact, events, shown, reached } = found;
-    let measured = match &reached {
-        Reached::Measured(flown, _) => Some(flown),
-        Reached::Impact | Reached::Flown(_) => None,
-    };
-    let quantities = measured.map(|flown| &flown.quantities);
-    let effect = measured.and_then(|flown| filter_effect(&shown.smooth, &events, file, flown));
+    let Examined { impact, events, shown, flown, measured } = found;
+    let stated = flown.as_ref().filter(|_| measured.is_some());
+    let quantities = stated.map(|flown| &flown.quantities);
+    let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, file, flown));
     let signals = impact.recorded();
     let recorded = signals.len();
     let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
@@ -60,20 +60,20 @@ pub(super) fn of(
     }
     let mut motion = None;
     let mut result = result(recording, file, findings, (channels, events), quantities);
-    let tabulated = measured.and_then(|flown| flown.tabulated.as_ref());
+    let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, effect));
-    match reached {
-        Reached::Impact => {}
-        Reached::Flown(flown) => {
+    match flown.map(|flown| (flown, measured)) {
+        None => {}
+        Some((flown, None)) => {
             result.flight = Some(flown.flight);
             // A warning took the numbers away: what the motion misses is the reason.
             if result.quality.iter().all(|f| f.severity < Severity::Error) {
                 result.reconstruction = Some(flown.reconstruction.without_numbers());
             }
         }
-        Reached::Measured(flown, measured) => {
+        Some((flown, Some(measured))) => {
             result.reconstruction = Some(flown.reconstruction);
             result.predictions = predictions(file, Some((&flown.quantities, measured.model.as_ref())));
             result.model = measured.model;
