@@ -115,12 +115,19 @@ pub enum ChannelFinding {
     /// Nothing but noise while other channels show the impacts.
     Dead { farthest_m_s2: f64 } => (Code::DeadChannel, Error),
         ("{} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one or \
-         take the channel out of the cask file", how_still(*farthest_m_s2));
+         take the channel out of the cask file",
+         if *farthest_m_s2 > 0.0 {
+             format!("stays within {:.2} g of its mean, all of it noise or hum,", farthest_m_s2 / G)
+         } else { "holds one value".into() });
     /// Mains hum with so many harmonics beside the fundamental; `left_m_s` of velocity is not taken off.
     Hum { amplitude_m_s2: f64, frequency_hz: f64, harmonics: usize, is_taken_off: bool, left_m_s: f64,
           severity: Severity } => (Code::Hum, *severity),
         ("hums with {:.2} g at {frequency_hz:.1} Hz{} before the impact: {}; check shields and earth loops",
-         amplitude_m_s2 / G, with_harmonics(*harmonics), hum_left(*is_taken_off, *left_m_s));
+         amplitude_m_s2 / G,
+         if *harmonics > 0 { format!(" and {harmonics} harmonics") } else { String::new() },
+         if *is_taken_off {
+             format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity")
+         } else { format!("left as it is it swings the velocity by {left_m_s:.3} m/s") });
     /// Single samples far off their neighbours.
     Spikes { count: usize, held_m_s: f64, severity: Severity } => (Code::Spikes, *severity),
         ("has {count} spikes of one to five samples that no cask makes; left in, they move the velocity by \
@@ -265,13 +272,6 @@ fn cut_off(during: During, lost_m_s: f64, takes_step: bool) -> String {
     format!("in the {part}; about {lost_m_s:.2} m/s of velocity is cut off{had}")
 }
 
-fn how_still(farthest_m_s2: f64) -> String {
-    if farthest_m_s2 > 0.0 {
-        return format!("stays within {:.2} g of its mean, all of it noise or hum,", farthest_m_s2 / G);
-    }
-    "holds one value".into()
-}
-
 fn other_still(farthest: Option<f64>, unit: &str) -> String {
     match farthest {
         None => "holds no number".into(),
@@ -280,17 +280,6 @@ fn other_still(farthest: Option<f64>, unit: &str) -> String {
             format!("stays within {} {unit} of its rest, all of it noise,", digits(farthest, 3))
         }
     }
-}
-
-fn with_harmonics(harmonics: usize) -> String {
-    if harmonics > 0 { format!(" and {harmonics} harmonics") } else { String::new() }
-}
-
-fn hum_left(is_taken_off: bool, left_m_s: f64) -> String {
-    if is_taken_off {
-        return format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity");
-    }
-    format!("left as it is it swings the velocity by {left_m_s:.3} m/s")
 }
 
 fn times_ms(after_s: &[f64]) -> String {

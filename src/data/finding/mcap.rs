@@ -31,7 +31,8 @@ pub enum McapFinding of Mcap {
         ("the file's statistics count {claimed} messages, {found} were found");
     /// Messages that do not decode; in a listing with their topic.
     Undecoded { count: u64, messages: u64, topic: Option<String>, first: String } => (Code::Damaged, Warning),
-        ("{count} of {messages} messages {}; the first: {first}", undecoded(topic.as_deref()));
+        ("{count} of {messages} messages {}; the first: {first}",
+         topic.as_ref().map_or("do not decode and were skipped".into(), |t| format!("of {t} do not decode")));
     /// Messages whose stamp is of no use, beside others whose stamp is or not.
     LogTime { count: u64, messages: u64, beside_good: bool }
         => (Code::LogTimeUsed, if *beside_good { Warning } else { Note }),
@@ -53,7 +54,9 @@ pub enum McapFinding of Mcap {
          was left out, the data were read");
     /// A unit that changes between messages, where the cask file states one; in a listing with its source.
     TwoUnits { first: String, other: String, source: Option<String> } => (Code::Scale, Warning),
-        ("{}", changed_unit(source.as_deref(), &two_units(first, other)));
+        ("{}{}{}",
+         source.as_ref().map(|source| format!("{source}: ")).unwrap_or_default(), two_units(first, other),
+         if source.is_none() { "; all samples were taken in that of the cask file" } else { "" });
     /// What reading would say of a source's times.
     NoTimes { source: String, problem: String } => (Code::Clock, Warning),
         ("{source}: {problem}");
@@ -83,17 +86,6 @@ pub enum FileEnd {
 /// That a unit changes, for a finding and a refusal.
 pub(crate) fn two_units(first: &str, other: &str) -> String {
     format!("the unit changes between its messages, from {first:?} to {other:?}")
-}
-
-fn undecoded(topic: Option<&str>) -> String {
-    topic.map_or("do not decode and were skipped".into(), |topic| format!("of {topic} do not decode"))
-}
-
-fn changed_unit(source: Option<&str>, change: &str) -> String {
-    match source {
-        Some(source) => format!("{source}: {change}"),
-        None => format!("{change}; all samples were taken in that of the cask file"),
-    }
 }
 
 fn ends_early(at: u64, bytes: u64, inside: &str) -> String {

@@ -13,7 +13,9 @@ pub enum TimesFinding of Times {
     /// Samples of equal times, some with different values.
     CameTwice { samples: usize, different: usize }
         => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }),
-        ("{samples} sample(s) came twice with the same time: {}", copies(*different));
+        ("{samples} sample(s) came twice with the same time: {}",
+         if *different == 0 { "the copies were dropped".into() }
+         else { format!("{different} of them with different values, of which the first was kept") });
     /// Samples that are no numbers.
     NonFinite { samples: usize } => (Code::NonFinite, Warning),
         ("{samples} sample(s) are empty, NaN or infinite and count as missing");
@@ -35,13 +37,19 @@ pub enum TimesFinding of Times {
         ("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at \
          {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
          digits(step_s * rate_hz, 3), digits(*rate_hz, 6), digits(100.0 * uncertainty, 2),
-         uneven_steps(*off_s), if *is_sure { "" } else { "; give sample_rate_hz for this channel" },
+         off_s.map(|off_s| format!("; the times change up to {} s off even steps, so that samples may be \
+                                    missing", digits(off_s, 2))).unwrap_or_default(),
+         if *is_sure { "" } else { "; give sample_rate_hz for this channel" },
          step = digits(*step_s, 3));
     /// Coarse times beside a stated rate; `off_s` where they contradict it.
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> }
         => (Code::Clock, if off_s.is_some() { Warning } else { Note }),
         ("the times are cut to {} s{}; the samples were taken as evenly spaced at the declared {rate} Hz",
-         digits(*step_s, 3), uneven_at_rate(*off_s, *rate_hz), rate = digits(*rate_hz, 6));
+         digits(*step_s, 3),
+         off_s.map(|off_s| format!(" and change up to {} s off even steps at the declared {} Hz: samples are \
+                                    missing, or the rate is another", digits(off_s, 2), digits(*rate_hz, 6)))
+             .unwrap_or_default(),
+         rate = digits(*rate_hz, 6));
     /// Equal times beside a stated rate.
     AllEqual { rate_hz: f64 } => (Code::Clock, Note),
         ("all times are equal; the samples were taken as evenly spaced at the declared {} Hz",
@@ -73,7 +81,11 @@ pub enum TimesFinding of Times {
     /// Blocks over times that are there already, some with different samples.
     BlocksTwice { count: usize, different: usize }
         => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }),
-        ("{count} block(s) {}", copied_blocks(*different));
+        ("{count} block(s) {}",
+         if *different == 0 { "repeat samples that are there already; the copies were dropped".into() }
+         else { format!("cover times that are there already, {different} of them with different samples; \
+                         the first to start was kept; where they follow on one another in truth, the stamps \
+                         are too coarse for such blocks") });
 }
 }
 
@@ -125,38 +137,4 @@ impl Jitter {
             None => String::new(),
         }
     }
-}
-
-fn copies(different: usize) -> String {
-    match different {
-        0 => "the copies were dropped".into(),
-        _ => format!("{different} of them with different values, of which the first was kept"),
-    }
-}
-
-fn copied_blocks(different: usize) -> String {
-    match different {
-        0 => "repeat samples that are there already; the copies were dropped".into(),
-        _ => format!(
-            "cover times that are there already, {different} of them with different samples; the first to \
-             start was kept; where they follow on one another in truth, the stamps are too coarse for such \
-             blocks"
-        ),
-    }
-}
-
-fn uneven_steps(off_s: Option<f64>) -> String {
-    let words =
-        |off| format!("; the times change up to {off} s off even steps, so that samples may be missing");
-    off_s.map(|off_s| words(digits(off_s, 2))).unwrap_or_default()
-}
-
-fn uneven_at_rate(off_s: Option<f64>, rate_hz: f64) -> String {
-    let words = |off, rate| {
-        format!(
-            " and change up to {off} s off even steps at the declared {rate} Hz: samples are missing, or the \
-             rate is another"
-        )
-    };
-    off_s.map(|off_s| words(digits(off_s, 2), digits(rate_hz, 6))).unwrap_or_default()
 }
