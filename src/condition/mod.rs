@@ -5,10 +5,8 @@ mod disturbed;
 mod hum;
 mod offset;
 mod other;
-mod rotation;
 
-pub use other::read_other;
-pub use rotation::measured_rotation;
+pub use other::{measured_rotation, read_other};
 
 use crate::data::{
     Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,

@@ -1,8 +1,25 @@
-//! A channel that takes no part in the motion to what it reads: level at rest, noise, extremes, limits.
+//! A channel that takes no part in the motion to what it reads: level at rest, noise, extremes, limits; of an
+//! angular-rate sensor the rotation of the cask in the fall, and what the flight has beyond it   (45)
 
 use super::clipping;
-use crate::data::{Channel, Events, OtherSummary};
-use crate::numerics::robust;
+use crate::data::{
+    Channel, Events, FlightFit, MeasuredRotation, OtherSummary, RateSpec, RotationRate, Span, rate_unit_rad_s,
+};
+use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
+use crate::numerics::reduce::block_means;
+use crate::numerics::{as_f64, robust};
+use nalgebra::{DMatrix, DVector};
+
+/// So far from a release and a contact nothing of them is left, s: a hook lets go within some milliseconds.
+const CLEAR_S: f64 = 0.02;
+const BEFORE_CONTACT_S: f64 = 1e-3;
+/// Rest before the release that a zero is taken from, s.
+const REST_S: f64 = 1.0;
+/// A level of less is none: a period of 50 Hz hum.
+const LEAST_S: f64 = 0.02;
+const LEAST_SAMPLES: usize = 8;
+/// Means that the flight is fitted by, at most.
+const MOST_MEANS: usize = 240;
 
 /// What the channel reads over the whole recording; at rest before the release where the record shows it,
 /// else before the first contact.
@@ -32,6 +49,96 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
         (summary.rest, summary.noise) = (Some(rest), Some(noise));
     }
     summary
+}
+
+/// A sensor's rotation, by `usual_s` of the fall where its release is not seen; `None` where the sensor does
+/// not show fall and flight.
+#[must_use]
+pub fn measured_rotation(
+    (channel, spec): (&Channel, RateSpec),
+    usual_s: f64,
+    events: &Events,
+    flight: &FlightFit,
+) -> Option<MeasuredRotation> {
+    let scale_rad_s = spec.polarity * rate_unit_rad_s(&channel.unit)?;
+    let contact_s = events.fall_end_s.or(events.first_contact_s())? - BEFORE_CONTACT_S;
+    let sensor = RateReader { channel, scale_rad_s, clipped: &read_other(channel, events).clipped };
+    let fall_from_s = events.release_s.map_or(contact_s - usual_s, |at_s| at_s + CLEAR_S);
+    let fall = sensor.level(fall_from_s, contact_s)?;
+    let zero = match (events.release_s, channel.rest) {
+        (Some(at_s), _) => sensor.level(at_s - CLEAR_S - REST_S, at_s - CLEAR_S),
+        (None, rest) => rest.map(|rest| sensor.rate(rest.level, rest.u)),
+    };
+    let less = |a: RotationRate, b: RotationRate| RotationRate {
+        rad_s: a.rad_s - b.rad_s,
+        u_rad_s: a.u_rad_s.hypot(b.u_rad_s),
+    };
+    Some(MeasuredRotation {
+        channel: channel.name.clone(),
+        calibration: spec.calibration,
+        before: zero.map(|zero| less(fall, zero)),
+        gained: less(sensor.in_flight(flight)?, fall),
+    })
+}
+
+struct RateReader<'a> {
+    channel: &'a Channel,
+    /// rad/s per unit of the samples, positive brings R down.
+    scale_rad_s: f64,
+    clipped: &'a [Span],
+}
+
+impl RateReader<'_> {
+    fn rate(&self, level: f64, u: f64) -> RotationRate {
+        RotationRate { rad_s: self.scale_rad_s * level, u_rad_s: self.scale_rad_s.abs() * u }
+    }
+
+    /// The samples between two times, and the time of the first, s; `None` where they are too few or one
+    /// stands at a limit.
+    fn between(&self, from_s: f64, to_s: f64) -> Option<(Vec<f64>, f64)> {
+        let (from, to) = (self.channel.index_at(from_s), self.channel.index_at(to_s));
+        let is_clipped = self.clipped.iter().any(|span| span.from < to && span.to > from);
+        let values = self.channel.force_m_s2(from, to);
+        let is_whole = values.len() >= LEAST_SAMPLES && values.iter().all(|value| value.is_finite());
+        (is_whole && !is_clipped).then(|| (values, self.channel.time_s(from)))
+    }
+
+    /// The mean between two times; its uncertainty as that of an offset.
+    fn level(&self, from_s: f64, to_s: f64) -> Option<RotationRate> {
+        let (values, begins_s) = self.between(from_s, to_s)?;
+        let (mean, u) = robust::mean_and_u(&values);
+        (to_s - begins_s >= LEAST_S).then(|| self.rate(mean, u))
+    }
+
+    /// The constant part in the flight, beside the modes that the accelerometers show there.
+    fn in_flight(&self, flight: &FlightFit) -> Option<RotationRate> {
+        let (values, begins_s) = self.between(flight.from_s, flight.to_s)?;
+        let block = values.len().div_ceil(MOST_MEANS);
+        let means = DVector::from_vec(block_means(&values, block));
+        let step_s = as_f64(block) / self.channel.sample_rate_hz;
+        let middle_s = begins_s - flight.from_s + (as_f64(block) - 1.0) / 2.0 / self.channel.sample_rate_hz;
+        let mut parts = vec![DVector::from_element(means.len(), 1.0)];
+        for mode in &flight.modes {
+            let oscillation = Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping };
+            let ringing: Vec<_> = uniform_ringing(oscillation, middle_s, step_s).take(means.len()).collect();
+            parts.push(DVector::from_iterator(means.len(), ringing.iter().map(|z| z.re)));
+            parts.push(DVector::from_iterator(means.len(), ringing.iter().map(|z| z.im)));
+        }
+        let model = DMatrix::from_columns(&parts);
+        let inverse = model.tr_mul(&model).try_inverse()?;
+        let sizes = &inverse * model.tr_mul(&means);
+        let left = &means - &model * &sizes;
+        let spare = as_f64(means.len().checked_sub(parts.len() + 1)?);
+        let square = left.norm_squared().max(f64::MIN_POSITIVE);
+        // Neighbours that go together count as one   (21)
+        let lag = left.as_slice().windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / square;
+        let lag = lag.clamp(0.0, 0.95);
+        let u = (square / spare * (1.0 + lag) / (1.0 - lag) * inverse[(0, 0)]).sqrt();
+        let length_s = flight.to_s - flight.from_s;
+        let amplitudes = sizes.as_slice()[1..].chunks_exact(2).map(|size| size[0].hypot(size[1]));
+        let ringing = flight.modes.iter().zip(amplitudes).map(|(mode, size)| mode.u_plateau(size, length_s));
+        Some(self.rate(sizes[0], ringing.fold(u, f64::hypot)))
+    }
 }
 
 #[cfg(test)]

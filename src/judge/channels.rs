@@ -1,8 +1,32 @@
 //! Signals and events to what speaks against single channels.
 
-use super::{channel_checks, sampling};
-use crate::data::{CaskFile, ChannelFinding, During, Events, Finding, IssueCode, MOST_LOST_M_S, Signal};
+use super::sampling;
+use crate::data::{
+    Axis, CaskFile, ChannelFinding, During, End, Events, Finding, IssueCode, MOST_LOST_M_S,
+    STANDARD_GRAVITY_M_S2, Severity, Signal,
+};
+use crate::numerics::noise::integral_uncertainty_by;
+use crate::numerics::reduce;
 use std::ops::Range;
+
+/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ±
+/// 10 %.
+const MOST_NOISE: f64 = 0.05;
+/// Noise that deserves a note: as much as everything else that the interval carries.
+const NOTABLE_NOISE: f64 = 0.005;
+/// Longest integration that noise is held against, s: contact and the window of the flight's fit.
+const LONGEST_S: f64 = 0.1;
+/// A sensor sits on the cask within this, m: its bolt and the tape's hook.
+const SLACK_M: f64 = 0.05;
+/// A recording whose first sample exceeds this share of the first peak began during the impact.
+const UNDER_WAY: f64 = 0.1;
+/// Factors between units that are taken for one another: g and m/s², V and mV.
+const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
+/// Two measuring chains of one kind and unit have the same noise within this share.
+const ALIKE: f64 = 0.2;
+/// Taking g for m/s² scales noise and peaks by 9.8. Two channels in the same unit whose peaks differ by less
+/// than this factor are not suspected: peaks of 9.8 / 3 times another's, with 9.8 times its noise, are.
+const PEAKS: f64 = 3.0;
 
 /// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found`
 /// is what is known of them already.
@@ -25,7 +49,7 @@ pub fn judge_channels(
     let disturbed: Vec<&str> =
         found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
     findings.extend(sampling::judge_sampling(signals, events, &disturbed));
-    findings.extend(channel_checks::judge_by_themselves(signals, events, cask_file));
+    findings.extend(judge_by_themselves(signals, events, cask_file));
     findings
 }
 
@@ -65,3 +89,99 @@ fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<
     let found = ChannelFinding::LostStep { shows_slap_down: slap_down_s.is_some() };
     inside.then(|| found.on(&signal.name).between(contact_s, separation_s))
 }
+
+/// Checks of each channel by itself and against the others, beside those of its samples over the impact.
+fn judge_by_themselves(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
+    let mut findings = judge_places(signals, cask_file);
+    for signal in signals {
+        findings.extend(judge_noise(signal, events, cask_file.drop.impact_velocity_m_s));
+        findings.extend(under_way(signal, events));
+    }
+    findings.extend(units(signals));
+    findings
+}
+
+/// What the noise before first contact makes of the velocity.
+pub fn judge_noise(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
+    let contact_s = events.first_contact_s()?;
+    let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
+    let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
+    let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+    let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
+    let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.on(&signal.name))
+}
+
+/// What the first sample shows already is missing from the velocity step.
+fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
+    let contact_s = events.first_contact_s()?;
+    let to_s = events.separation_s().unwrap_or(contact_s + 0.02);
+    let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
+    let force = signal.force_m_s2.get(..signal.index_from(to_s))?;
+    let peak = reduce::extremes(force, 0.0).1;
+    let first = *force.first()?;
+    let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
+    let found = ChannelFinding::BeginsInImpact { share: first / peak };
+    (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak)
+        .then(|| found.on(&signal.name).between(signal.start_s, to_s))
+}
+
+/// Sensors beyond the ends of the cask, and ends that lie the other way round.
+pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
+    let length_m = cask_file.cask.length_m;
+    let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
+    let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.on(&s.name);
+    let mut findings: Vec<Finding> = signals.iter().filter(off).map(off_cask).collect();
+    let transverse = |end| signals.iter().filter(move |s| s.end == end && s.axis == Axis::Transverse);
+    for first in transverse(End::First) {
+        for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
+            let (position_m, second_m) = (first.position_m, second.position_m);
+            let found = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
+            findings.push(found.on(&first.name));
+        }
+    }
+    let middle_m = length_m / 2.0;
+    let far =
+        |s: &&Signal| if s.end == End::First { s.position_m > middle_m } else { s.position_m < middle_m };
+    let nearer = |s: &Signal| {
+        ChannelFinding::NearerOtherEnd { end: s.end, position_m: s.position_m, length_m }.on(&s.name)
+    };
+    if findings.is_empty() {
+        findings.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(nearer));
+    }
+    findings
+}
+
+/// Two transverse channels whose noise and peaks both differ by the factor between two units.
+fn units(signals: &[Signal]) -> Vec<Finding> {
+    let transverse: Vec<&Signal> = signals.iter().filter(|s| s.axis == Axis::Transverse).collect();
+    let peak = |s: &Signal| reduce::peak(&s.force_m_s2);
+    let mut findings = Vec::new();
+    for large in &transverse {
+        for small in &transverse {
+            if small.noise_m_s2 <= 0.0 {
+                continue;
+            }
+            // The noise first: peaks are asked for in all samples.
+            let noise = large.noise_m_s2 / small.noise_m_s2;
+            let Some((factor, names)) = UNITS.iter().find(|u| (noise / u.0 - 1.0).abs() < ALIKE) else {
+                continue;
+            };
+            let (highest, lowest) = (peak(large), peak(small));
+            if lowest <= 0.0 || highest / lowest <= factor / PEAKS {
+                continue;
+            }
+            let found = ChannelFinding::UnitFactor {
+                noise,
+                peak: highest / lowest,
+                other: small.name.clone(),
+                units: names,
+            };
+            findings.push(found.on(&large.name));
+        }
+    }
+    findings
+}
+
+#[cfg(test)]
+mod tests;

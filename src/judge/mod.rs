@@ -2,7 +2,6 @@
 
 mod at_rest;
 mod blows;
-mod channel_checks;
 mod channels;
 mod closures;
 mod copies;
@@ -14,7 +13,6 @@ mod missing;
 mod others;
 mod result;
 mod rigid;
-mod rotation;
 mod sampling;
 mod silent;
 mod skew;
@@ -25,8 +23,7 @@ pub use at_rest::{
     LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
 };
 pub use blows::judge_blows;
-pub use channel_checks::{judge_noise, judge_places};
-pub use channels::{is_cut_off, judge_channels};
+pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
@@ -34,10 +31,9 @@ pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use late_blow::{judge_late_blow, judge_rest};
 pub use limits::beside_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
-pub use others::{behind_the_motion, judge_other};
+pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotation};
 pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch};
 pub use rigid::{TransversePlace, judge_rigid, places};
-pub use rotation::{judge_rate_level, judge_rotation};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use silent::judge_silent;
 pub use skew::judge_skew;

@@ -1,6 +1,5 @@
 //! A second-order Butterworth low-pass forward and back: zero phase, stable at any cut-off.
 
-mod ends;
 mod stage;
 
 use super::as_count;
@@ -62,13 +61,13 @@ impl ZeroPhaseLowPass {
     /// The same of several series, which take little longer than one where they are of one length.
     #[must_use]
     pub fn apply_each(&self, all: &[&[f64]]) -> Vec<Vec<f64>> {
-        let mirrored = |samples: &&[f64]| ends::mirrored(samples, self.padding);
-        let (mut work, heads): (Vec<_>, Vec<_>) = all.iter().map(mirrored).unzip();
+        let (mut work, heads): (Vec<_>, Vec<_>) =
+            all.iter().map(|samples| mirrored(samples, self.padding)).unzip();
         stage::each_forward_and_back(&self.stage, FORGOTTEN * self.padding, &mut work);
         work.into_iter()
             .zip(heads)
             .zip(all)
-            .map(|((work, head), own)| ends::cut(work, head, own.len()))
+            .map(|((work, head), own)| cut(work, head, own.len()))
             .collect()
     }
 
@@ -81,7 +80,7 @@ impl ZeroPhaseLowPass {
         });
         stage::each_forward_and_back(&self.stage, FORGOTTEN * self.padding, &mut work);
         let mut counts = pulses.iter().map(|pulse| pulse.len());
-        work.map(|work| ends::cut(work, 1, counts.next().unwrap_or_default()))
+        work.map(|work| cut(work, 1, counts.next().unwrap_or_default()))
     }
 
     /// |H| of the whole (both passes) at a frequency, Hz, at the sample rate the filter was made for.
@@ -90,6 +89,28 @@ impl ZeroPhaseLowPass {
         let warped = (PI * frequency_hz / sample_rate_hz).tan() / self.gain;
         1.0 / (1.0 + warped.powi(4))
     }
+}
+
+/// The samples mirrored at both ends for `pad` samples, at most for all but the end sample, and how many
+/// stand in front of them.
+fn mirrored(samples: &[f64], pad: usize) -> (Vec<f64>, usize) {
+    let n = samples.len();
+    let pad = pad.min(n.saturating_sub(1));
+    if pad == 0 {
+        return (samples.to_vec(), 0);
+    }
+    let mut work = Vec::with_capacity(n + 2 * pad);
+    work.extend(samples[1..=pad].iter().rev());
+    work.extend_from_slice(samples);
+    work.extend(samples[n - 1 - pad..n - 1].iter().rev());
+    (work, pad)
+}
+
+/// The `count` samples behind the first `head`.
+fn cut(mut work: Vec<f64>, head: usize, count: usize) -> Vec<f64> {
+    work.drain(..head);
+    work.truncate(count);
+    work
 }
 
 #[cfg(test)]

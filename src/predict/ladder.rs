@@ -1,11 +1,11 @@
 //! A rung of the ladder of models to its prediction, and all rungs to the one that suffices.
 
 use super::held::Held;
-use super::impact::{Struck, strike_first_end};
+use super::impact::{Struck, strike_first_end, table_1};
 use super::path::{PathEnd, Way};
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
-use super::{predict, rod, thin_rod};
+use super::{predict, thin_rod};
 use crate::data::{
     Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung,
 };
@@ -32,7 +32,7 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
     match rung {
         Rung::Rod => {
             let rod = thin_rod(body.mass_kg, body.length_m);
-            Case { body: &rod, drop, contact: ideal, k }.one_flight(rod::table_1, true)
+            Case { body: &rod, drop, contact: ideal, k }.one_flight(table_1, true)
         }
         Rung::Body => Case { body, drop, contact: ideal, k }.one_flight(strike_first_end, true),
         Rung::Friction => Case { body, drop, contact, k }.one_flight(strike_first_end, true),

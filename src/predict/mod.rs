@@ -7,7 +7,6 @@ mod ladder;
 mod path;
 mod pulse;
 mod resting;
-mod rod;
 mod state;
 mod study;
 mod support;

@@ -1,6 +1,6 @@
 //! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
 
-use super::{Cure, Finding, IssueCode as Code, Severity};
+use super::{Finding, IssueCode as Code, Severity};
 use crate::data::shown::digits;
 use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate, ObservedBeside};
 
@@ -220,6 +220,47 @@ fn without_end(end: End, is_stood_in_for: bool) -> &'static str {
 /// "20.62 ± 0.40".
 fn plus_minus(estimate: &Estimate) -> String {
     format!("{} ± {}", digits(estimate.value, 4), digits(estimate.u95, 2))
+}
+
+/// What a key of the cask file says amiss: a number x where `from` + `by` x is meant, or the sources of two
+/// channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slip {
+    /// The key, with its table where that is no channel's; `[cask]` for all lengths there.
+    pub key: &'static str,
+    /// The channels, where the key is theirs.
+    pub names: Vec<String>,
+    /// What mends it, as "in ft".
+    pub right: &'static str,
+    /// In the unit that the key's number has here.
+    pub from: f64,
+    /// The factor.
+    pub by: f64,
+}
+
+/// Slips with which, put right at once, everything is consistent, and what the result then is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cure {
+    /// One slip, or two.
+    pub slips: Vec<Slip>,
+    /// Slap-down speed, m/s.
+    pub speed: Option<Estimate>,
+    /// Effective coefficient of restitution.
+    pub k: Option<Estimate>,
+}
+
+impl Cure {
+    /// What would be put right, where, and what that makes of the result.
+    fn words(&self) -> String {
+        let words = |Slip { key, names, right, .. }: &Slip| match &names[..] {
+            [] => format!("`{key}` {right}"),
+            names => {
+                format!("`{key}` of {} {right}", names.join(if names.len() > 2 { ", " } else { " and " }))
+            }
+        };
+        let all = self.slips.iter().map(words).collect::<Vec<_>>().join(" and ");
+        format!("with {all} everything is consistent, at {}", numbers(self.speed, self.k))
+    }
 }
 
 /// "20.49 ± 0.11 m/s and k = 0.56 ± 0.01", as far as they are there.

@@ -56,7 +56,6 @@ mod code;
 mod drop;
 mod mcap;
 mod rest;
-mod slip;
 mod table;
 mod times;
 
@@ -64,11 +63,10 @@ pub use attribute::AttributeFinding;
 pub use channel::{ChannelFinding, During, RotationCause};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
-pub use drop::DropFinding;
+pub use drop::{Cure, DropFinding, Slip};
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};
 pub use rest::{RestCause, RestFinding};
-pub use slip::{Cure, Slip};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
