@@ -50,10 +50,8 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
         is_cured(&analysis).then(|| (Doubt::of(&analysis), Cure { slips, speed, k }))
     };
     // Where all closes without one channel, nothing else is wrong.
-    let left_out = found.result.quality.iter().find_map(|f| match f.what {
-        FindingKind::Channel(ChannelFinding::LeftOut { .. }) => f.channel.as_ref(),
-        _ => None,
-    });
+    let is_left_out = |f: &&Finding| matches!(f.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }));
+    let left_out = found.result.quality.iter().find(is_left_out).and_then(|f| f.channel.as_ref());
     let is_of_it =
         |slips: &Vec<Slip>| left_out.is_none_or(|name| slips.iter().any(|slip| slip.names.contains(name)));
     let may_be = hypotheses(recording, file).into_par_iter().filter(is_of_it).filter(may_cure);
@@ -90,25 +88,22 @@ fn is_stated(finding: &Finding) -> bool {
     matches!(finding.code, Geometry | NotRigid | Scale | SensorPosition)
 }
 
+fn is_overlap(found: &DropFinding) -> bool {
+    use DropFinding::{NoFlight, Overlap, Pressed};
+    matches!(found, Pressed { .. } | Overlap { .. } | NoFlight { .. })
+}
+
 /// How much weighs what a slip may be behind: errors of the motion and no other, or a warning on what the
 /// cask file says of the channels.
 fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     use IssueCode::{EndsEarly, EndsExchanged, FlightFit, NoImpact, NoSlapDown, Polarity, RestitutionRange};
     let is_of_motion = |f: &Finding| match f.code {
         EndsEarly | EndsExchanged | FlightFit | NoImpact | NoSlapDown | Polarity | RestitutionRange => true,
-        _ => {
-            is_stated(f)
-                || matches!(
-                    f.what,
-                    FindingKind::Drop(
-                        DropFinding::Pressed { .. }
-                            | DropFinding::Overlap { .. }
-                            | DropFinding::NoFlight { .. }
-                    )
-                )
-                || matches!(f.what, FindingKind::Channel(ChannelFinding::Clipped { lost_m_s,
-                    .. }) if lost_m_s > MOST_LOST * v0_m_s)
-        }
+        _ => match &f.what {
+            FindingKind::Drop(found) => is_stated(f) || is_overlap(found),
+            FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => *lost_m_s > MOST_LOST * v0_m_s,
+            _ => is_stated(f),
+        },
     };
     let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
     if errors.peek().is_some() {

@@ -31,10 +31,6 @@ pub fn judge_fall_time(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Option<Finding> {
-    let is_of_fall = |f: &Finding| {
-        matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure,
-        .. }) if closure.kind == ClosureKind::Fall)
-    };
     let fallen_m_s = drop.gravity_m_s2 * (events.fall_end_s? - events.release_s?);
     let v0_m_s = drop.impact_velocity_m_s;
     // Half of a 95 % half-width is a standard uncertainty.
@@ -50,8 +46,14 @@ pub fn judge_fall_time(
         miss_in_u,
         beside_others_in_u: miss_in_u,
     };
-    (miss_in_u.abs() > MISSED_U && !found.iter().any(is_of_fall))
+    (miss_in_u.abs() > MISSED_U && !found.iter().any(|f| missed_kind(f) == Some(ClosureKind::Fall)))
         .then(|| closures::missed(&closure, drop, events))
+}
+
+/// Of which closure a finding says that it is missed.
+fn missed_kind(finding: &Finding) -> Option<ClosureKind> {
+    let FindingKind::Drop(DropFinding::Missed { closure, .. }) = &finding.what else { return None };
+    Some(closure.kind)
 }
 
 /// The closures' findings, in which one of a fall slower than free takes the place of those on the rest
@@ -66,10 +68,8 @@ pub fn judge_slowed(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Vec<Finding> {
-    let is_explained = |f: &Finding| {
-        matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure,
-        .. }) if matches!(closure.kind, ClosureKind::Rest | ClosureKind::Fall))
-    };
+    let is_explained =
+        |f: &Finding| missed_kind(f).is_some_and(|kind| [ClosureKind::Rest, ClosureKind::Fall].contains(&kind));
     let severity = found.iter().filter(|f| is_explained(f)).map(|f| f.severity).max();
     let slowed = slowed_share(drop, rests, events, tolerances);
     if let (Some(severity), Some((share, u))) = (severity, slowed) {
