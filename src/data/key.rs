@@ -114,10 +114,12 @@ impl Key {
         Self { takes: Takes::Number(Allowed::FromZero), ..self }
     }
 
+    #[cfg(feature = "lab")]
     pub(crate) const fn above_zero(self) -> Self {
         Self { takes: Takes::Number(Allowed::AboveZero), ..self }
     }
 
+    #[cfg(feature = "lab")]
     pub(crate) const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
         Self { takes: Takes::Number(Allowed::Within(least, most, why)), ..self }
     }
@@ -130,9 +132,5 @@ impl Key {
 
     pub(crate) const fn shown(self, example: &'static str, remark: &'static str) -> Self {
         Self { example, remark, ..self }
-    }
-
-    pub(crate) const fn asked(self, example: &'static str, remark: &'static str) -> Self {
-        Self { is_asked: true, ..self.shown(example, remark) }
     }
 }
