@@ -37,7 +37,6 @@ pub mod ingest;
 mod judge;
 #[cfg(feature = "lab")]
 #[doc(hidden)]
-#[allow(clippy::must_use_candidate, clippy::return_self_not_must_use, reason = "for this program alone")]
 pub mod lab;
 mod motion;
 mod numerics;
@@ -47,7 +46,6 @@ pub mod ordered_parallel;
 #[doc(hidden)]
 pub mod predict;
 #[doc(hidden)]
-#[allow(clippy::must_use_candidate, clippy::return_self_not_must_use, reason = "for this program alone")]
 pub mod report;
 
 pub use analysis::{analyze, read, study};

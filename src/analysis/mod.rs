@@ -57,7 +57,6 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 }
 
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
-#[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     rayon::scope(|_| {
         let cask_file = &with_rotation(recording, cask_file);

@@ -29,7 +29,6 @@ pub(super) fn by_law(contact: Contact, needed: f64, share_u: f64) -> (AxialClosu
 }
 
 /// Geometry and initial motion of a cask file, L sticking to the target.
-#[must_use]
 pub fn sticking(cask_file: &CaskFile) -> Setup {
     Setup {
         length_m: cask_file.cask.length_m,

@@ -39,7 +39,6 @@ pub struct Reach {
 
 impl Reach {
     /// From the free fall that must lie before first contact and the slap-down that must lie after it.
-    #[must_use]
     pub fn of(cask: &Cask, drop: &Drop) -> Self {
         let steeper_rad = (drop.angle_rad + 10.0_f64.to_radians()).min(std::f64::consts::FRAC_PI_2);
         let descent_s = cask.length_m * steeper_rad.sin() / (SLOWEST_DESCENT * drop.impact_velocity_m_s);
@@ -50,13 +49,11 @@ impl Reach {
     }
 
     /// The same, but as far as the longest flight to slap-down may last.
-    #[must_use]
     pub fn longest(self) -> Self {
         Self { after_s: LONGEST_AFTER_S, ..self }
     }
 
     /// The same, but no farther than what rings after the last change of velocity, s after the coarse event.
-    #[must_use]
     pub fn until(self, last_change_s: f64) -> Self {
         Self { after_s: self.after_s.min(last_change_s.max(0.0) + LEAST_AFTER_S), ..self }
     }
@@ -66,7 +63,6 @@ impl Reach {
 /// is clipped or missing.
 ///
 /// Returns the signals in the order of the channels and what was found about them.
-#[must_use]
 pub fn condition(
     recording: &Recording,
     event: &CoarseEvent,

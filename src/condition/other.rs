@@ -23,7 +23,6 @@ const MOST_MEANS: usize = 240;
 
 /// What the channel reads over the whole recording; at rest before the release where the record shows it,
 /// else before the first contact.
-#[must_use]
 pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
     let mut values = channel.force_m_s2(0, channel.samples.len());
     let [smallest, largest] = channel.extremes().map_or([None; 2], |both| both.map(Some));
@@ -53,7 +52,6 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
 
 /// A sensor's rotation, by `usual_s` of the fall where its release is not seen; `None` where the sensor does
 /// not show fall and flight.
-#[must_use]
 pub fn measured_rotation(
     (channel, spec): (&Channel, RateSpec),
     usual_s: f64,

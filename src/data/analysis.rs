@@ -128,19 +128,16 @@ pub struct Events {
 
 impl Events {
     /// First contact of L, s.
-    #[must_use]
     pub fn first_contact_s(&self) -> Option<f64> {
         self.first_contact.map(|at| at.time_s)
     }
 
     /// L leaves the target, s.
-    #[must_use]
     pub fn separation_s(&self) -> Option<f64> {
         self.separation.map(|at| at.time_s)
     }
 
     /// First contact of R, s.
-    #[must_use]
     pub fn slap_down_s(&self) -> Option<f64> {
         self.slap_down.map(|at| at.time_s)
     }
@@ -212,7 +209,6 @@ pub struct Program {
 
 impl Program {
     /// This one.
-    #[must_use]
     pub fn this() -> Self {
         Self {
             name: env!("CARGO_PKG_NAME"),
@@ -224,7 +220,6 @@ impl Program {
     }
 
     /// "dropcheck 0.1.0 (0123abc)".
-    #[must_use]
     pub fn words(&self) -> String {
         let commit = self.commit.map_or_else(String::new, |commit| format!(" ({commit})"));
         format!("{} {}{commit}", self.name, self.version)
@@ -303,7 +298,6 @@ pub struct DropResult {
 
 impl DropResult {
     /// What holds of the prototype, where the cask is a model of this scale   (46)
-    #[must_use]
     pub fn of_prototype(&self, scale: f64) -> Prototype {
         Prototype {
             scale,

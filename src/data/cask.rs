@@ -224,7 +224,6 @@ pub struct Drop {
 
 impl Cask {
     /// A homogeneous block.
-    #[must_use]
     pub fn block(name: &str, mass_kg: f64, length_m: f64, height_m: f64) -> Self {
         Self {
             name: name.to_owned(),
@@ -240,21 +239,18 @@ impl Cask {
 }
 
 /// Inertia of a homogeneous block about its centre, kg m²: m (l² + h²) / 12.
-#[must_use]
 pub fn block_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
     mass_kg * (length_m * length_m + height_m * height_m) / 12.0
 }
 
 impl Drop {
     /// What a channel of this axis without offset reads at rest, m/s².
-    #[must_use]
     pub fn weight_m_s2(&self, axis: Axis) -> f64 {
         let (along, across) = self.angle_rad.sin_cos();
         self.gravity_m_s2 * if axis == Axis::Axial { along } else { across }
     }
 
     /// A free fall from this height at 9.81 m/s², without rotation.
-    #[must_use]
     pub fn of_height(height_m: f64, angle_rad: f64) -> Self {
         Self {
             height_m,
@@ -266,7 +262,6 @@ impl Drop {
     }
 
     /// The same fall of the centre of gravity, with so much more rotation, rad/s: v0 = √(2 g h) − ω a   (3)
-    #[must_use]
     pub fn turned(self, cask: &Cask, more_rad_s: f64) -> Self {
         let a_m = first_arm_m(cask.cog_m, cask.height_m, self.angle_rad);
         Self {
@@ -277,13 +272,11 @@ impl Drop {
     }
 
     /// v0 cos φ0, m/s: what a struck end loses across the axis at the least.
-    #[must_use]
     pub fn transverse_velocity_m_s(&self) -> f64 {
         self.impact_velocity_m_s * self.angle_rad.cos()
     }
 
     /// A tenth of v0, m/s: what changes an end's velocity by less is no first impact.
-    #[must_use]
     pub fn least_impact_m_s(&self) -> f64 {
         0.1 * self.impact_velocity_m_s
     }
@@ -335,7 +328,6 @@ pub struct ChannelSpec {
 impl ChannelSpec {
     /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else
     /// is stated.
-    #[must_use]
     pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {
         let (name, source) = (name.to_owned(), Source::Path(source.to_owned()));
         Self { name, end, source, position_m, polarity: 1.0, ..Self::default() }

@@ -54,13 +54,11 @@ pub struct CaskFile {
 
 impl CaskFile {
     /// The times that the file names for a channel: its own, else those of the recording.
-    #[must_use]
     pub fn time_of<'a>(&'a self, spec: &'a ChannelSpec) -> Option<&'a str> {
         spec.time.as_deref().or(self.time.as_deref())
     }
 
     /// The file as readers of recordings take it: the other channels behind those of the motion.
-    #[must_use]
     pub fn to_be_read(&self) -> Cow<'_, Self> {
         if self.others.is_empty() {
             return Cow::Borrowed(self);
@@ -71,7 +69,6 @@ impl CaskFile {
     }
 
     /// A file that states cask, drop and contact alone, with the usual tolerances.
-    #[must_use]
     pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
         Self { path: "cask.toml".into(), cask, drop, contact, ..Self::default() }
     }

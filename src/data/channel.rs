@@ -5,7 +5,6 @@ use serde::Serialize;
 
 /// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number
 /// (9.91E+37) in SCPI 1999.0, 7.2.1.4.
-#[must_use]
 pub(crate) fn is_number(sample: f64) -> bool {
     sample.abs() < 9.89e37
 }
@@ -42,19 +41,16 @@ impl Default for Samples {
 
 impl Samples {
     /// Number of samples.
-    #[must_use]
     pub fn len(&self) -> usize {
         of_either!(self, v => v.len())
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Sample `index` as f64; panics beyond the end, as a slice does.
-    #[must_use]
     pub fn get(&self, index: usize) -> f64 {
         of_either!(self, v => wide(&v[index]))
     }
@@ -197,20 +193,17 @@ pub struct RestReading {
 
 impl Channel {
     /// Time of sample `index`, s from the recording's first sample.
-    #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn time_s(&self, index: usize) -> f64 {
         self.start_s + index as f64 / self.sample_rate_hz
     }
 
     /// Where it clips, m/s², as far as it is stated.
-    #[must_use]
     pub fn range_m_s2(&self) -> Option<f64> {
         Some(self.full_scale? * self.scale_m_s2.abs())
     }
 
     /// The samples `from..to` as specific force on the body axis, m/s²; the range is cut to what there is.
-    #[must_use]
     pub fn force_m_s2(&self, from: usize, to: usize) -> Vec<f64> {
         let to = to.min(self.samples.len());
         let from = from.min(to);
@@ -219,7 +212,6 @@ impl Channel {
 
     /// The smallest and the largest sample, in `unit`, each the first of its size; `None` where no sample is
     /// a number.
-    #[must_use]
     pub fn extremes(&self) -> Option<[Extreme; 2]> {
         let at = |index| Extreme { value: self.samples.get(index), time_s: self.time_s(index) };
         let numbers = (0..self.samples.len()).map(at).filter(|sample| is_number(sample.value));
@@ -232,7 +224,6 @@ impl Channel {
     }
 
     /// Index of the sample nearest to `time_s`, cut to what there is.
-    #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

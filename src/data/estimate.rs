@@ -18,13 +18,11 @@ pub struct Estimate {
 
 impl Estimate {
     /// A value, its 95 % half-width and their unit.
-    #[must_use]
     pub fn new(value: f64, u95: f64, unit: &'static str) -> Self {
         Self { value, u95, unit }
     }
 
     /// That of the prototype where this is of a model of this scale: each unit by its law   (46)
-    #[must_use]
     pub fn of_prototype(self, scale: f64) -> Self {
         let power = UNITS.iter().find(|(unit, _)| *unit == self.unit).map_or(0, |(_, power)| *power);
         let factor = scale.powi(power);
@@ -85,7 +83,6 @@ pub struct At {
 
 impl At {
     /// A time that is known.
-    #[must_use]
     pub const fn exactly(time_s: f64) -> Self {
         Self { time_s, u_s: 0.0 }
     }

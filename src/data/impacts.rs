@@ -120,7 +120,6 @@ pub struct ChannelPeak {
 
 impl ImpactTable {
     /// Nothing known of it yet.
-    #[must_use]
     pub fn unknown(end: End) -> Self {
         Self { end, ..Self::default() }
     }

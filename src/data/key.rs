@@ -51,7 +51,6 @@ impl Allowed {
     }
 
     /// Those numbers, in words.
-    #[must_use]
     pub fn words(self) -> String {
         match self {
             Self::Any => "a number".into(),

@@ -36,7 +36,6 @@ impl Rung {
     }
 
     /// Whether the speeds by a rung and by a richer one are the same, within the tolerance of the ladder.
-    #[must_use]
     pub fn say_the_same(speed: Option<f64>, richer: Option<f64>) -> bool {
         match (speed, richer) {
             (Some(own), Some(richer)) => (richer - own).abs() <= LADDER_TOLERANCE_PERCENT / 100.0 * own,
@@ -46,7 +45,6 @@ impl Rung {
     }
 
     /// Its name for a person.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Rod => "rod",
@@ -59,7 +57,6 @@ impl Rung {
     }
 
     /// What it adds to the rung below, for a person.
-    #[must_use]
     pub fn adds(self) -> &'static str {
         match self {
             Self::Rod => "thin uniform rod, rough or smooth",

@@ -15,7 +15,6 @@ pub enum BodyModel {
 
 impl BodyModel {
     /// "rod" or "body".
-    #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Rod => "rod",
@@ -68,7 +67,6 @@ const UPRIGHT_DEG: f64 = 90.0;
 
 impl Prediction {
     /// Whether the cask turns over, a somersault, before R strikes: no slap-down of a drop test.
-    #[must_use]
     pub fn turns_over(&self) -> bool {
         self.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg.abs() >= UPRIGHT_DEG)
     }

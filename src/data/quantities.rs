@@ -31,7 +31,6 @@ macro_rules! named_numbers {
             pub const COUNT: usize = [$($unit,)* $($optional_unit,)*].len();
 
             /// The numbers in the order of declaration, 0 for a missing one.
-            #[must_use]
             pub fn into_array(self) -> [f64; Self::COUNT] {
                 [$(self.$field,)* $(self.$optional.unwrap_or_default(),)*]
             }
@@ -39,7 +38,6 @@ macro_rules! named_numbers {
 
         impl<T> $name<T> {
             /// The numbers by their places in the order of declaration; none is missing.
-            #[must_use]
             pub fn from_fn(mut number: impl FnMut(usize) -> T) -> Self {
                 let mut count = 0;
                 let mut next = || {
@@ -50,13 +48,11 @@ macro_rules! named_numbers {
             }
 
             /// Each number by itself to another.
-            #[must_use]
             pub fn map<U>(self, mut change: impl FnMut(T) -> U) -> $name<U> {
                 $name { $($field: change(self.$field),)* $($optional: self.$optional.map(&mut change),)* }
             }
 
             /// Each number beside that of the same name; missing where either is.
-            #[must_use]
             pub fn zip<U>(self, others: $name<U>) -> $name<(T, U)> {
                 $name {
                     $($field: (self.$field, others.$field),)*
@@ -115,7 +111,6 @@ macro_rules! quantities {
 
         impl Quantities<f64> {
             /// The quantities of a motion.
-            #[must_use]
             pub fn of(motion: &Motion) -> Self {
                 fn by<T>(motion: &Motion, formula: fn(&Motion) -> T) -> T {
                     formula(motion)
@@ -150,7 +145,6 @@ macro_rules! quantities {
 
         impl $name {
             /// At a time, with its quantities where they are measured.
-            #[must_use]
             pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
                 fn by(all: Option<&Quantities>, of: fn(&Quantities) -> Option<Estimate>) -> Option<Estimate> {
                     all.and_then(of)
@@ -159,14 +153,12 @@ macro_rules! quantities {
             }
 
             /// Those of the prototype, of a model of this scale; the time of the recording is none of it.
-            #[must_use]
             pub fn of_prototype(&self, scale: f64) -> Self {
                 let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.of_prototype(scale));
                 Self { time: None, $($field: scaled(self.$field),)* $($beside: scaled(self.$beside),)* }
             }
 
             /// Its quantities, but for the time.
-            #[must_use]
             pub fn rows(&self) -> Vec<QuantityRow> {
                 let row = |(name, remark), value| QuantityRow { name, remark, value };
                 let all = [$(row($words, self.$field),)* $(row($beside_words, self.$beside),)*];

@@ -103,7 +103,6 @@ pub struct Closure {
 
 impl Closure {
     /// The larger of both misses.
-    #[must_use]
     pub fn most_in_u(&self) -> f64 {
         self.miss_in_u.abs().max(self.beside_others_in_u.abs())
     }
@@ -141,7 +140,6 @@ pub struct ReconstructionChoice {
 
 impl ReconstructionChoice {
     /// The choice without the speed and the k of its rungs, where they are not to be stated.
-    #[must_use]
     pub fn without_numbers(mut self) -> Self {
         for candidate in &mut self.candidates {
             (candidate.speed, candidate.k) = (None, None);

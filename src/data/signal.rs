@@ -47,20 +47,17 @@ pub struct Signal {
 
 impl Signal {
     /// Time of sample `index`, s from the recording's first sample.
-    #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn time_s(&self, index: usize) -> f64 {
         self.start_s + index as f64 / self.sample_rate_hz
     }
 
     /// Position of `time_s` in samples, fractional, negative before the first.
-    #[must_use]
     pub fn position_at(&self, time_s: f64) -> f64 {
         (time_s - self.start_s) * self.sample_rate_hz
     }
 
     /// Index of the first sample at or after `time_s`, cut to what there is.
-    #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -72,13 +69,11 @@ impl Signal {
     }
 
     /// Time of the last sample, s.
-    #[must_use]
     pub fn end_s(&self) -> f64 {
         self.time_s(self.force_m_s2.len().saturating_sub(1))
     }
 
     /// The samples `from..to` alone, the range cut to what there is.
-    #[must_use]
     pub fn cut(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.force_m_s2.len());
         let from = from.min(to);
@@ -86,7 +81,6 @@ impl Signal {
     }
 
     /// The samples from `from` on alone, as many as there are in `force_m_s2`, which stands for them.
-    #[must_use]
     pub fn cut_with(&self, from: usize, force_m_s2: Vec<f64>) -> Self {
         let to = from + force_m_s2.len();
         let shifted = |spans: &[Span]| {
@@ -106,7 +100,6 @@ impl Signal {
 
     /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top:
     /// (ṡ_in + ṡ_out) T² / 12.
-    #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn lost_to_clipping_m_s(&self, from_s: f64, to_s: f64) -> f64 {
         let force = |i: usize| self.force_m_s2.get(i).copied();
@@ -125,14 +118,12 @@ impl Signal {
     }
 
     /// How much of the time between two times was not recorded, s.
-    #[must_use]
     pub fn missing_s(&self, from_s: f64, to_s: f64) -> f64 {
         let inside_s = |gap: &Span| self.time_s(gap.to).min(to_s) - self.time_s(gap.from).max(from_s);
         self.gaps.iter().map(|gap| inside_s(gap).max(0.0)).sum()
     }
 
     /// Whether any of `spans` lies in `from_s..to_s`.
-    #[must_use]
     pub fn touches(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {
         spans.iter().any(|s| self.time_s(s.from) < to_s && self.time_s(s.to) > from_s)
     }

@@ -158,7 +158,6 @@ const INERTIA_OF_BLOCK: f64 = 0.1;
 impl Tolerances {
     /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's
     /// alone.
-    #[must_use]
     pub fn of(left_out: &[String]) -> Self {
         let usual = Self::default();
         let is_block = left_out.iter().any(|key| key == "cask.inertia_kg_m2");

@@ -18,7 +18,6 @@ const ACCELERATIONS: [(&str, f64); 7] = [
 /// m/s² per unit, for the ways in which an acceleration's unit is written; `None` where it is none of them.
 ///
 /// Case matters only where it could mislead: "Mg" would be a megagram.
-#[must_use]
 pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
     let plain = plain(text);
     match plain.as_str() {
@@ -41,7 +40,6 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// rad/s per unit, for the ways in which a unit of a rate of turn is written; `None` where it is none of
 /// them.
-#[must_use]
 pub fn rate_unit_rad_s(text: &str) -> Option<f64> {
     named(&RATES_OF_TURN, &plain(text))
 }
@@ -60,7 +58,6 @@ fn named(table: &[(&str, f64)], plain: &str) -> Option<f64> {
 }
 
 /// Whether a unit is one of a rate of turn, such as "deg/s" or "rad/s", or of its change: no acceleration.
-#[must_use]
 pub fn is_rate_of_turn(text: &str) -> bool {
     let plain = text.trim_matches(['[', '(', ' ']).to_lowercase();
     RATES_OF_TURN.iter().flat_map(|(names, _)| names.split(' ')).any(|unit| plain.starts_with(unit))

@@ -66,7 +66,6 @@ impl<'a> Changes<'a> {
     }
 
     /// Sample rate of the channel that the first impact is sought on, Hz.
-    #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         self.struck().map(|changing| changing.channel.sample_rate_hz)
     }
@@ -75,7 +74,6 @@ impl<'a> Changes<'a> {
     /// channel), whose velocity it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
     ///
     /// `None` where no channel moves at all, or the samples are too few to tell.
-    #[must_use]
     pub fn locate(&self, least_step_m_s: f64) -> Option<CoarseEvent> {
         let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
         let largest = reduce::peak(&struck.changes_m_s);
@@ -86,7 +84,6 @@ impl<'a> Changes<'a> {
 
     /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how
     /// long a drop falls, s.
-    #[must_use]
     pub fn another_drop(&self, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
         let struck = self.struck()?;
         let changes = &struck.changes_m_s;

@@ -17,7 +17,6 @@ const SWING: f64 = 0.3;
 const SEEN: f64 = 8.0;
 
 /// The channel's answer to each blow that it feels, in the order of time.
-#[must_use]
 pub fn blow_answers(channel: &Channel) -> Vec<BlowAnswer> {
     let mut force = channel.force_m_s2(0, channel.samples.len());
     let (centre, spread) = robust::centre_and_spread(&force);

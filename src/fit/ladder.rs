@@ -55,13 +55,11 @@ pub struct RungTaken {
 impl RungTaken {
     /// What nothing in the recording tests, largest effect first; `finds` says whether a check of the
     /// velocity steps would find a mistake.
-    #[must_use]
     pub fn untested(&self, finds: &dyn Fn(&FlightFit) -> bool) -> Vec<Untested> {
         untested::untested(&self.silent, &self.base, &self.inputs, finds)
     }
 
     /// The inputs as stated, each moved by so many of its standard uncertainties.
-    #[must_use]
     pub fn drawn(&self, mut by_u: impl FnMut() -> f64) -> Inputs {
         let by_u: Vec<f64> = self.inputs.iter().map(|_| by_u()).collect();
         self.base.moved(&self.inputs, &by_u)
@@ -69,7 +67,6 @@ impl RungTaken {
 
     /// Numbers that follow from the inputs, each with its standard uncertainty; `None` where `of` fails near
     /// the inputs taken.
-    #[must_use]
     pub fn spread(&self, of: NumbersOf) -> Option<Vec<(f64, f64)>> {
         let at_u = &self.fit.unknowns;
         let values = of(&self.taken)?;
@@ -85,7 +82,6 @@ impl RungTaken {
 /// and whose answer no higher one would change by more than its interval or know much better.
 ///
 /// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
-#[must_use]
 pub fn ladder(measured: &FitData, plain: Option<&FlightFit>, reconstruct: Reconstruct) -> Option<RungTaken> {
     let model = Model::new(measured, reconstruct)?;
     let flight = model.by_stated_inputs()?;

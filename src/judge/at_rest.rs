@@ -50,7 +50,6 @@ pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
 }
 
 /// What a channel that reads right would read the same with, but for an offset.
-#[must_use]
 pub fn open_causes(channel: &Channel, rest: AtRest, drop: &Drop) -> Vec<RestCause> {
     let reads_g = rest.level_m_s2 / G;
     let of_level = other_levels(channel.axis, drop).into_iter();

@@ -41,7 +41,6 @@ pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
 }
 
 /// An impact of L that lasts until R is down, which no impulse of L delays: then no flight lies between both.
-#[must_use]
 pub fn judge_overlap(lasts_s: f64, cask: &Cask, drop: &Drop, tolerances: &Tolerances) -> Option<Finding> {
     let down_m_s = drop.impact_velocity_m_s
         + (drop.angular_velocity_rad_s - tolerances.angular_velocity_rad_s) * cask.length_m;

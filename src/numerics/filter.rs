@@ -29,7 +29,6 @@ pub struct ZeroPhaseLowPass {
 impl ZeroPhaseLowPass {
     /// By the design frequency of one pass, Hz, at a sample rate, Hz; `None` where it is not below half the
     /// rate.
-    #[must_use]
     pub fn with_design_hz(design_hz: f64, sample_rate_hz: f64) -> Option<Self> {
         if !(design_hz > 0.0 && design_hz < 0.5 * sample_rate_hz) {
             return None;
@@ -41,25 +40,21 @@ impl ZeroPhaseLowPass {
     }
 
     /// By the channel frequency class.
-    #[must_use]
     pub fn with_cfc(cfc: f64, sample_rate_hz: f64) -> Option<Self> {
         Self::with_design_hz(CFC_DESIGN * cfc, sample_rate_hz)
     }
 
     /// By the −3 dB frequency of the whole, Hz.
-    #[must_use]
     pub fn with_cutoff_hz(cutoff_hz: f64, sample_rate_hz: f64) -> Option<Self> {
         Self::with_design_hz(cutoff_hz / TWO_PASS_CUTOFF, sample_rate_hz)
     }
 
     /// The filtered samples; both ends are mirrored for the filter's own memory.
-    #[must_use]
     pub fn apply(&self, samples: &[f64]) -> Vec<f64> {
         self.apply_each(&[samples]).pop().unwrap_or_default()
     }
 
     /// The same of several series, which take little longer than one where they are of one length.
-    #[must_use]
     pub fn apply_each(&self, all: &[&[f64]]) -> Vec<Vec<f64>> {
         let (mut work, heads): (Vec<_>, Vec<_>) =
             all.iter().map(|samples| mirrored(samples, self.padding)).unzip();
@@ -72,7 +67,6 @@ impl ZeroPhaseLowPass {
     }
 
     /// The same of pulses with nothing before and after them.
-    #[must_use]
     pub fn apply_to_pulses<const N: usize>(&self, pulses: [&[f64]; N]) -> [Vec<f64>; N] {
         let mut work = pulses.map(|pulse| {
             let after = std::iter::repeat_n(&0.0, self.padding);
@@ -84,7 +78,6 @@ impl ZeroPhaseLowPass {
     }
 
     /// |H| of the whole (both passes) at a frequency, Hz, at the sample rate the filter was made for.
-    #[must_use]
     pub fn magnitude(&self, frequency_hz: f64, sample_rate_hz: f64) -> f64 {
         let warped = (PI * frequency_hz / sample_rate_hz).tan() / self.gain;
         1.0 / (1.0 + warped.powi(4))

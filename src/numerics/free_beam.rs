@@ -11,7 +11,6 @@ const WAVE_NUMBERS: [f64; MOST_MODES] =
 /// so that its modal mass is the body's.
 ///
 /// An order beyond the shapes there are takes the last one.
-#[must_use]
 pub fn shape(order: u8, share: f64) -> f64 {
     let beta = WAVE_NUMBERS[usize::from(order).clamp(1, MOST_MODES) - 1];
     let sigma = (beta.cosh() - beta.cos()) / (beta.sinh() - beta.sin());

@@ -28,14 +28,12 @@ pub fn as_count(number: f64) -> usize {
 }
 
 /// A time in whole nanoseconds, as files stamp it.
-#[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
 pub fn nanoseconds(time_s: f64) -> i64 {
     (time_s * 1e9).round() as i64
 }
 
 /// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
-#[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "the loss of digits is meant")]
 pub fn single(value: f64) -> f32 {
     value as f32

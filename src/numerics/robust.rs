@@ -58,7 +58,6 @@ pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
 }
 
 /// Mean and its standard uncertainty: white noise averages out; what differs between the two halves does not.
-#[must_use]
 pub fn mean_and_u(values: &[f64]) -> (f64, f64) {
     let (mean, rms) = mean_and_rms(values);
     let (first, second) = values.split_at(values.len() / 2);

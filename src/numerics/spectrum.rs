@@ -29,7 +29,6 @@ pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
 /// two.
 ///
 /// The unit of the magnitude is that of `samples` times seconds.
-#[must_use]
 pub fn magnitude(samples: impl ExactSizeIterator<Item = f64>, sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     if samples.len() == 0 {
         return (Vec::new(), Vec::new());

@@ -44,7 +44,6 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
 
 /// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than
 /// [`crate::data::LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
-#[must_use]
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
     for rung in Rung::of(drop) {

@@ -19,7 +19,6 @@ use path::Way;
 use state::State;
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
-#[must_use]
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
     if model == BodyModel::Rod {
         return thin_rod(cask.mass_kg, cask.length_m);
@@ -35,7 +34,6 @@ fn thin_rod(mass_kg: f64, length_m: f64) -> Body {
 }
 
 /// The bodies that a cask file asks to be predicted: the rod, and the body where the file describes one.
-#[must_use]
 pub fn bodies(cask: &Cask) -> Vec<Body> {
     let models = if cask.is_body { &[BodyModel::Rod, BodyModel::Body][..] } else { &[BodyModel::Rod] };
     models.iter().map(|model| body(cask, *model)).collect()
@@ -54,7 +52,6 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 
 /// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid
 /// limit, in which every touch is an impact.
-#[must_use]
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
     let (struck, outcome) = Way::of(body, drop, contact, Some(graze_share)).from(&start, drop, k);
@@ -62,7 +59,6 @@ pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze
 }
 
 /// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.
-#[must_use]
 pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
     [Contact::Rough, Contact::Smooth]
         .into_iter()

@@ -116,7 +116,6 @@ pub struct Finding {
 
 impl ChannelFinding {
     /// The finding, about the channel of that name.
-    #[must_use]
     pub fn on(self, channel: &str) -> Finding {
         let (of_kind, message) = (self.code(), self.sentence(channel));
         Finding::made(FindingKind::Channel(self), of_kind, &message).on(channel)
@@ -130,14 +129,12 @@ impl Finding {
     }
 
     /// The same, about one channel.
-    #[must_use]
     pub fn on(mut self, channel: &str) -> Self {
         self.channel = Some(channel.to_owned());
         self
     }
 
     /// The same, about a span of time, s from the recording's first sample.
-    #[must_use]
     pub fn between(mut self, from_s: f64, to_s: f64) -> Self {
         self.from_s = Some(from_s);
         self.to_s = Some(to_s);
@@ -147,7 +144,6 @@ impl Finding {
 
 /// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are
 /// eight lines.
-#[must_use]
 pub fn shortened(message: &str) -> Cow<'_, str> {
     const MOST_BYTES: usize = 600;
     if message.len() <= MOST_BYTES {

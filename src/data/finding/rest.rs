@@ -100,7 +100,6 @@ impl RestCause {
 
 impl RestFinding {
     /// The finding, about the channel of that name.
-    #[must_use]
     pub fn on(self, channel: &str) -> Finding {
         let (code, message) = (self.code(), format!("{channel} {self}"));
         Finding::made(FindingKind::Rest(self), code, &message).on(channel)

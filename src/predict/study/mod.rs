@@ -24,7 +24,6 @@ const DRAW_ANGLES: usize = 91;
 ///
 /// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits
 /// of the sine only.
-#[must_use]
 pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     let falls = falls(&bodies(&cask_file.cask), cask_file.drop, &request.contacts, &request.ks);
     let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.over(&request.angles_deg)).collect();

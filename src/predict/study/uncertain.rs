@@ -18,7 +18,6 @@ const LEAST_SHARE: f64 = 0.1;
 const CURVE_ANGLES: u32 = 180;
 
 /// What a study is asked of a cask file alone: the four borderline cases at its angle, curves from 0 to 90°.
-#[must_use]
 pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
     let usual = default_uncertain(cask_file);
     // Rough and smooth bound the table; what is drawn has the contact of the cask file.
@@ -41,7 +40,6 @@ pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
 }
 
 /// Ranges and half-widths for a cask whose user states none.
-#[must_use]
 pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
     let is_uniform =
         !cask_file.cask.is_body || cask_file.defaults.iter().any(|key| key == "cask.inertia_kg_m2");
