@@ -175,7 +175,10 @@ fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut
 
 /// What the channels read at rest, and the free fall by the one that knows its levels best.
 fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>, Option<Range<f64>>) {
-    let falls: Vec<_> = free_falls(recording, drop, contact_s).collect();
+    // An AC-coupled channel knows neither rest nor fall.
+    let steady = recording.channels.iter().filter(|c| c.coupling == Coupling::Dc);
+    let fall = |c| events::free_fall(c, drop, contact_s).map(|fall| (c, fall));
+    let falls: Vec<(&Channel, events::FreeFall)> = steady.filter_map(fall).collect();
     let rest = |(channel, fall): &(&Channel, events::FreeFall)| RestLevel {
         channel: channel.name.clone(),
         axis: channel.axis,
@@ -185,14 +188,4 @@ fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>
     let across = falls.iter().filter(|(channel, _)| channel.axis == Axis::Transverse);
     let best = across.min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2));
     (falls.iter().map(rest).collect(), best.map(|(_, fall)| fall.release_s..fall.end_s))
-}
-
-/// The free fall as each channel shows it; an AC-coupled one knows neither rest nor fall.
-fn free_falls<'a>(
-    recording: &'a Recording,
-    drop: &'a Drop,
-    contact_s: f64,
-) -> impl Iterator<Item = (&'a Channel, events::FreeFall)> {
-    let steady = recording.channels.iter().filter(|c| c.coupling == Coupling::Dc);
-    steady.filter_map(move |c| events::free_fall(c, drop, contact_s).map(|fall| (c, fall)))
 }

@@ -1,10 +1,10 @@
 //! The motion over both contacts to what test reports tabulate of them, each number with its interval.
 
 use super::flight_search;
-use super::second_impact::SecondImpact;
+use super::second_impact::{Course, SecondImpact};
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
-    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Motion, RigidBodyDeceleration,
+    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, RigidBodyDeceleration,
     Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
@@ -27,12 +27,6 @@ const TWO_TOUCHES: f64 = 0.35;
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
 /// Points of the curve of force over crush.
 const CURVE_POINTS: usize = 40;
-
-/// What one contact says of itself.
-struct Course {
-    motion: Motion,
-    contact: ContactCourse,
-}
 
 /// What is tabulated of the motion.
 pub(super) struct Tabulated {
@@ -155,12 +149,6 @@ pub(super) fn tabulated(
 }
 
 impl BothImpacts<'_> {
-    /// Θ/m, m².
-    fn inertia_m2(&self, inputs: &Inputs) -> f64 {
-        let cask = &self.file.cask;
-        inputs.inertia_m2.unwrap_or(cask.inertia_kg_m2 / cask.mass_kg)
-    }
-
     /// The first contact and the second.
     fn courses(&self, inputs: &Inputs, by: ForceCourse) -> Option<(Course, Option<Course>)> {
         let (motion, states) =
@@ -168,15 +156,15 @@ impl BothImpacts<'_> {
         let contact = ContactCourse::of(&states, &inputs.setup, by)?;
         let mut after = None;
         if let Some(second) = self.second {
-            let (motion, contact) = second.course(inputs, &motion, by)?;
-            after = Some(Course { motion, contact });
+            after = Some(second.course(inputs, &motion, by)?);
         }
         Some((Course { motion, contact }, after))
     }
 
     /// The numbers of the first contact, then those of the second.
     fn numbers(&self, inputs: &Inputs, by: ForceCourse) -> Option<Vec<ImpactNumbers<f64>>> {
-        let inertia_m2 = self.inertia_m2(inputs);
+        let cask = &self.file.cask;
+        let inertia_m2 = inputs.inertia_m2.unwrap_or(cask.inertia_kg_m2 / cask.mass_kg);
         let (first, second) = self.courses(inputs, by)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
         let numbers = |course: &Course| {

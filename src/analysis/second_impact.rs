@@ -18,6 +18,12 @@ const MOST_LEFT: f64 = 0.015;
 /// meanwhile. A length off by 5 % makes 0.1.
 const OF_TWO_CONTACTS: f64 = 0.2;
 
+/// What one contact says of itself.
+pub(super) struct Course {
+    pub motion: Motion,
+    pub contact: ContactCourse,
+}
+
 /// The impact of R, seen in a mirror: what strikes is its first end.
 pub(super) struct SecondImpact {
     /// What its own channels read, in a mirror.
@@ -178,16 +184,10 @@ impl SecondImpact {
     }
 
     /// The contact of R after a first impact with these inputs and this motion.
-    pub fn course(
-        &self,
-        inputs: &fit::Inputs,
-        first: &Motion,
-        by: ForceCourse,
-    ) -> Option<(Motion, ContactCourse)> {
+    pub fn course(&self, inputs: &fit::Inputs, first: &Motion, by: ForceCourse) -> Option<Course> {
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
         let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;
-        let course = ContactCourse::of(&states, &setup, by)?;
-        Some((motion, course))
+        Some(Course { motion, contact: ContactCourse::of(&states, &setup, by)? })
     }
 
     /// Setup, flight and times of the mirror after a first impact with these inputs and this motion.

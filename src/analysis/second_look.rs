@@ -73,14 +73,11 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         (next.errors, next.warnings) > (best.errors, best.warnings)
             || next.chi_square > best.chi_square + CLEARLY
     };
-    let is_told = match &tried[..] {
-        [(doubt, _, better), others @ ..] => {
-            closes(better)
-                && (doubt.errors, doubt.warnings) < (before.errors, before.warnings)
-                && others.iter().all(|(other, ..)| is_alone(doubt, other))
-        }
-        [] => false,
-    };
+    let is_told = tried.split_first().is_some_and(|((doubt, _, better), others)| {
+        closes(better)
+            && (doubt.errors, doubt.warnings) < (before.errors, before.warnings)
+            && others.iter().all(|(other, ..)| is_alone(doubt, other))
+    });
     if !is_told {
         return found;
     }

@@ -9,7 +9,7 @@ use crate::data::{
     FindingKind, FlightFit, IssueCode, MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G,
     Samples, Severity, Slip,
 };
-use crate::judge::{self, TransversePlace};
+use crate::judge;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
@@ -255,7 +255,7 @@ fn is_rigid(slips: &[Slip], of_steps: &(Recording, FlightFit), file: &CaskFile) 
         }
     }
     let across = steps.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    let places = across.map(|c| TransversePlace { name: &c.name, position_m: c.position_m });
+    let places = across.map(|c| (&c.name[..], c.position_m));
     judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop).is_none()
 }
 

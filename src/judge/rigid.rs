@@ -9,19 +9,9 @@ const SURE: f64 = 4.0;
 /// step.
 const LEAST_M_S: f64 = 0.1;
 
-/// Where a transverse channel sits along the cask.
-#[derive(Debug, Clone, Copy)]
-pub struct TransversePlace<'a> {
-    /// The channel.
-    pub name: &'a str,
-    /// From the first end, m.
-    pub position_m: f64,
-}
-
-/// The places of the transverse signals.
-pub fn places(signals: &[Signal]) -> impl Iterator<Item = TransversePlace<'_>> {
-    let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
-    across.map(|s| TransversePlace { name: &s.name, position_m: s.position_m })
+/// The names of the transverse signals and where they sit along the cask, from the first end, m.
+pub fn places(signals: &[Signal]) -> impl Iterator<Item = (&str, f64)> {
+    signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| (&s.name[..], s.position_m))
 }
 
 /// One channel's step: position, m, step and its standard uncertainty, m/s.
@@ -37,19 +27,19 @@ struct Reading<'a> {
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
 /// named.
 pub fn judge_rigid<'a>(
-    transverse: impl Iterator<Item = TransversePlace<'a>>,
+    transverse: impl Iterator<Item = (&'a str, f64)>,
     flight: &FlightFit,
     tolerances: &Tolerances,
     drop: &Drop,
 ) -> Option<Finding> {
-    let places: Vec<TransversePlace> = transverse.collect();
+    let places: Vec<(&str, f64)> = transverse.collect();
     // The axial velocity changes by about this much: where L sticks, its corner is thrown straight up.
     let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
     let axial_m_s = first_m_s * drop.angle_rad.tan();
     let turning_rad_s = turning_rad_s(&places, flight);
     let steps: Vec<Reading> = places
         .iter()
-        .filter_map(|&TransversePlace { name, position_m }| {
+        .filter_map(|&(name, position_m)| {
             let plateau = flight.plateau(name)?;
             let step_m_s = plateau.velocity_step_m_s;
             // Half of a 95 % half-width is a standard uncertainty.
@@ -77,9 +67,8 @@ pub fn judge_rigid<'a>(
 
 /// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10
 /// mm off its stated place reads 0.06 m/s more or less.
-fn turning_rad_s(places: &[TransversePlace], flight: &FlightFit) -> f64 {
-    let step =
-        |place: &TransversePlace| flight.plateau(place.name).map(|p| (place.position_m, p.velocity_step_m_s));
+fn turning_rad_s(places: &[(&str, f64)], flight: &FlightFit) -> f64 {
+    let step = |&(name, at_m): &(&str, f64)| flight.plateau(name).map(|p| (at_m, p.velocity_step_m_s));
     let mut steps: Vec<(f64, f64)> = places.iter().filter_map(step).collect();
     steps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let ends = steps.first().zip(steps.last()).filter(|(a, b)| b.0 - a.0 > 1e-3);
