@@ -21,8 +21,6 @@ pub type Slopes<'a> = &'a dyn Fn(&[f64]) -> Option<DMatrix<f64>>;
 pub struct PriorFit {
     /// The unknowns, in prior standard deviations.
     pub unknowns: Vec<f64>,
-    /// What is left of each observation, over its standard uncertainty.
-    pub left: Vec<f64>,
     /// Σ q² + Σ r², with as many degrees of freedom as there are observations.
     pub chi_square: f64,
     /// How each datum, first the priors and then the observations, moves each unknown: a row an unknown, unit
@@ -35,7 +33,6 @@ impl PriorFit {
     pub fn of_priors(count: usize) -> Self {
         Self {
             unknowns: vec![0.0; count],
-            left: Vec::new(),
             chi_square: 0.0,
             response: DMatrix::identity(count, count),
         }
@@ -66,7 +63,6 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
     let chi_square = solved.unknowns.norm_squared() + left.iter().map(|r| r * r).sum::<f64>();
     chi_square.is_finite().then(|| PriorFit {
         unknowns: solved.unknowns.as_slice().to_vec(),
-        left,
         chi_square,
         response,
     })
@@ -116,17 +112,13 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for PriorProblem<'_> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         let observed = (self.residuals)(self.unknowns.as_slice())?;
-        Some(DVector::from_iterator(
-            self.unknowns.len() + observed.len(),
-            self.unknowns.iter().copied().chain(observed),
-        ))
+        Some(DVector::from_vec([self.unknowns.as_slice(), &observed].concat()))
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let observed = (self.slopes)(self.unknowns.as_slice())?;
         let count = self.unknowns.len();
-        let mut all = DMatrix::zeros(count + observed.nrows(), count);
-        all.view_mut((0, 0), (count, count)).fill_with_identity();
+        let mut all = DMatrix::identity(count + observed.nrows(), count);
         all.view_mut((count, 0), (observed.nrows(), count)).copy_from(&observed);
         Some(all)
     }

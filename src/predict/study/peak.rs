@@ -220,20 +220,17 @@ pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(
         }
         inside
     };
-    let mut found: Vec<(f64, f64)> = Vec::new();
-    let mut before: Option<(f64, bool)> = None;
-    for &(angle_deg, is_inside) in marks {
-        let was_inside = before.is_some_and(|b| b.1);
-        match (before, found.last_mut()) {
-            (_, Some(band)) if is_inside && was_inside => band.1 = angle_deg,
-            (Some(outside), _) if is_inside => found.push((edge(angle_deg, outside.0), angle_deg)),
-            (None, _) if is_inside => found.push((angle_deg, angle_deg)),
-            (Some(inside), Some(band)) if was_inside => band.1 = edge(inside.0, angle_deg),
-            _ => {}
-        }
-        before = Some((angle_deg, is_inside));
-    }
-    found
+    let mut behind = 0_usize;
+    let band = |run: &[(f64, bool)]| {
+        let before = behind.checked_sub(1).and_then(|before| marks.get(before));
+        behind += run.len();
+        let (first, last) = run.first().zip(run.last()).filter(|(first, _)| first.1)?;
+        let end = |inside: f64, outside: Option<&(f64, bool)>| {
+            outside.map_or(inside, |outside| edge(inside, outside.0))
+        };
+        Some((end(first.0, before), end(last.0, marks.get(behind))))
+    };
+    marks.chunk_by(|a, b| a.1 == b.1).filter_map(band).collect()
 }
 
 #[cfg(test)]
