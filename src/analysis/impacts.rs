@@ -4,8 +4,7 @@ use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
-    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, RigidBodyDeceleration,
-    Signal,
+    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};

@@ -1,8 +1,8 @@
 //! What the stages found to one [`Analysis`].
 
+use super::comparison::Measured;
 use super::flight::Flown;
 use super::impact::Impact;
-use super::comparison::Measured;
 use super::impacts;
 use super::setup::sticking;
 use crate::data::{

@@ -1,8 +1,8 @@
 //! Measured beside predicted: the models tried, the one taken and whether it agrees.
 
 use crate::data::{
-    Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, ModelCandidate,
-    ModelChoice, Prediction, Quantities, Rung,
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, ModelCandidate, ModelChoice, Prediction,
+    Quantities, Rung,
 };
 
 /// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even

@@ -48,8 +48,8 @@ const fn within(least: f64, most: f64, why: &'static str) -> Takes {
     Takes::Number(Allowed::Within(least, most, why))
 }
 
-/// Declares the keys of tables. A row has the name, the default, what stands behind the key, and its value and
-/// remark in the form that `init` writes; `ask` where the form asks for it.
+/// Declares the keys of tables. A row has the name, the default, what stands behind the key, and its value
+/// and remark in the form that `init` writes; `ask` where the form asks for it.
 macro_rules! keys {
     (@is_asked) => { false };
     (@is_asked ask) => { true };

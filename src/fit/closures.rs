@@ -62,7 +62,8 @@ pub(super) fn observables<'a>(measured: &'a FitData<'a>, motion: &Motion) -> Vec
         Observable::new(ClosureKind::Height, name, U_HEIGHT_M, |_, motion| motion.second_end_height_m, in_mm)
     }));
     all.extend(motion.touch_height_m.map(|_| {
-        let (name, u_m) = ("height of the first end as it touches again", U_TOUCH_SHARE * measured.setup.length_m);
+        let name = "height of the first end as it touches again";
+        let u_m = U_TOUCH_SHARE * measured.setup.length_m;
         Observable::new(ClosureKind::Touch, name, u_m, |_, motion| motion.touch_height_m, in_mm)
     }));
     all.extend(turning(measured, motion));
@@ -117,8 +118,7 @@ fn rest<'a>(measured: &FitData, level: &RestLevel) -> Option<Observable<'a>> {
         Some((1.0 + scale) * rest_m_s2 - cross * g * other - g * own)
     };
     let function = if is_axial { "sin" } else { "cos" };
-    let words =
-        move |miss: f64| format!("{:+.1} % of g {function} φ", 100.0 * miss / (rest_m_s2 - miss));
+    let words = move |miss: f64| format!("{:+.1} % of g {function} φ", 100.0 * miss / (rest_m_s2 - miss));
     let name = format!("rest level of {}", level.channel);
     let observable = Observable::new(ClosureKind::Rest, name, u_m_s2, miss, words);
     Some(Observable { channel: Some(level.channel.clone()), ..observable })

@@ -1,5 +1,5 @@
-//! The uncertain inputs of the reconstruction, each with its standard uncertainty and what a move of it does to
-//! the reconstruction's inputs.
+//! The uncertain inputs of the reconstruction, each with its standard uncertainty and what a move of it does
+//! to the reconstruction's inputs.
 
 use super::FitData;
 use super::steps::{u_base_strain_m_s, u_step_m_s};
@@ -280,11 +280,13 @@ impl Gathered {
         let (tolerance, by_u) = ("angular_velocity_deg_s", DEGREE / by_rad_s);
         let key = stated(tolerance, "drop.angular_velocity_deg_s", "1°/s", by_u, remedy);
         let size = format!("{:.2}°/s", by_rad_s.to_degrees());
-        self.add("rotation at first contact", size, Some(key), move |inputs, by| inputs.turn_faster(by * by_rad_s));
+        let shift = move |inputs: &mut Inputs, by: f64| inputs.turn_faster(by * by_rad_s);
+        self.add("rotation at first contact", size, Some(key), shift);
         let by_m_s = known.horizontal_velocity_m_s / 2.0;
         let (tolerance, remedy) = ("horizontal_velocity_m_s", "high-speed video of the fall");
         let key = stated(tolerance, "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1 / by_m_s, remedy);
-        self.add("sideways velocity at first contact", format!("{by_m_s:.3} m/s"), Some(key), move |inputs, by| {
+        let size = format!("{by_m_s:.3} m/s");
+        self.add("sideways velocity at first contact", size, Some(key), move |inputs, by| {
             inputs.setup.horizontal_velocity_m_s += by * by_m_s;
         });
         let share = known.clock / 2.0;
@@ -356,7 +358,12 @@ impl Gathered {
         }
         if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
             let (share, shift) = scale(measured, channel);
-            self.add(name("calibration"), percent(share), Some(calibration(&signal.name, share, REST)), shift);
+            self.add(
+                name("calibration"),
+                percent(share),
+                Some(calibration(&signal.name, share, REST)),
+                shift,
+            );
         }
         let (share, add_m_s) = (known.base_strain / 2.0, u_base_strain_m_s(measured, channel));
         let (tolerance, key) = ("base_strain_percent", "tolerance.base_strain_percent");

@@ -129,8 +129,8 @@ impl<'a> Model<'a> {
 
     /// One line a datum: the inputs, then the observables; largest first.
     fn budget(&self, by_datum: &DMatrix<f64>, strikes: bool) -> Vec<Contribution> {
-        let inputs =
-            self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), i.stated.as_ref().map(|s| s.tolerance)));
+        let tolerance = |i: &UncertainInput| i.stated.as_ref().map(|stated| stated.tolerance);
+        let inputs = self.inputs.iter().map(|i| (i.name.clone(), i.size.clone(), tolerance(i)));
         let own = |o: &Observable| (o.name.clone(), o.words(1.0).replace('+', ""), None);
         let names = inputs.chain(self.observables.iter().map(own));
         let mut budget: Vec<Contribution> = names

@@ -14,8 +14,8 @@ const GROSS_U: f64 = 12.0;
 /// tells a length off by 5 %, and by no more than this in half of the drops.
 const LENGTH_U: f64 = 3.0;
 
-/// χ² at this normal quantile is passed by chance as often as one closure passes [`MISSED_U`]: a normal deviate
-/// is above 3.31 as often as it is beyond ± 3.5.
+/// χ² at this normal quantile is passed by chance as often as one closure passes [`MISSED_U`]: a normal
+/// deviate is above 3.31 as often as it is beyond ± 3.5.
 const CHANCE: f64 = 3.31;
 
 /// A gap within this time of the first contact may hide the contact, s.

@@ -68,8 +68,8 @@ pub fn judge_slowed(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Vec<Finding> {
-    let is_explained =
-        |f: &Finding| missed_kind(f).is_some_and(|kind| [ClosureKind::Rest, ClosureKind::Fall].contains(&kind));
+    let explained = [Some(ClosureKind::Rest), Some(ClosureKind::Fall)];
+    let is_explained = |f: &Finding| explained.contains(&missed_kind(f));
     let severity = found.iter().filter(|f| is_explained(f)).map(|f| f.severity).max();
     let slowed = slowed_share(drop, rests, events, tolerances);
     if let (Some(severity), Some((share, u))) = (severity, slowed) {

@@ -59,11 +59,7 @@ impl ZeroPhaseLowPass {
         let (mut work, heads): (Vec<_>, Vec<_>) =
             all.iter().map(|samples| mirrored(samples, self.padding)).unzip();
         stage::each_forward_and_back(&self.stage, FORGOTTEN * self.padding, &mut work);
-        work.into_iter()
-            .zip(heads)
-            .zip(all)
-            .map(|((work, head), own)| cut(work, head, own.len()))
-            .collect()
+        work.into_iter().zip(heads).zip(all).map(|((work, head), own)| cut(work, head, own.len())).collect()
     }
 
     /// The same of pulses with nothing before and after them.

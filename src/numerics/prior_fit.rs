@@ -31,11 +31,7 @@ pub struct PriorFit {
 impl PriorFit {
     /// The fit without any observation: the priors as they are.
     pub fn of_priors(count: usize) -> Self {
-        Self {
-            unknowns: vec![0.0; count],
-            chi_square: 0.0,
-            response: DMatrix::identity(count, count),
-        }
+        Self { unknowns: vec![0.0; count], chi_square: 0.0, response: DMatrix::identity(count, count) }
     }
 
     /// Standard deviation of unknown `index` after the fit, as a share of the one before.

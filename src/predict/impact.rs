@@ -1,4 +1,5 @@
-//! A moving body and its contact law to the motion just after L strikes; of the thin uniform rod by \[P\] Table 1.
+//! A moving body and its contact law to the motion just after L strikes; of the thin uniform rod by \[P\]
+//! Table 1.
 
 use super::state::{State, arms_m};
 use crate::data::{Body, Contact};

@@ -6,9 +6,7 @@ use super::path::{PathEnd, Way};
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{predict, thin_rod};
-use crate::data::{
-    Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung,
-};
+use crate::data::{Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung};
 
 /// What is predicted: a body, its drop, the contact law and k.
 #[derive(Clone, Copy)]
@@ -42,8 +40,8 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
     }
 }
 
-/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than
-/// [`crate::data::LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
+/// Every rung's prediction, simplest first, and the simplest beside which no richer one says otherwise. The
+/// finite pulse is among them where the drop says how long it lasts.
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
     for rung in Rung::of(drop) {

@@ -44,7 +44,7 @@ pub enum RestFinding of Rest {
         ("does not rest: its level changes by more than 2 % of g; wait until cask and amplifier are steady");
     /// The level of an angular-rate sensor.
     Rate { reads_deg_s: f64 } => (Code::Offset, if reads_deg_s.abs() > LARGE_DEG_S { Warning } else { Note }),
-        ("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}", 
+        ("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}",
          if reads_deg_s.abs() > LARGE_DEG_S { ": balance it, or correct its `unit`" }
          else { "; the rest before the release takes it off" });
     /// The level of an angular-rate sensor changes.
