@@ -47,6 +47,8 @@ pub struct Setup {
     pub gravity_m_s2: f64,
     /// How the axial velocity during contact is had.
     pub axial: AxialClosure,
+    /// How far inward of a corner the force moves for what that crushes, m for each.
+    pub inward: f64,
     /// How long a second of the recorder's clock lasts, s: 1 where its rate is as stated.
     pub second_s: f64,
     /// Steps that the contact is followed in.
@@ -104,6 +106,8 @@ pub struct Motion {
     pub impulse_ratio: f64,
     /// Angular impulse about S during the contact over mass, m²/s: Θ ω / m of a rigid body   (32)
     pub angular_impulse_m2_s: f64,
+    /// How far L's corner goes below where it touched, m.
+    pub crush_m: f64,
     /// Just before R strikes, where it does.
     pub slap_down: Option<MotionState>,
     /// Horizontal and vertical velocity of R's corner then, m/s.

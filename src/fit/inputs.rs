@@ -264,6 +264,12 @@ impl Gathered {
                 inputs.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
             });
         }
+        if measured.inertia_m2.is_some() && setup.inward > 0.0 {
+            // Evenly from none to twice the middle.
+            let u = setup.inward / 3.0_f64.sqrt();
+            let size = format!("{u:.2} m per m of crush");
+            self.add("footprint of the corners", size, None, move |inputs, by| inputs.setup.inward += by * u);
+        }
         let by_m = known.length * setup.length_m / 2.0;
         let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
         self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);

@@ -113,6 +113,7 @@ mod tests {
             gravity_m_s2: 9.81,
             axial: AxialClosure::Sticking,
             second_s: 1.0,
+            inward: 0.0,
             contact_steps: CONTACT_STEPS,
         };
         let integrated = Integrated::over(&signals, 0.02);

@@ -6,6 +6,8 @@ use super::histories::{AlongAxis, Histories};
 use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
 use crate::numerics::as_f64;
 
+/// The force acts no further inward of a corner than this share of the length: half of a limiter's overhang.
+const MOST_INWARD: f64 = 0.1;
 /// Steps over the flight, for the curves.
 const FLIGHT_STEPS: u32 = 200;
 
@@ -81,7 +83,7 @@ fn follow(
     let contact = body.state;
     let step_s = (separation_s - contact_s) / as_f64(setup.contact_steps) * setup.second_s;
     record(&body.state);
-    let (mut turned_rad2_s, mut angular_impulse_m2_s) = (0.0, 0.0);
+    let (mut turned_rad2_s, mut angular_impulse_m2_s, mut crush_m) = (0.0, 0.0, 0.0_f64);
     for i in 1..=setup.contact_steps {
         let before = body.state;
         // What the rotation of the fall does to a sensor went with its offset.
@@ -91,7 +93,10 @@ fn follow(
         let axial_m_s = histories.axial_mean(i, gained_rad_s);
         let rotation_rad_s = gained_rad_s - setup.angular_velocity_rad_s;
         let middle = body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
-        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state, middle);
+        let (_, below_m) = planar::arms_m(body.angle_by, setup.cog_m, setup.height_m);
+        crush_m = crush_m.max(below_m - body.state.height_m);
+        let inward_m = (setup.inward * crush_m).min(MOST_INWARD * setup.length_m);
+        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state, middle, inward_m);
         record(&body.state);
     }
     let separation = body.state;
@@ -115,6 +120,7 @@ fn follow(
         slip_m_s,
         impulse_ratio,
         angular_impulse_m2_s,
+        crush_m,
         slap_down,
         second_end_m_s: slap_down.map(|s| corner(setup, &s, behind_m)),
         second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, behind_m)),
@@ -139,14 +145,20 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of
-/// (1)   (32)
-fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle: (f64, f64)) -> f64 {
+/// Angular impulse about S over mass in one step of the contact, m²/s: ∫((a − d) f_z − b f_x) dt with the arms
+/// of (1)   (32)
+fn turning_m2_s(
+    setup: &Setup,
+    before: &MotionState,
+    after: &MotionState,
+    middle: (f64, f64),
+    inward_m: f64,
+) -> f64 {
     let (a_m, b_m) = planar::arms_m(middle, setup.cog_m, setup.height_m);
     let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
         + setup.gravity_m_s2 * (after.time_s - before.time_s);
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
-    a_m * up_m_s - b_m * along_m_s
+    (a_m - inward_m) * up_m_s - b_m * along_m_s
 }
 
 /// A time of the recording by the clock as it is taken to go, s.
@@ -351,6 +363,7 @@ mod tests {
             gravity_m_s2: 9.81,
             axial,
             second_s: 1.0,
+            inward: 0.0,
             contact_steps: CONTACT_STEPS,
         };
         reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup).expect("two channels apart")

@@ -51,6 +51,30 @@ fn holds(out: &Path) -> serde_json::Value {
     result
 }
 
+/// A force that stays at the corner, and one that moves inward by as much as the target cuts into the cask,
+/// are both well within the stated interval.
+#[test]
+fn a_force_may_move_inward_as_a_corner_crushes() {
+    let folder = folder();
+    for footprint in ["0.0", "1.8"] {
+        let end = format!("pulse_ms = 25.0\nk = 0.3\nfootprint = {footprint}");
+        let scene = example_with(folder.path(), "pulse_ms = 5.0\nk = 0.55", &end);
+        let text = fs::read_to_string(&scene).expect("the scene");
+        fs::write(&scene, text.replace("\"rough\"", "0.4")).expect("a temporary file");
+        let out = folder.path().join(format!("moves-{}.mcap", footprint.replace('.', "-")));
+        made(&scene, &out, &[]);
+        let cask = out.with_extension("toml");
+        let text = fs::read_to_string(&cask).expect("the cask file");
+        fs::write(&cask, text.replace("friction = 0.4", "friction = \"unknown\"")).expect("a temporary file");
+        let result = analyze(&out, &cask).json();
+        let value = |of: &str| number(&result, &format!("/slap_down/horizontal_velocity/{of}")).expect("stated");
+        let truth = number(&read_json(&out.with_extension("truth.json")), "/vx").expect("a truth");
+        let off = (value("value") - truth) / value("u95");
+        // By the corner alone it is 0.7 of the half-width off where the force moves.
+        assert!(off.abs() < 0.5, "{footprint}: {off} half-widths off");
+    }
+}
+
 #[test]
 fn the_example_comes_back_from_every_format() {
     let folder = folder();
