@@ -22,11 +22,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// No check found a problem.
-    #[default]
     Pass,
     /// A warning is to be read before the numbers are used.
     Review,
     /// An error: a quantity is not determined.
+    #[default]
     Fail,
 }
 
