@@ -2,7 +2,7 @@
 
 use super::path;
 use super::scanned::Scanned;
-use super::topic::{Channels, Gathered, Topic};
+use super::topic::{Gathered, Topic, TopicChannel};
 use crate::data::{ChannelSpec, Finding, McapFinding, RowsOf, Source, two_units};
 use crate::ingest::error;
 use crate::ingest::refusal::Refusal;
@@ -90,11 +90,10 @@ pub(super) fn no_named_time(spec: &ChannelSpec, time: &str) -> Refusal {
 pub(super) fn no_samples(
     path: &Path,
     spec: &ChannelSpec,
-    (topic, channels): &Channels,
+    TopicChannel { topic, gathered, .. }: &TopicChannel,
     scanned: &Scanned,
 ) -> Refusal {
-    let gathered = &channels[0].1;
-    let Topic { name, leaves, unreadable, .. } = topic;
+    let Topic { name, leaves, unreadable, .. } = &**topic;
     let Gathered { messages, malformed, first_problem, leaves: seen, .. } = gathered;
     let field = path::field_in(&spec.source, name).unwrap_or_default().to_string();
     if let Some(reason) = unreadable {

@@ -4,7 +4,7 @@ use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::extent::Extent;
 use super::plan::AskedField;
 use super::scanned::Scanned;
-use super::topic::{Channels, Gathered, Sensor, Topic};
+use super::topic::{Series, TopicChannel};
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::ReadRequest;
@@ -22,44 +22,38 @@ pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestErr
     let walked = walk(request, None)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schemas.len(), walked.topics.by_channel.len());
-    let (scanned, mut topics) = walked.finish();
+    let (scanned, mut series) = walked.finish();
     let mut issues = scanned.findings(None);
-    for (topic, gathered) in each(&mut topics) {
-        issues.extend(gathered.undecoded(Some(&topic.name)).map(Finding::from));
-        for sensor in &mut gathered.sensors {
-            for (field, column) in topic.plan.fields.iter().zip(&mut sensor.columns) {
-                let source = format!("{}.{}", topic.name, field.asked.path);
-                if let Err(refusal) = column.settle_ticks(&source, None) {
-                    column.refuse(refusal);
-                }
-            }
-        }
-    }
-    let columns = each(&mut topics).flat_map(|(_, gathered)| gathered.columns());
-    let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
-    issues.extend(unlisted);
-    let mut channels = Vec::new();
     let mut writers: HashMap<String, usize> = HashMap::new();
-    for (topic, gathered) in &topics {
-        *writers.entry(topic.name.clone()).or_default() += gathered.len();
+    for of_channel in series.chunk_by(Series::is_beside) {
+        let name = &of_channel[0].topic().name;
+        issues.extend(of_channel[0].channel.gathered.undecoded(Some(name)).map(Finding::from));
+        *writers.entry(name.clone()).or_default() += 1;
     }
-    for (topic, gathered) in topics {
-        let is_one = writers[&topic.name] == 1;
-        for (number, gathered) in gathered {
-            let number = Some(number).filter(|_| !is_one);
-            listed((&topic, number), gathered, zero_ns, &mut channels, &mut issues);
+    for one in &mut series {
+        let field = one.field.as_ref().map(|field| field.asked.path.to_string());
+        let source = format!("{}.{}", one.topic().name, field.unwrap_or_default());
+        if let Err(refusal) = one.column.settle_ticks(&source, None) {
+            one.column.refuse(refusal);
         }
     }
-    Ok(Listing {
+    let zero_ns = series.iter().filter_map(|one| one.column.span_ns()).map(|(from, _)| from).min();
+    issues.extend(unlisted);
+    let mut listing = Listing {
         schema: "dropcheck.inspect/1",
         recording: path.display().to_string(),
         bytes,
         format: RecordingFormat::Mcap,
         counts,
         facts: facts(&scanned, zero_ns),
-        channels,
+        channels: Vec::new(),
         issues,
-    })
+    };
+    for of_channel in series.chunk_by_mut(Series::is_beside) {
+        let is_alone = writers[&of_channel[0].topic().name] == 1;
+        add(&mut listing, of_channel, is_alone, zero_ns);
+    }
+    Ok(listing)
 }
 
 fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
@@ -82,52 +76,31 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
     .collect()
 }
 
-/// Each channel with its topic.
-fn each(topics: &mut [Channels]) -> impl Iterator<Item = (&Topic, &mut Gathered)> {
-    topics.iter_mut().flat_map(|(topic, channels)| {
-        let topic = &*topic;
-        channels.iter_mut().map(move |(_, gathered)| (topic, gathered))
-    })
-}
-
-/// Adds a line for each field of a topic and each sensor, or one that says why there is none, and what
-/// reading would refuse; `number` is that of the channel, where several write on the topic.
-fn listed(
-    (topic, number): (&Topic, Option<u16>),
-    gathered: Gathered,
-    zero_ns: Option<i64>,
-    channels: &mut Vec<ListedChannel>,
-    issues: &mut Vec<Finding>,
-) {
-    let Gathered { messages, mut sensors, .. } = gathered;
-    if topic.plan.fields.is_empty() {
-        let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
-        channels.push(ListedChannel {
-            messages: Some(messages),
-            encoding: topic.encoding.clone(),
-            unreadable: topic.unreadable.clone().or_else(none),
-            ..ListedChannel::named(&topic.name, "topic")
-        });
-        return;
-    }
-    if sensors.is_empty() {
-        sensors.push(Sensor { rows: None, columns: Vec::new() });
-    }
-    let has_several = sensors.len() > 1;
+/// Adds a line for each field of a channel and each sensor, or one that says why there is none, and what
+/// reading would refuse; `is_alone` where no other writes on its topic.
+fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns: Option<i64>) {
+    let channel = of_channel[0].channel.clone();
+    let TopicChannel { topic, number, has_sensors, gathered } = &*channel;
+    let (messages, issues) = (gathered.messages, &mut listing.issues);
     let (mut said_units, mut said) = (false, Vec::new());
-    let columns = sensors.into_iter().flat_map(|Sensor { rows, mut columns }| {
-        columns.resize_with(topic.plan.fields.len(), || Column::new(true));
-        let fields = topic.plan.fields.iter().zip(columns);
-        fields.map(move |(field, column)| (rows.clone().filter(|_| has_several), field, column))
-    });
-    for (rows, field, column) in columns {
-        let AskedField { path, is_array, .. } = &field.asked;
+    for one in of_channel {
+        let unit = one.unit();
+        let (column, encoding) = (std::mem::take(&mut one.column), topic.encoding.clone());
+        let Some(AskedField { path, is_array, .. }) = one.field.as_ref().map(|field| &field.asked) else {
+            let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
+            listing.channels.push(ListedChannel {
+                messages: Some(messages),
+                encoding,
+                unreadable: topic.unreadable.clone().or_else(none),
+                ..ListedChannel::named(&topic.name, "topic")
+            });
+            continue;
+        };
         let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
-        let source = match number {
-            Some(number) => {
-                format!("{{ topic = {:?}, field = \"{path}\", channel = {number} }}", topic.name)
-            }
-            None => format!("{}.{path}", topic.name),
+        let source = if is_alone {
+            format!("{}.{path}", topic.name)
+        } else {
+            format!("{{ topic = {:?}, field = \"{path}\", channel = {number} }}", topic.name)
         };
         if let Some(units) = column.unit_change()
             && !said_units
@@ -141,12 +114,12 @@ fn listed(
             issues.push(drift.on(&source));
         }
         let mut channel = ListedChannel {
-            rows,
+            rows: one.rows.clone().filter(|_| *has_sensors),
             samples: Some(samples as u64),
             messages: Some(messages),
-            unit: topic.unit(field, &column),
+            unit,
             range,
-            encoding: topic.encoding.clone(),
+            encoding,
             ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
         };
         let untimed = if is_without_times {
@@ -158,7 +131,7 @@ fn listed(
         } else {
             timed(&mut channel, column, zero_ns).err().map(|problem| problem.to_string())
         };
-        channels.push(channel);
+        listing.channels.push(channel);
         // What holds for one field of a topic mostly holds for all.
         if let Some(problem) = untimed.filter(|problem| !said.contains(problem)) {
             said.push(problem.clone());

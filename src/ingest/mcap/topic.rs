@@ -9,6 +9,7 @@ use crate::ingest::limits::MOST_SENSORS;
 use crate::ingest::refusal::Refusal;
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::rc::Rc;
 
 /// The messages of one type on a topic, whatever the number of channels that write them.
 #[derive(Default)]
@@ -39,13 +40,6 @@ impl Topic {
     fn is_json(&self) -> bool {
         matches!(self.message_type, Some(MessageType::Json))
     }
-
-    /// The unit that the messages state for a field, or that their type fixes.
-    pub(super) fn unit(&self, field: &Field, column: &Column) -> Option<String> {
-        let of_type =
-            || self.message_type.as_ref()?.implied_unit(&self.schema_name, &field.asked.path.to_string());
-        column.unit().or_else(of_type).map(str::to_owned)
-    }
 }
 
 /// A message of a channel.
@@ -66,15 +60,49 @@ impl<'a> Message<'a> {
 }
 
 /// What the messages of one sensor gave.
-pub(super) struct Sensor {
+struct Sensor {
     /// The sensor and where the messages name it.
-    pub(super) rows: Option<RowsOf>,
+    rows: Option<RowsOf>,
     /// One for each field of the topic.
-    pub(super) columns: Vec<Column>,
+    columns: Vec<Column>,
 }
 
-/// A topic with its channels, by their numbers, and what their messages gave.
-pub(super) type Channels = (Topic, Vec<(u16, Gathered)>);
+/// A channel with its topic and what its messages told besides samples.
+pub(super) struct TopicChannel {
+    pub(super) topic: Rc<Topic>,
+    pub(super) number: u16,
+    /// Whether its messages name several.
+    pub(super) has_sensors: bool,
+    pub(super) gathered: Gathered,
+}
+
+/// What a channel gave for one field, of one sensor where its messages name such.
+pub(super) struct Series {
+    pub(super) channel: Rc<TopicChannel>,
+    /// `None` where its topic has none.
+    pub(super) field: Option<Field>,
+    pub(super) rows: Option<RowsOf>,
+    pub(super) column: Column,
+}
+
+impl Series {
+    pub(super) fn topic(&self) -> &Topic {
+        &self.channel.topic
+    }
+
+    /// Whether both are of one channel.
+    pub(super) fn is_beside(&self, other: &Self) -> bool {
+        Rc::ptr_eq(&self.channel, &other.channel)
+    }
+
+    /// The unit that the messages state for it, or that their type fixes.
+    pub(super) fn unit(&self) -> Option<String> {
+        let topic = self.topic();
+        let path = self.field.as_ref().map(|field| field.asked.path.to_string());
+        let of_type = || topic.message_type.as_ref()?.implied_unit(&topic.schema_name, &path?);
+        self.column.unit().or_else(of_type).map(str::to_owned)
+    }
+}
 
 /// What the messages of a channel gave.
 #[derive(Default)]
@@ -85,7 +113,7 @@ pub(super) struct Gathered {
     /// Why the first of them does not.
     pub(super) first_problem: Option<String>,
     /// What each sensor gave that the messages name, or all of them together where they name none.
-    pub(super) sensors: Vec<Sensor>,
+    sensors: Vec<Sensor>,
     /// Whether they name more than are told apart; what further ones gave lies with the last.
     has_further: bool,
     /// The numeric fields of a message in JSON that lacks one that is asked for.
@@ -182,27 +210,41 @@ impl Gathered {
         &mut columns[field]
     }
 
-    /// Settles, after the last message, what only all of them tell.
-    pub(super) fn settle(&mut self) {
+    /// A series for each sensor and field of the channel `number`, after its last message; one without a field
+    /// where its topic has none.
+    pub(super) fn series(mut self, topic: Rc<Topic>, number: u16, is_listed: bool) -> Vec<Series> {
+        let mut sensors = std::mem::take(&mut self.sensors);
+        if sensors.is_empty() {
+            sensors.push(Sensor { rows: None, columns: Vec::new() });
+        }
         let has_further = self.has_further;
-        for column in self.columns_mut() {
-            column.settle_clock();
-            if has_further {
-                column.refuse(Refusal::new(
-                    format!("its messages name more than {MOST_SENSORS} sensors, which are not told apart"),
-                    "have the recorder write a channel for each sensor",
-                ));
+        let mut fields: Vec<Option<Field>> = topic.plan.fields.iter().cloned().map(Some).collect();
+        fields.resize(fields.len().max(1), None);
+        let channel = Rc::new(TopicChannel { topic, number, has_sensors: sensors.len() > 1, gathered: self });
+        let mut all = Vec::with_capacity(sensors.len() * fields.len());
+        for Sensor { rows, mut columns } in sensors {
+            columns.resize_with(fields.len(), || Column::new(is_listed));
+            for (field, mut column) in fields.iter().cloned().zip(columns) {
+                column.settle_clock();
+                if has_further {
+                    column.refuse(Refusal::new(
+                        format!("its messages name more than {MOST_SENSORS} sensors, which are not told apart"),
+                        "have the recorder write a channel for each sensor",
+                    ));
+                }
+                all.push(Series { channel: channel.clone(), field, rows: rows.clone(), column });
             }
         }
+        all
     }
 
     /// The columns of all sensors.
-    pub(super) fn columns(&self) -> impl Iterator<Item = &Column> {
+    fn columns(&self) -> impl Iterator<Item = &Column> {
         self.sensors.iter().flat_map(|sensor| &sensor.columns)
     }
 
     /// The columns of all sensors.
-    pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
+    fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
         self.sensors.iter_mut().flat_map(|sensor| &mut sensor.columns)
     }
 }

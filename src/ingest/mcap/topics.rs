@@ -7,12 +7,13 @@ use super::message_type::{MessageTypes, SchemaInfo};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
-use super::topic::{Channels, Gathered, Message, Part, Topic};
+use super::topic::{Gathered, Message, Part, Series, Topic};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
 use mcap::records::{Channel, Record, op};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::rc::Rc;
 
 /// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a
 /// recording of hundreds of sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
@@ -274,24 +275,32 @@ impl<'a> Topics<'a> {
         (topics + fields > 0).then(|| McapFinding::Unlisted { most, most_of_topic, topics, fields }.into())
     }
 
-    /// The topics of the file, in its order, each with its channels and what their messages gave, one at
-    /// least; of types without a message one that no other has on its topic.
-    pub(super) fn finish(self, taken: Part) -> Vec<Channels> {
-        let mut topics: Vec<Channels> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
-        for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
-            gathered.settle();
+    /// What each channel with messages gave for each field, by topics in the order of the file; of types
+    /// without a message one that no other has on its topic.
+    pub(super) fn finish(self, taken: Part) -> Vec<Series> {
+        let is_listed = self.asked.is_none();
+        let mut channels: Vec<Vec<(u16, Gathered)>> = self.all.iter().map(|_| Vec::new()).collect();
+        for ((topic, number), gathered) in self.channels.into_iter().zip(taken.gathered) {
             if gathered.messages > 0 {
-                topics[topic].1.push((number, gathered));
+                channels[topic].push((number, gathered));
             }
         }
+        let mut topics: Vec<_> = self.all.into_iter().zip(channels).collect();
         // First those with messages; what follows of the same name has none.
         let mut names: HashSet<String> =
             topics.iter().filter(|it| !it.1.is_empty()).map(|it| it.0.name.clone()).collect();
         topics.retain(|(topic, channels)| !channels.is_empty() || names.insert(topic.name.clone()));
-        for (_, channels) in topics.iter_mut().filter(|(_, channels)| channels.is_empty()) {
-            channels.push((0, Gathered::default()));
+        let mut all = Vec::new();
+        for (topic, mut channels) in topics {
+            if channels.is_empty() {
+                channels.push((0, Gathered::default()));
+            }
+            let topic = Rc::new(topic);
+            for (number, gathered) in channels {
+                all.extend(gathered.series(topic.clone(), number, is_listed));
+            }
         }
-        topics
+        all
     }
 }
 

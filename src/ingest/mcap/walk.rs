@@ -6,7 +6,7 @@ use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary};
 use super::summed::Summed;
-use super::topic::{Channels, Part};
+use super::topic::{Part, Series};
 use super::topics::Topics;
 use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::error::{self, IngestError};
@@ -32,8 +32,8 @@ pub(super) struct Walked<'a> {
 }
 
 impl Walked<'_> {
-    /// The topics in the order of the file, each with what its messages gave.
-    pub(super) fn finish(self) -> (Scanned, Vec<Channels>) {
+    /// What each channel gave for each field, by topics in the order of the file.
+    pub(super) fn finish(self) -> (Scanned, Vec<Series>) {
         (self.scanned, self.topics.finish(self.taken))
     }
 }
