@@ -10,7 +10,7 @@ use super::topic::{Part, Series};
 use super::topics::Topics;
 use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::error::{self, IngestError};
-use crate::ingest::{Limits, Progress, ReadRequest};
+use crate::ingest::ReadRequest;
 use mcap::records::{Record, op};
 use rayon::prelude::*;
 use std::io::{BufReader, Read};
@@ -38,57 +38,40 @@ impl Walked<'_> {
     }
 }
 
-/// Why a walk cannot go on.
-enum Obstacle {
-    Io(std::io::Error),
-    /// A limit of so many bytes, and what passes it.
-    Limit(&'static str, u64),
-}
-
-impl From<std::io::Error> for Obstacle {
-    fn from(error: std::io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
 /// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
 /// of a cask file name; without one, for a listing, of every numeric field.
 ///
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
 pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Result<Walked<'a>, IngestError> {
-    let ReadRequest { file: recording, limits, progress } = request;
-    let walked = recording.opened().map_err(Obstacle::from).and_then(|mut file| {
-        let length = recording.length()?;
-        let summary = summary::read(&mut file, length, limits.part_bytes())?;
-        let topics = Topics::new(asked, limits, length);
-        let mut walk = Walk {
-            file: BufReader::with_capacity(READ_BUFFER_BYTES, Summed::of(file, summary.as_ref())),
-            length,
-            at: mcap::MAGIC.len() as u64,
-            limits,
-            summary,
-            waiting: Vec::new(),
-            spare: Vec::new(),
-            claimed_bytes: 0,
-            body: Vec::new(),
-            walked: Walked { scanned: Scanned::default(), taken: topics.part(1), topics },
-        };
-        walk.run(progress)?;
-        Ok(walk.walked)
-    });
-    walked.map_err(|obstacle| match obstacle {
-        Obstacle::Io(source) => error::io(recording.path, &source),
-        Obstacle::Limit(what, limit_bytes) => limits.refusal(recording.path, what, limit_bytes),
-    })
+    let ReadRequest { file: recording, limits, .. } = request;
+    let io = |source| error::io(recording.path, &source);
+    let mut file = recording.opened().map_err(io)?;
+    let length = recording.length().map_err(io)?;
+    let summary = summary::read(&mut file, length, limits.part_bytes()).map_err(io)?;
+    let topics = Topics::new(asked, limits, length);
+    let mut walk = Walk {
+        request,
+        file: BufReader::with_capacity(READ_BUFFER_BYTES, Summed::of(file, summary.as_ref())),
+        length,
+        at: mcap::MAGIC.len() as u64,
+        summary,
+        waiting: Vec::new(),
+        spare: Vec::new(),
+        claimed_bytes: 0,
+        body: Vec::new(),
+        walked: Walked { scanned: Scanned::default(), taken: topics.part(1), topics },
+    };
+    walk.run()?;
+    Ok(walk.walked)
 }
 
 /// Where the walk through the file stands.
-struct Walk<'a> {
+struct Walk<'a, 'f> {
+    request: ReadRequest<'f>,
     file: BufReader<Summed>,
     length: u64,
     at: u64,
-    limits: Limits,
     summary: Option<Summary>,
     /// Chunks that were read and not yet taken.
     waiting: Vec<Chunk>,
@@ -101,8 +84,8 @@ struct Walk<'a> {
     walked: Walked<'a>,
 }
 
-impl Walk<'_> {
-    fn run(&mut self, progress: Progress) -> Result<(), Obstacle> {
+impl Walk<'_, '_> {
+    fn run(&mut self) -> Result<(), IngestError> {
         for (opcode, body) in self.summary.iter().flat_map(Summary::records) {
             // A record that does not parse here may do so where it stands in the data.
             let _ = self.walked.topics.announce(opcode, body, true);
@@ -117,7 +100,7 @@ impl Walk<'_> {
             if self.at - said_at >= READ_BUFFER_BYTES as u64 {
                 said_at = self.at;
                 #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-                progress(self.at as f64 / self.length as f64);
+                (self.request.progress)(self.at as f64 / self.length as f64);
             }
         }
         // What was told by its place is in the sum as well.
@@ -129,13 +112,29 @@ impl Walk<'_> {
     }
 
     /// Leaves out so many bytes, which are read where they are summed up.
-    fn skip(&mut self, bytes: u64) -> Result<(), Obstacle> {
-        if self.file.get_ref().sum.is_some() {
-            std::io::copy(&mut (&mut self.file).take(bytes), &mut std::io::sink())?;
+    fn skip(&mut self, bytes: u64) -> Result<(), IngestError> {
+        let skipped = if self.file.get_ref().sum.is_some() {
+            std::io::copy(&mut (&mut self.file).take(bytes), &mut std::io::sink()).map(|_| ())
         } else {
-            self.file.seek_relative(bytes.cast_signed())?;
-        }
-        Ok(())
+            self.file.seek_relative(bytes.cast_signed())
+        };
+        skipped.map_err(|source| self.io(&source))
+    }
+
+    fn io(&self, source: &std::io::Error) -> IngestError {
+        error::io(self.request.file.path, source)
+    }
+
+    /// The next so many bytes, as far as they are there, in `body`.
+    fn read(&mut self, bytes: u64) -> Result<(), IngestError> {
+        self.body.clear();
+        let read = (&mut self.file).take(bytes).read_to_end(&mut self.body);
+        read.map(|_| ()).map_err(|source| self.io(&source))
+    }
+
+    /// Holds `what` to so many bytes.
+    fn hold(&self, what: &str, bytes: u64, most: u64) -> Result<(), IngestError> {
+        self.request.limits.hold(self.request.file.path, what, bytes, most)
     }
 
     /// Whether the walk stands behind the data: what looks like a message there is none.
@@ -145,21 +144,17 @@ impl Walk<'_> {
     }
 
     /// Whether what was read so far stays within the limits.
-    fn keep_within(&self) -> Result<(), Obstacle> {
-        let Walked { scanned, topics, taken } = &self.walked;
-        let (part, unpacked) = (self.limits.part_bytes(), self.limits.unpacked_bytes(self.length));
-        [
-            ("the samples of the channels read take", taken.held_bytes, self.limits.samples_bytes()),
-            ("its schemas and topics take", topics.held_bytes, part),
-            ("its chunks claim to unpack to", self.claimed_bytes, unpacked),
-            ("its chunks unpack to", scanned.counts.unpacked_bytes, unpacked),
-        ]
-        .into_iter()
-        .try_for_each(|(what, bytes, most)| within(what, bytes, most))
+    fn keep_within(&self) -> Result<(), IngestError> {
+        let (Walked { scanned, topics, taken }, limits) = (&self.walked, self.request.limits);
+        let unpacked = limits.unpacked_bytes(self.length);
+        self.hold("the samples of the channels read take", taken.held_bytes, limits.samples_bytes())?;
+        self.hold("its schemas and topics take", topics.held_bytes, limits.part_bytes())?;
+        self.hold("its chunks claim to unpack to", self.claimed_bytes, unpacked)?;
+        self.hold("its chunks unpack to", scanned.counts.unpacked_bytes, unpacked)
     }
 
     /// One record at the file's level.
-    fn record(&mut self) -> Result<ControlFlow<()>, Obstacle> {
+    fn record(&mut self) -> Result<ControlFlow<()>, IngestError> {
         let (at, left) = (self.at, self.length.saturating_sub(self.at));
         if left < RECORD_HEADER_BYTES {
             self.settle()?;
@@ -167,7 +162,7 @@ impl Walk<'_> {
             return Ok(Break(()));
         }
         let mut header = [0; 9];
-        self.file.read_exact(&mut header)?;
+        self.file.read_exact(&mut header).map_err(|source| self.io(&source))?;
         let [opcode, length @ ..] = header;
         let claimed = u64::from_le_bytes(length);
         let available = left - RECORD_HEADER_BYTES;
@@ -188,7 +183,7 @@ impl Walk<'_> {
     }
 
     /// A record other than a chunk that lies wholly in the file.
-    fn whole_record(&mut self, opcode: u8, length: u64) -> Result<ControlFlow<()>, Obstacle> {
+    fn whole_record(&mut self, opcode: u8, length: u64) -> Result<ControlFlow<()>, IngestError> {
         let (start, is_behind_data) = (self.at, self.is_behind_data());
         self.at += RECORD_HEADER_BYTES + length;
         let is_data =
@@ -201,9 +196,8 @@ impl Walk<'_> {
             return Ok(Continue(()));
         }
         self.settle()?;
-        within("one of its messages takes", length, self.limits.part_bytes())?;
-        self.body.clear();
-        (&mut self.file).take(length).read_to_end(&mut self.body)?;
+        self.hold("one of its messages takes", length, self.request.limits.part_bytes())?;
+        self.read(length)?;
         if opcode == op::FOOTER {
             return self.end_magic();
         }
@@ -233,22 +227,23 @@ impl Walk<'_> {
     }
 
     /// A chunk, which waits until there are enough to be unpacked beside one another.
-    fn chunk(&mut self, claimed: u64, available: u64) -> Result<ControlFlow<()>, Obstacle> {
+    fn chunk(&mut self, claimed: u64, available: u64) -> Result<ControlFlow<()>, IngestError> {
         // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's
         // length.
         self.file.get_mut().sum = None;
-        let part_bytes = self.limits.part_bytes();
-        within("one of its chunks takes", claimed.min(available), part_bytes)?;
+        let part_bytes = self.request.limits.part_bytes();
+        self.hold("one of its chunks takes", claimed.min(available), part_bytes)?;
         let mut chunk = self
             .spare
             .pop()
             .unwrap_or_else(|| Chunk::new(self.walked.topics.part(rayon::current_num_threads())));
         (chunk.start, chunk.claimed) = (self.at, claimed);
-        chunk.body.clear();
-        (&mut self.file).take(claimed.min(available)).read_to_end(&mut chunk.body)?;
+        std::mem::swap(&mut self.body, &mut chunk.body);
+        self.read(claimed.min(available))?;
+        std::mem::swap(&mut self.body, &mut chunk.body);
         self.at += RECORD_HEADER_BYTES + claimed.min(available);
         chunk.begin();
-        within("one of its chunks claims to unpack to", chunk.claim(), part_bytes)?;
+        self.hold("one of its chunks claims to unpack to", chunk.claim(), part_bytes)?;
         self.claimed_bytes = self.claimed_bytes.saturating_add(chunk.claim());
         self.keep_within()?;
         let sum = |bytes: fn(&Chunk) -> u64| self.waiting.iter().chain([&chunk]).map(bytes).sum::<u64>();
@@ -268,8 +263,8 @@ impl Walk<'_> {
 
     /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their
     /// messages.
-    fn settle(&mut self) -> Result<(), Obstacle> {
-        let Self { waiting, limits, .. } = self;
+    fn settle(&mut self) -> Result<(), IngestError> {
+        let Self { waiting, request: ReadRequest { limits, .. }, .. } = self;
         let Walked { scanned, topics, taken } = &mut self.walked;
         waiting.par_iter_mut().for_each(|chunk| chunk.unpack(limits.part_bytes()));
         for chunk in &*waiting {
@@ -313,7 +308,7 @@ impl Walk<'_> {
     }
 
     /// After bytes that are no record: the next chunk that the summary's index names, else the end.
-    fn resume_after_garbage(&mut self) -> Result<ControlFlow<()>, Obstacle> {
+    fn resume_after_garbage(&mut self) -> Result<ControlFlow<()>, IngestError> {
         self.settle()?;
         let at = self.at;
         let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
@@ -323,23 +318,20 @@ impl Walk<'_> {
         if !resumed {
             return Ok(Break(()));
         }
-        self.file.seek_relative((to - at).cast_signed() - RECORD_HEADER_BYTES.cast_signed())?;
+        let ahead = (to - at).cast_signed() - RECORD_HEADER_BYTES.cast_signed();
+        let sought = self.file.seek_relative(ahead);
+        sought.map_err(|source| self.io(&source))?;
         self.at = to;
         Ok(Continue(()))
     }
 
-    fn end_magic(&mut self) -> Result<ControlFlow<()>, Obstacle> {
-        let mut magic = Vec::new();
-        (&mut self.file).take(mcap::MAGIC.len() as u64).read_to_end(&mut magic)?;
-        if magic != mcap::MAGIC {
+    fn end_magic(&mut self) -> Result<ControlFlow<()>, IngestError> {
+        self.read(mcap::MAGIC.len() as u64)?;
+        if self.body != mcap::MAGIC {
             self.walked.scanned.losses.end(FileEnd::InMagic { at: self.at });
         }
         Ok(Break(()))
     }
-}
-
-fn within(what: &'static str, bytes: u64, most: u64) -> Result<(), Obstacle> {
-    if bytes > most { Err(Obstacle::Limit(what, most)) } else { Ok(()) }
 }
 
 /// Takes the messages of a chunk, as long as their samples take no more than `most_held` bytes.
