@@ -46,8 +46,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
             None if claims.is_empty() => return Err(refused(no_rate(held))),
             None => time_base::from_claims(held.start_s, &claims, samples),
         };
-        let mend = "correct the samples or their times, or take this [[channel]] out of the cask file";
-        let uniform = uniform.map_err(|problem| refused(problem.refusal(mend)))?;
+        let uniform = uniform.map_err(refused)?;
         channels.push(RawChannel { spec, uniform, unit: held.unit.clone() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };

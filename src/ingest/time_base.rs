@@ -14,7 +14,6 @@ mod uniform;
 
 pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
 pub use blocks::from_blocks;
-pub use error::TimeBaseError;
 pub(super) use error::check_lengths;
 use error::check_rate;
 pub(super) use pieces::BlockContent;
@@ -22,6 +21,7 @@ pub(super) use stamps::line;
 pub use uniform::{Block, Uniform};
 
 use super::clock::{self, Claims, Taken};
+use super::refusal::Refusal;
 use crate::data::{Jitter, Samples, TimesFinding};
 use crate::numerics::as_f64;
 use fit::BaseFit;
@@ -41,7 +41,7 @@ const MOST_ROUNDING: f64 = 1e-2;
 pub struct ChannelTimes<'a> {
     each_s: &'a [f64],
     rise: bool,
-    fit: OnceLock<Result<BaseFit, TimeBaseError>>,
+    fit: OnceLock<Result<BaseFit, Refusal>>,
 }
 
 impl<'a> ChannelTimes<'a> {
@@ -57,14 +57,14 @@ impl<'a> ChannelTimes<'a> {
     /// The rate is the one that [`Claims::weigh`] takes; gaps are counted at the times' own rate.
     ///
     /// # Errors
-    /// [`TimeBaseError`] where the times make no record.
-    pub fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
+    /// [`Refusal`] where the times make no record.
+    pub fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         check_lengths(self.each_s.len(), samples.len())?;
         claims.cask_hz.map_or(Ok(()), check_rate)?;
         self.placed(samples, claims)
     }
 
-    fn placed(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
+    fn placed(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         let mut issues = Vec::new();
         let Ordered { times_s, mut samples, is_coarse } =
             order::ordered(self.each_s, self.rise, samples, &mut issues)?;
@@ -103,7 +103,7 @@ impl<'a> ChannelTimes<'a> {
     }
 
     /// The base nearest to the times as they stand, where they rise.
-    fn fit(&self) -> Result<BaseFit, TimeBaseError> {
+    fn fit(&self) -> Result<BaseFit, Refusal> {
         self.fit.get_or_init(|| BaseFit::new(self.each_s)).clone()
     }
 }
@@ -116,39 +116,34 @@ pub fn from_times(
     times_s: &[f64],
     samples: Samples,
     declared_rate_hz: Option<f64>,
-) -> Result<Uniform, TimeBaseError> {
+) -> Result<Uniform, Refusal> {
     ChannelTimes::new(times_s).place(samples, &Claims::of_cask(declared_rate_hz))
 }
 
 /// Samples without times, at the rate that is claimed.
 ///
 /// # Errors
-/// As [`from_rate`]; [`TimeBaseError::Refused`] where none is stated, or two that contradict each other.
-pub fn from_claims(start_s: f64, claims: &Claims, samples: Samples) -> Result<Uniform, TimeBaseError> {
+/// As [`at_taken`], and where no rate is stated, or two that contradict each other.
+pub fn from_claims(start_s: f64, claims: &Claims, samples: Samples) -> Result<Uniform, Refusal> {
     at_taken(start_s, claims.weigh(None)?, samples)
 }
 
-/// Samples at the rate that was taken, with what contradicts it.
-pub(super) fn at_taken(start_s: f64, taken: Taken, samples: Samples) -> Result<Uniform, TimeBaseError> {
-    let mut uniform = from_rate(start_s, taken.rate_hz, samples)?;
-    uniform.issues.extend(taken.issues);
-    Ok(uniform)
-}
-
-/// Samples without times, at a known rate: only non-finite ones are looked for.
+/// Samples at the rate that was taken, with what contradicts it: only non-finite ones are looked for.
 ///
 /// # Errors
-/// [`TimeBaseError`] where there are fewer than two samples or the rate is none.
-pub fn from_rate(start_s: f64, sample_rate_hz: f64, mut samples: Samples) -> Result<Uniform, TimeBaseError> {
+/// [`Refusal`] where there are fewer than two samples or the rate is none.
+pub(super) fn at_taken(start_s: f64, taken: Taken, mut samples: Samples) -> Result<Uniform, Refusal> {
+    let sample_rate_hz = taken.rate_hz;
     check_rate(sample_rate_hz)?;
     if samples.len() < 2 {
-        return Err(TimeBaseError::TooFew { count: samples.len() });
+        return Err(error::too_few(samples.len()));
     }
     if !start_s.is_finite() {
         return Err(error::not_finite(1, start_s));
     }
     let mut issues = Vec::new();
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
+    issues.extend(taken.issues);
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 

@@ -25,9 +25,7 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
         let blocks: Vec<Block> = channel.runs().map(block).collect();
         let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
-        let uniform = uniform.map_err(|problem| {
-            error::of_channel(path, &channel.name, problem.refusal("record the channel over the whole drop"))
-        })?;
+        let uniform = uniform.map_err(|refusal| error::of_channel(path, &channel.name, refusal))?;
         channels.push(RawChannel { spec, uniform, unit: Some(channel.unit.clone()) });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };

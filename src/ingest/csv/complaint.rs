@@ -4,16 +4,11 @@ use super::super::error::{self, IngestError};
 use super::super::lines::{Line, Text};
 use super::super::number;
 use super::super::refusal::Refusal;
-use super::super::time_base::TimeBaseError;
 use super::super::{ReadRequest, RecordingFile};
 use super::layout::Layout;
 use super::rows::RowError;
 use super::wanted::Wanted;
 use std::path::Path;
-
-/// What to do about times that give no base.
-pub(super) const TIMES_REMEDY: &str =
-    "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz";
 
 /// Rows that are refused as a whole.
 pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
@@ -36,11 +31,6 @@ pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
         )
     };
     error::of_file(path, Refusal::new(problem, mend).at("the first 64 KiB"))
-}
-
-/// Times that give no base.
-pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> IngestError {
-    error::of_channel(path, channel, error.refusal(TIMES_REMEDY))
 }
 
 /// A row that cannot be read.

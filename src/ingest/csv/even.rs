@@ -4,7 +4,8 @@
 //! most do.
 
 use super::super::clock::{self, Claims};
-use super::super::time_base::{self, TimeBaseError, Uniform};
+use super::super::refusal::Refusal;
+use super::super::time_base::{self, Uniform};
 use super::super::times::Counted;
 use crate::data::Samples;
 
@@ -80,7 +81,7 @@ impl Even {
     ///
     /// # Errors
     /// As [`time_base::ChannelTimes::place`].
-    pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
+    pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         time_base::check_lengths(self.count, samples.len())?;
         let taken = claims.weigh(Some(&clock::of_times(self.rate(), 0.0)))?;
         time_base::at_taken(self.at(0), taken, samples)

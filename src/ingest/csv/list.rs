@@ -18,7 +18,6 @@ use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
 use crate::ingest::ReadRequest;
-use crate::ingest::time_base::TimeBaseError;
 use crate::numerics::as_f64;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -235,10 +234,10 @@ impl ListedClock {
             let column = &mut table.columns[table.wanted.slot(plan.column)];
             column.each_mut().iter_mut().filter(|value| !is_number(**value)).for_each(|value| *value = 0.0);
         }
-        let uniform = match table.uniforms(&own_rows).remove(0) {
-            Err(TimeBaseError::TooFew { .. }) => return Ok(Self::default()),
-            uniform => uniform.map_err(|error| error.refusal(complaint::TIMES_REMEDY))?,
-        };
+        if own_rows[0].as_ref().map_or(table.rows(), |own| own.iter().filter(|is_own| **is_own).count()) < 2 {
+            return Ok(Self::default());
+        }
+        let uniform = table.uniforms(&own_rows).remove(0)?;
         let count = uniform.samples.len();
         let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
         issues.extend(uniform.issues.into_iter().map(|issue| Finding {

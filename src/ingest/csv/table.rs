@@ -11,7 +11,7 @@ use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
 use crate::ingest::clock::Clock;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
+use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use rayon::prelude::*;
 
@@ -202,7 +202,7 @@ impl Table<'_> {
     /// The samples of each channel on their base, for which they are taken out of the table.
     ///
     /// `own_rows` are those of [`Self::own_rows`].
-    pub(super) fn uniforms(&mut self, own_rows: &[Option<Vec<bool>>]) -> Vec<Result<Uniform, TimeBaseError>> {
+    pub(super) fn uniforms(&mut self, own_rows: &[Option<Vec<bool>>]) -> Vec<Result<Uniform, Refusal>> {
         let Self { plans, wanted, columns, .. } = self;
         let mut uses = vec![0_usize; columns.len()];
         for column in plans.iter().flat_map(|plan| [Some(plan.column), plan.time_column]).flatten() {
@@ -238,7 +238,7 @@ fn base(column: &HeldColumn) -> Base<'_> {
     column.even.map_or_else(|| Base::Each(ChannelTimes::new(&column.each)), Base::Even)
 }
 
-fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, TimeBaseError> {
+fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, Refusal> {
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
         Some(Base::Each(times)) => times.place(samples, &plan.claims),

@@ -10,7 +10,7 @@ use super::starts::{LATEST_S, Start};
 use crate::data::{RowsOf, Samples};
 use crate::ingest::clock::Claims;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
+use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 
 /// A channel before its samples are read.
 pub(super) struct DatasetChannel {
@@ -134,7 +134,7 @@ impl DatasetChannel {
                 }
             }
             let placed = ChannelTimes::new(&times_s).place(samples, &self.claims);
-            let mut uniform = placed.map_err(|error| at(refused(error)))?;
+            let mut uniform = placed.map_err(at)?;
             // A rate that bears the times out decides between them and others.
             let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
             for other in others.filter(|other| self.rows.is_none() && may_read(other)) {
@@ -156,15 +156,11 @@ impl DatasetChannel {
                 format!("nothing says when its samples were taken: {why}"),
                 "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"",
             )),
-            None => time_base::from_claims(start.first_s(), &self.claims, samples).map_err(refused),
+            None => time_base::from_claims(start.first_s(), &self.claims, samples),
         };
         let uniform = placed.map_err(|fault| fault.at(&self.column.source))?;
         Ok(Based { uniform, span_s: None, start: start.clone() })
     }
-}
-
-fn refused(error: TimeBaseError) -> Refusal {
-    error.refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz")
 }
 
 /// What a cask file names; a bare name is looked for beside the samples first, in their own records before

@@ -6,7 +6,6 @@ use super::topic::{Gathered, Topic, TopicChannel};
 use crate::data::{ChannelSpec, Finding, McapFinding, RowsOf, Source, two_units};
 use crate::ingest::error;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::time_base::TimeBaseError;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -128,15 +127,6 @@ pub(super) fn no_samples(
     }
     let mend = error::near_names(path, &field, "numeric field in this topic", &there);
     Refusal::new(format!("the messages of {name} have no numeric field {field}"), &mend)
-}
-
-/// The samples are there, and find no time base.
-pub(super) fn no_base(spec: &ChannelSpec, problem: TimeBaseError) -> Refusal {
-    let refusal = problem.refusal(
-        "check the stamps of this topic; `sample_rate_hz` in this channel of the cask file overrides the \
-         recording's rate",
-    );
-    refusal.at(&spec.source.to_string())
 }
 
 /// The unit changes between messages: a warning where the cask file states one.

@@ -9,7 +9,7 @@ use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
-use crate::ingest::time_base::TimeBaseError;
+use crate::ingest::refusal::Refusal;
 use std::collections::{BTreeMap, HashMap};
 
 /// Lists what a file holds.
@@ -129,7 +129,7 @@ fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns
                     .into(),
             )
         } else {
-            timed(&mut channel, column, zero_ns).err().map(|problem| problem.to_string())
+            timed(&mut channel, column, zero_ns).err().map(|refusal| refusal.beside(&source))
         };
         listing.channels.push(channel);
         // What holds for one field of a topic mostly holds for all.
@@ -144,14 +144,11 @@ fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns
 ///
 /// # Errors
 /// Why it would refuse them; too few samples are no fault of a recording.
-fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), TimeBaseError> {
+fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), Refusal> {
     column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));
-    match column.list_times(zero_ns, channel) {
-        Err(TimeBaseError::TooFew { .. }) => Ok(()),
-        listed => listed,
-    }
+    if channel.samples < Some(2) { Ok(()) } else { column.list_times(zero_ns, channel) }
 }
 
 #[cfg(test)]

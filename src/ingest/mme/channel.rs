@@ -152,8 +152,7 @@ impl<'a> ChannelFile<'a> {
         let claims = Claims { cask_hz, are_times_named: false, stated: stated.into_iter().collect() };
         let samples = Samples::F64(std::mem::take(&mut self.values));
         let placed = time_base::from_claims(self.start_s.unwrap_or_default(), &claims, samples);
-        let mut uniform =
-            placed.map_err(|error| error.refusal("export the test again, with all its samples"))?;
+        let mut uniform = placed?;
         uniform.issues.append(&mut self.issues);
         Ok(uniform)
     }

@@ -2,7 +2,7 @@
 //! laid.
 
 use super::blocks::{self, Laid};
-use super::error::{TimeBaseError, check_rate};
+use super::error::check_rate;
 use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, Told};
 use super::uniform::{Block, Uniform};
@@ -38,12 +38,12 @@ struct BlockRate {
 /// Blocks on a uniform base by what is claimed of their rate, their `samples` one after another.
 ///
 /// # Errors
-/// [`TimeBaseError`] where claims and stamps give no rate, or stamps no record.
+/// [`Refusal`] where claims and stamps give no rate, or stamps no record.
 pub(in crate::ingest) fn place(
     blocks: &[Block],
     claims: &Claims,
     samples: Samples,
-) -> Result<Uniform, TimeBaseError> {
+) -> Result<Uniform, Refusal> {
     let content = BlockContent { samples: &samples, digests: None };
     let BlockRate { laid_hz, stated_hz, issues } = rate(blocks, claims, &content)?;
     let mut uniform = blocks::from_blocks(blocks, laid_hz, samples)?;
@@ -60,14 +60,14 @@ pub(in crate::ingest) fn lay(
     blocks: &[Block],
     claims: &Claims,
     content: &BlockContent,
-) -> Result<Laid, TimeBaseError> {
+) -> Result<Laid, Refusal> {
     let BlockRate { laid_hz, stated_hz, .. } = rate(blocks, claims, content)?;
     let mut laid = blocks::lay(blocks, laid_hz, content)?;
     laid.sample_rate_hz = stated_hz.unwrap_or(laid.sample_rate_hz);
     Ok(laid)
 }
 
-fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<BlockRate, TimeBaseError> {
+fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<BlockRate, Refusal> {
     claims.cask_hz.map_or(Ok(()), check_rate)?;
     no_shared_stamps(blocks, content)?;
     let nearest_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));

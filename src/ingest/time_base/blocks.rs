@@ -1,6 +1,6 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
-use super::error::{self, TimeBaseError, check_lengths, check_rate};
+use super::error::{self, check_lengths, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
 use super::missing;
 use super::order::{is_same, no_mixture};
@@ -33,8 +33,8 @@ impl Doubles {
 /// are.
 ///
 /// # Errors
-/// [`TimeBaseError`] where stamps or rate make no record.
-pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, TimeBaseError> {
+/// [`Refusal`] where stamps or rate make no record.
+pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, Refusal> {
     let count: usize = blocks.iter().map(|block| block.count).sum();
     check_lengths(count, samples.len())?;
     let laid = lay(blocks, rate_hz, &BlockContent { samples: &samples, digests: None })?;
@@ -59,7 +59,7 @@ pub(in crate::ingest) struct Laid {
 ///
 /// # Errors
 /// As that.
-pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Result<Laid, TimeBaseError> {
+pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Result<Laid, Refusal> {
     check_rate(rate_hz)?;
     if let Some(index) = blocks.iter().position(|block| !block.start_s.is_finite()) {
         return Err(error::not_finite(index + 1, blocks[index].start_s));
@@ -71,7 +71,7 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
     drop_doubles(&mut pieces, rate_hz, &mut doubles, content);
     let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
     if present < 2 {
-        return Err(TimeBaseError::TooFew { count: present });
+        return Err(error::too_few(present));
     }
     let stamps = Intervals::between(&pieces.iter().map(Piece::block).collect::<Vec<Block>>());
     let cut = stamps.cut(rate_hz);
@@ -214,7 +214,7 @@ fn hidden_loss(stamps: &Intervals, rate_hz: f64, tolerance: f64) -> Option<Findi
 }
 
 /// Gives each block the place of its first sample on the base.
-fn place(pieces: &mut [Piece], rate_hz: f64, tolerance: f64, present: usize) -> Result<(), TimeBaseError> {
+fn place(pieces: &mut [Piece], rate_hz: f64, tolerance: f64, present: usize) -> Result<(), Refusal> {
     let limit = FILL_FACTOR.mul_add(as_f64(present), FILL_FLOOR);
     for later in 1..pieces.len() {
         let [before, piece] = &mut pieces[later - 1..=later] else { continue };

@@ -6,7 +6,6 @@
 //! period, half of their spread its uncertainty. A line through all samples would be off by about (step /
 //! record)², 1 % for ten steps (docs/formats.md).
 
-use super::error::TimeBaseError;
 use super::missing;
 use super::uniform::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
@@ -56,7 +55,7 @@ pub(super) fn place(
     mut samples: Samples,
     claims: &Claims,
     mut issues: Vec<Finding>,
-) -> Result<Uniform, TimeBaseError> {
+) -> Result<Uniform, Refusal> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
     let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
     let step_s = if steps_s.is_empty() { 0.0 } else { robust::median(&mut steps_s) };
@@ -65,16 +64,16 @@ pub(super) fn place(
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
     if steps.is_none() && claims.is_empty() {
         let problem = match changes.len() {
-            0 => format!("all times are {} s: these are no times; give sample_rate_hz instead", times_s[0]),
+            0 => format!("all times are {} s: these are no times", times_s[0]),
             changes => format!(
                 "the times are cut to {} s: {} samples share {} times that are too few or too uneven to tell \
-                 their rate; give sample_rate_hz for this channel",
+                 their rate",
                 digits(step_s, 3),
                 times_s.len(),
                 changes + 1
             ),
         };
-        return Err(TimeBaseError::Told(problem));
+        return Err(Refusal::new(problem, "give sample_rate_hz for this channel, or name its times (`time`)"));
     }
     // Uneven changes tell no rate that could contradict a stated one.
     let even = steps.filter(|steps| steps.is_even || claims.is_empty());
@@ -249,7 +248,7 @@ mod tests {
     use crate::data::{IssueCode, Severity};
     use crate::ingest::time_base::{Uniform, from_times};
 
-    fn is_too_coarse(error: &TimeBaseError) -> bool {
+    fn is_too_coarse(error: &Refusal) -> bool {
         error.to_string().contains("too few or too uneven to tell their rate")
     }
 
@@ -258,7 +257,7 @@ mod tests {
         (0..count).map(|i| ((from_s + as_f64(i) / rate_hz) / step_s + 1e-9).floor() * step_s).collect()
     }
 
-    fn placed(times_s: &[f64], declared_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
+    fn placed(times_s: &[f64], declared_hz: Option<f64>) -> Result<Uniform, Refusal> {
         from_times(times_s, Samples::F64((0..times_s.len()).map(as_f64).collect()), declared_hz)
     }
 
@@ -315,7 +314,7 @@ mod tests {
         let times_s = cut(2000.0, 1.0, 0.3, 5000);
         let error = placed(&times_s, None).unwrap_err();
         assert!(error.to_string().contains("cut to 1 s: 5000 samples share 3 times"), "{error}");
-        assert!(error.to_string().contains("give sample_rate_hz"), "{error}");
+        assert!(error.remedy.contains("give sample_rate_hz"), "{error}");
         let uniform = placed(&times_s, Some(2000.0)).unwrap();
         assert_eq!((uniform.sample_rate_hz, uniform.samples.len()), (2000.0, 5000));
         assert_eq!(only(&uniform).0, Severity::Note);

@@ -1,7 +1,8 @@
 //! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
 
-use super::error::{self, TimeBaseError};
+use super::error;
 use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::refusal::Refusal;
 use crate::numerics::{as_count, as_f64, robust, single};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -43,7 +44,7 @@ pub(super) const FILL_FLOOR: f64 = 1e6;
 
 impl BaseFit {
     /// The base nearest to strictly rising, finite times (at least two).
-    pub(super) fn new(times_s: &[f64]) -> Result<Self, TimeBaseError> {
+    pub(super) fn new(times_s: &[f64]) -> Result<Self, Refusal> {
         let guess_s = median_interval(times_s);
         let mut period_s = mean_interval(times_s, 1.75 * guess_s).unwrap_or(guess_s);
         period_s = mean_interval(times_s, GAP_PERIODS * period_s).unwrap_or(period_s);
@@ -129,7 +130,7 @@ fn pieces(whole: Range<usize>) -> Vec<Range<usize>> {
 }
 
 /// Cuts the times at their gaps and gives each run its place on the base.
-fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
+fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, Refusal> {
     let limit = FILL_FACTOR.mul_add(as_f64(times_s.len()), FILL_FLOOR);
     let mut runs = vec![Run { first: 0, place: 0 }];
     let mut lost_total = 0.0;

@@ -1,6 +1,6 @@
 //! Times as recorded to times that rise: sorted, without doubles.
 
-use super::error::{self, TimeBaseError};
+use super::error;
 use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::usual_step;
 use crate::ingest::refusal::Refusal;
@@ -42,9 +42,9 @@ pub(super) fn ordered<'a>(
     rise: bool,
     samples: Samples,
     issues: &mut Vec<Finding>,
-) -> Result<Ordered<'a>, TimeBaseError> {
+) -> Result<Ordered<'a>, Refusal> {
     if times_s.len() < 2 {
-        return Err(TimeBaseError::TooFew { count: times_s.len() });
+        return Err(error::too_few(times_s.len()));
     }
     let taken = Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false };
     if rise {
@@ -54,7 +54,7 @@ pub(super) fn ordered<'a>(
         return Err(error::not_finite(index + 1, times_s[index]));
     }
     if let Some(refusal) = wrapped(times_s) {
-        return Err(refusal.into());
+        return Err(refusal);
     }
     Ok(taken.sorted(issues)?.without_doubles(issues))
 }

@@ -10,7 +10,7 @@ fn codes(uniform: &Uniform) -> Vec<IssueCode> {
     uniform.issues.iter().map(|issue| issue.code).collect()
 }
 
-fn told(said: Result<Uniform, TimeBaseError>) -> String {
+fn told(said: Result<Uniform, Refusal>) -> String {
     said.unwrap_err().to_string()
 }
 
@@ -157,7 +157,7 @@ fn missing_samples_are_gaps_too() {
     assert_eq!(uniform.gaps, [Span { from: 3, to: 5 }]);
     assert!(uniform.samples.get(4).is_nan());
     assert_eq!(codes(&uniform), [IssueCode::NonFinite]);
-    let uniform = from_rate(1.0, 10.0, f64s(&values)).unwrap();
+    let uniform = from_claims(1.0, &Claims::of_cask(Some(10.0)), f64s(&values)).unwrap();
     assert_eq!(uniform.gaps, [Span { from: 3, to: 5 }]);
     assert_eq!((uniform.issues[0].from_s, uniform.issues[0].to_s), (Some(1.3), Some(1.4)));
 }
@@ -185,7 +185,7 @@ fn what_is_no_time_base_says_why() {
         assert!(error.to_string().contains(expected), "{error}");
     }
     assert!(told(from_times(&[0.0, 1.0], f64s(&[1.0]), None)).contains("2 times but 1 samples"));
-    assert!(told(from_rate(0.0, 0.0, f64s(&[1.0, 2.0]))).contains("the sample rate is 0 Hz"));
+    assert!(told(from_claims(0.0, &Claims::of_cask(Some(0.0)), f64s(&[1.0, 2.0]))).contains("the sample rate is 0 Hz"));
 }
 
 /// A block and its samples.
@@ -194,7 +194,7 @@ fn block(first: usize, count: usize) -> (Block, Vec<f64>) {
     (block, (first..first + count).map(as_f64).collect())
 }
 
-fn of_blocks(blocks: Vec<(Block, Vec<f64>)>) -> Result<Uniform, TimeBaseError> {
+fn of_blocks(blocks: Vec<(Block, Vec<f64>)>) -> Result<Uniform, Refusal> {
     let (blocks, samples): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
     from_blocks(&blocks, 1000.0, Samples::F64(samples.concat()))
 }
@@ -323,7 +323,7 @@ fn a_step_that_changes_for_good_is_no_jitter_and_stamps_that_wander_are() {
 
 #[test]
 fn times_that_begin_anew_are_refused() {
-    let told = |found: Result<Uniform, TimeBaseError>| match found {
+    let told = |found: Result<Uniform, Refusal>| match found {
         Err(error) => error.to_string().contains("begin anew "),
         Ok(_) => false,
     };

@@ -5,7 +5,7 @@ use crate::data::ListedChannel;
 use crate::ingest::clock::Claims;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
-use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
+use crate::ingest::time_base::{self, Block, BlockContent, Uniform};
 use crate::numerics::as_f64;
 
 impl Column {
@@ -55,7 +55,7 @@ impl Column {
         self,
         zero_ns: i64,
         cask_hz: Option<f64>,
-    ) -> Result<Uniform, TimeBaseError> {
+    ) -> Result<Uniform, Refusal> {
         self.heeded()?;
         if self.counts.is_empty() {
             // A rate in messages of single numbers is that of something else, such as blocks beside them.
@@ -76,7 +76,7 @@ impl Column {
         self,
         zero_ns: i64,
         listed: &mut ListedChannel,
-    ) -> Result<(), TimeBaseError> {
+    ) -> Result<(), Refusal> {
         let (start_s, sample_rate_hz, count, gaps) = match &self.extent {
             Some(extent) if !self.counts.is_empty() => {
                 let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
