@@ -24,8 +24,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
     cask_file::require_channels(cask_file, path)?;
     let (stated_file, cask_file) = (cask_file, &*cask_file.to_be_read());
     let mut channels = Vec::with_capacity(cask_file.channels.len());
-    for (spec, held) in chosen(held, cask_file)?.into_iter().enumerate() {
-        let stated = &cask_file.channels[spec];
+    for (stated, held) in cask_file.channels.iter().zip(chosen(held, cask_file)?) {
         let refused = |refusal| error::of_channel(path, &stated.name, refusal);
         if let Some(rows) = &stated.rows {
             let problem = format!("{rows} picks rows of a file, and these are samples in memory");
@@ -47,7 +46,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
             None => time_base::from_claims(held.start_s, &claims, samples),
         };
         let uniform = uniform.map_err(refused)?;
-        channels.push(RawChannel { spec, uniform, unit: held.unit.clone() });
+        channels.push(RawChannel { uniform, unit: held.unit.clone() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, stated_file)

@@ -23,26 +23,23 @@ pub(crate) fn recording(
     cask_file: &CaskFile,
 ) -> Result<Recording, IngestError> {
     // Times of the motion do not hang on when another channel begins.
-    let of_motion = raw.channels.iter().filter(|channel| channel.spec < cask_file.channels.len());
+    let of_motion = raw.channels.iter().take(cask_file.channels.len());
     let first_s = of_motion.map(|channel| channel.uniform.start_s).fold(f64::INFINITY, f64::min);
     let first_s = if first_s.is_finite() { first_s } else { 0.0 };
     let mut issues: Vec<Finding> = raw.issues.into_iter().map(|issue| shifted(issue, first_s)).collect();
     let mut channels = Vec::with_capacity(raw.channels.len());
     let mut others = OtherChannels::default();
-    for raw_channel in raw.channels {
-        let unit = raw_channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
-        let said = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
-        if let Some(spec) = cask_file.channels.get(raw_channel.spec) {
-            let scale = has_numbers(spec, &raw_channel).and_then(|()| scale(spec, unit));
-            let read = scale.and_then(|scale| channel(spec, raw_channel, scale, first_s, &mut issues));
-            channels.push(read.map_err(|refusal| said(spec, refusal))?);
-        } else {
-            let other = &cask_file.others[raw_channel.spec - cask_file.channels.len()];
-            let scale = own_unit(other, unit);
-            let read =
-                scale.and_then(|scale| channel(&other.read, raw_channel, scale, first_s, &mut others.issues));
-            others.channels.push(read.map_err(|refusal| said(&other.read, refusal))?);
-        }
+    let mut read = raw.channels.into_iter();
+    let said = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
+    for (spec, raw) in cask_file.channels.iter().zip(read.by_ref()) {
+        let scale = has_numbers(spec, &raw).and_then(|()| scale(spec, recorded_unit(&raw)));
+        let channel = scale.and_then(|scale| channel(spec, raw, scale, first_s, &mut issues));
+        channels.push(channel.map_err(|refusal| said(spec, refusal))?);
+    }
+    for (other, raw) in cask_file.others.iter().zip(read) {
+        let scale = own_unit(other, recorded_unit(&raw));
+        let channel = scale.and_then(|scale| channel(&other.read, raw, scale, first_s, &mut others.issues));
+        others.channels.push(channel.map_err(|refusal| said(&other.read, refusal))?);
     }
     overlap(path, channels.iter().chain(&others.channels))?;
     let is_other = |found: &Finding| others.channels.iter().any(|o| found.channel.as_ref() == Some(&o.name));
@@ -146,6 +143,10 @@ fn shifted(mut issue: Finding, first_s: f64) -> Finding {
     issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
     issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
     issue
+}
+
+fn recorded_unit(raw: &RawChannel) -> Option<&str> {
+    raw.unit.as_deref().map(str::trim).filter(|text| !text.is_empty())
 }
 
 /// What one unit of the samples is worth.
@@ -294,7 +295,7 @@ mod tests {
                 time_jitter_s: 0.0,
                 issues: Vec::new(),
             };
-            let raw = RawChannel { spec: 0, uniform, unit: Some("g".into()) };
+            let raw = RawChannel { uniform, unit: Some("g".into()) };
             let scale = of(None, Some("g"))?;
             channel(&spec(None), raw, scale, 0.0, &mut Vec::new())
         };
@@ -364,15 +365,14 @@ mod tests {
             time_jitter_s: 0.0,
             issues: Vec::new(),
         };
-        let raw = RawChannel { spec: 0, uniform, unit: None };
+        let raw = RawChannel { uniform, unit: None };
         let error = has_numbers(&spec(Some(Unit::G)), &raw).unwrap_err();
         assert!(error.to_string().contains("/daq/a1 holds no number"), "{error}");
     }
 
     #[test]
     fn times_count_from_the_earliest_first_sample_and_polarity_turns_the_scale() {
-        let raw = |spec, start_s| RawChannel {
-            spec,
+        let raw = |start_s| RawChannel {
             uniform: Uniform {
                 start_s,
                 sample_rate_hz: 1.0,
@@ -388,9 +388,9 @@ mod tests {
         };
         let mut cask_file = cask_file(&["/a.x", "/b.x"]);
         cask_file.channels[1].polarity = -1.0;
-        let channels = vec![raw(0, 2.5), raw(1, 2.0)];
+        let channels = vec![raw(2.5), raw(2.0)];
         let apart = RawRecording {
-            channels: vec![raw(0, 39.0), raw(1, 2.0)],
+            channels: vec![raw(39.0), raw(2.0)],
             zero_unix_ns: None,
             issues: Vec::new(),
         };

@@ -65,7 +65,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let mut channels = Vec::with_capacity(plans.len());
     for (spec, uniform) in table.uniforms(&own_rows).into_iter().enumerate() {
         let uniform = uniform.map_err(|error| error::of_channel(path, name(spec), error))?;
-        channels.push(RawChannel { spec, uniform, unit: layout.columns[plans[spec].column].unit.clone() });
+        channels.push(RawChannel { uniform, unit: layout.columns[plans[spec].column].unit.clone() });
     }
     let with_missing = channels.iter().map(|channel| channel.uniform.samples.len()).max().unwrap_or_default();
     issues.extend(layout.preamble.of_rows(rows, with_missing));

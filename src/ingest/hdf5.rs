@@ -127,7 +127,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         // A library that broke off gives no answers, which is not what is wrong with the channel.
         file.whole()?;
         let (channel, start) = channel?;
-        channels.push(RawChannel { spec: index, ..channel });
+        channels.push(channel);
         starts.push((spec.source.to_string(), start));
         let is_common = starts::require_common(&starts);
         is_common.map_err(|fault| error::of_channel(request.file.path, &spec.name, fault))?;
@@ -200,7 +200,7 @@ fn read_channel(
     match attributes.two_units {
         // The cask file's goes before all.
         Some(two) if spec.unit.is_none() => Err(refused(two.at(source))),
-        _ => Ok((RawChannel { spec: 0, uniform, unit: attributes.unit }, based.start)),
+        _ => Ok((RawChannel { uniform, unit: attributes.unit }, based.start)),
     }
 }
 

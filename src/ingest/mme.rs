@@ -31,7 +31,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     files.bytes(limits)?;
     let listed = index::channels(&files, limits)?;
     let (mut channels, mut starts, mut held_bytes) = (Vec::new(), Vec::new(), 0);
-    for (spec, stated) in cask_file.channels.iter().enumerate() {
+    for stated in &cask_file.channels {
         let channel = index::wanted(path, stated, cask_file.time.as_ref(), &listed)?;
         let mut read = ChannelFile::of(&files, channel, limits)?;
         held_bytes += 8 * read.values.len() as u64;
@@ -49,7 +49,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         starts.push(read.start_s.is_some());
         let uniform = read.placed(stated.sample_rate_hz);
         let uniform = uniform.map_err(|refusal| error::of_channel(path, &stated.name, refusal))?;
-        channels.push(RawChannel { spec, uniform, unit });
+        channels.push(RawChannel { uniform, unit });
     }
     if let Some(spec) = starts.iter().position(|is_stated| !is_stated).filter(|_| starts.contains(&true)) {
         let problem = "its file has no line Time of first sample, and those of other channels have";

@@ -68,8 +68,6 @@ impl<'a> ReadRequest<'a> {
 /// and clock.
 #[derive(Debug)]
 pub(crate) struct RawChannel {
-    /// Index into the channels of [`CaskFile::to_be_read`].
-    pub(crate) spec: usize,
     /// The samples; its times and those of its issues count from [`RawRecording::zero_unix_ns`].
     pub(crate) uniform: time_base::Uniform,
     /// The unit that the recording states or that its message type fixes, as written there.
@@ -79,7 +77,7 @@ pub(crate) struct RawChannel {
 /// What a format's reader hands over for a whole file.
 #[derive(Debug)]
 pub(crate) struct RawRecording {
-    /// One for each `[[channel]]` of the cask file.
+    /// One for each of [`CaskFile::to_be_read`], in their order.
     pub(crate) channels: Vec<RawChannel>,
     /// Time zero of the channels' clock, ns since 1970, where the recording knows it.
     pub(crate) zero_unix_ns: Option<i64>,

@@ -18,15 +18,13 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
     let path = Path::new(NAME);
     let mut channels = Vec::with_capacity(recording.channels.len());
     let recording = recording.mounted(cask_file);
-    for (spec, channel) in
-        recording.channels.iter().enumerate().take(cask_file.channels.len() + cask_file.others.len())
-    {
+    for channel in recording.channels.iter().take(cask_file.channels.len() + cask_file.others.len()) {
         let block = |(from, run): (usize, &[f32])| Block { start_s: channel.time_s(from), count: run.len() };
         let blocks: Vec<Block> = channel.runs().map(block).collect();
         let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
         let uniform = uniform.map_err(|refusal| error::of_channel(path, &channel.name, refusal))?;
-        channels.push(RawChannel { spec, uniform, unit: Some(channel.unit.clone()) });
+        channels.push(RawChannel { uniform, unit: Some(channel.unit.clone()) });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Mcap, String::new(), raw, cask_file)

@@ -58,7 +58,7 @@ pub(in crate::ingest) fn read(
         };
         let uniform = column.uniform(zero_ns, spec.sample_rate_hz);
         let uniform = uniform.map_err(|refusal| refused(spec, refusal.at(&spec.source.to_string())))?;
-        channels.push(RawChannel { spec: position, uniform, unit });
+        channels.push(RawChannel { uniform, unit });
     }
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
 }
