@@ -171,37 +171,26 @@ pub(super) fn rise(numbers: &[f64]) -> bool {
     pairs > 0 && 10 * rising >= 9 * pairs && numbers[0] < numbers[pairs]
 }
 
-/// Numbers that messages carry as their times.
-pub(super) struct SentTicks<'a> {
-    /// One a message.
-    pub each: &'a [f64],
-    /// Samples of a message, in the mean.
-    pub samples_each: f64,
-    /// From the first log time to the last, s.
-    pub logged_s: f64,
-}
-
-impl SentTicks<'_> {
-    /// Seconds a unit: as [`seconds_a_unit`], and where nothing states it the unit in which they run as long
-    /// as the log times do.
-    ///
-    /// # Errors
-    /// As there.
-    pub(super) fn seconds_a_unit(
-        &self,
-        scale: Scale,
-        carrier: Carrier,
-        stated_hz: Option<f64>,
-    ) -> Result<f64, Refusal> {
-        let counted = || {
-            let counted = Counted::of(self.each)?;
-            Some(Counted { rate: counted.rate * self.samples_each, ..counted })
-        };
-        let is_open = scale == Scale::Open && counted().is_some_and(|counted| counted.since_1970().is_none());
-        let logged = Some(self.logged_s).filter(|s| is_open && *s > 0.0);
-        let as_logged = logged.and_then(|logged_s| scale.beside(logged_s, self.each));
-        as_logged.map_or_else(|| seconds_a_unit(scale, carrier, counted, stated_hz), Ok)
-    }
+/// Seconds a unit of numbers that messages of so many samples carry as their times: as [`seconds_a_unit`], and
+/// where nothing states it the unit in which they run as long as the log times do.
+///
+/// # Errors
+/// As there.
+pub(super) fn seconds_a_tick(
+    each: &[f64],
+    samples_each: f64,
+    logged_s: f64,
+    (scale, carrier): (Scale, Carrier),
+    stated_hz: Option<f64>,
+) -> Result<f64, Refusal> {
+    let counted = || {
+        let counted = Counted::of(each)?;
+        Some(Counted { rate: counted.rate * samples_each, ..counted })
+    };
+    let is_open = scale == Scale::Open && counted().is_some_and(|counted| counted.since_1970().is_none());
+    let logged = Some(logged_s).filter(|s| is_open && *s > 0.0);
+    let as_logged = logged.and_then(|logged_s| scale.beside(logged_s, each));
+    as_logged.map_or_else(|| seconds_a_unit(scale, carrier, counted, stated_hz), Ok)
 }
 
 /// What bare numbers say of the time that they count.

@@ -16,7 +16,7 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
     };
     if topics.is_empty() {
         let problem = format!("the recording holds no topics, so none for {}", spec.source);
-        return Refusal::new(problem, lost(scanned, "take the original from the logger again"));
+        return Refusal::new(problem, with_loss(scanned, "name the recording that holds the samples"));
     }
     if topics.iter().any(|topic| topic.trim_start_matches('/') == wanted.trim_start_matches('/')) {
         return Refusal::new(
@@ -32,7 +32,7 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
         Source::Path(text) => text.split('.').next().unwrap_or(text),
         Source::TopicField { topic, .. } => topic,
     };
-    let mend = with_loss(scanned, error::near_names(path, meant, "topic", topics));
+    let mend = with_loss(scanned, &error::near_names(path, meant, "topic", topics));
     Refusal::new(format!("the recording has no topic for the source {}", spec.source), mend)
 }
 
@@ -102,7 +102,7 @@ pub(super) fn no_samples(
         );
     }
     if *messages == 0 {
-        let mend = lost(scanned, "check that the sensor was recorded");
+        let mend = with_loss(scanned, "check that the sensor was recorded");
         return Refusal::new(format!("the topic {name} has no messages"), &mend);
     }
     if let (true, Some(problem)) = (malformed == messages, first_problem) {
@@ -142,20 +142,13 @@ pub(super) fn unit_change(spec: &ChannelSpec, [first, other]: [&str; 2]) -> Resu
     ))
 }
 
-/// What the file has lost, where that may be why, else `mend`.
-fn lost(scanned: &Scanned, mend: &str) -> String {
-    match scanned.findings(None).first() {
-        Some(loss) => {
-            format!("{}; take the original from the logger again, or try `mcap recover`", loss.message)
-        }
-        None => mend.to_owned(),
-    }
-}
-
 /// `mend`, and what the file has lost: the topic may have begun behind it.
-fn with_loss(scanned: &Scanned, mend: String) -> String {
+fn with_loss(scanned: &Scanned, mend: &str) -> String {
     match scanned.findings(None).first() {
-        Some(loss) => format!("{mend}; mind that {}", loss.message),
-        None => mend,
+        Some(loss) => format!(
+            "{mend}; mind that {}: take the original from the logger again, or try `mcap recover`",
+            loss.message
+        ),
+        None => mend.to_owned(),
     }
 }

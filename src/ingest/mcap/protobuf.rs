@@ -1,5 +1,6 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
+use super::numbers::push;
 use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
@@ -110,7 +111,8 @@ impl Protobuf {
             if let Some(action) = action(child, &field) {
                 match &action {
                     Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
-                        compiled.defaults.push((*slot, number(0.0, &field.kind())));
+                        let is_narrow = matches!(field.kind(), Kind::Float);
+                        compiled.defaults.push((*slot, Value::Number { value: 0.0, is_narrow }));
                     }
                     Action::Stamp { slot, .. } => compiled.defaults.push((*slot, Value::Stamp(0))),
                     _ => {}
@@ -196,28 +198,37 @@ fn counted(seen: &mut Vec<(u32, usize)>, number: u32) -> usize {
 impl ProtobufField {
     /// Takes what a field holds; `None` where that is not of its schema's type.
     fn numbers(&self, slot: usize, item: &Item, slots: &mut Slots) -> Option<()> {
+        let is_narrow = matches!(self.kind, Kind::Float);
         if !self.is_list {
-            slots.set(slot, number(scalar(&self.kind, item)?, &self.kind));
+            slots.set(slot, Value::Number { value: scalar(&self.kind, item)?, is_narrow });
             return Some(());
         }
         let Some(place) = slots.values.get_mut(slot) else { return Some(()) };
         if !matches!(place, Value::Array(_)) {
-            let is_narrow = matches!(self.kind, Kind::Float);
             *place = Value::Array(if is_narrow { Samples::default() } else { Samples::F64(Vec::new()) });
         }
         let Value::Array(samples) = place else { return Some(()) };
         match (item, samples) {
-            (Item::Bytes(packed), samples) => return unpack(&self.kind, packed, samples),
-            (Item::Fixed32(bytes), Samples::F32(samples)) => samples.push(f32::from_le_bytes(*bytes)),
-            (one, Samples::F64(samples)) => samples.push(scalar(&self.kind, one)?),
-            _ => return None,
+            (Item::Bytes(packed), Samples::F32(samples)) => {
+                let (words, rest) = packed.as_chunks::<4>();
+                samples.extend(words.iter().map(|&word| f32::from_le_bytes(word)));
+                return rest.is_empty().then_some(());
+            }
+            (Item::Bytes(packed), Samples::F64(samples)) => {
+                let mut wire = Wire(packed);
+                while !wire.0.is_empty() {
+                    let item = match self.kind {
+                        Kind::Double | Kind::Fixed64 | Kind::Sfixed64 => Item::Fixed64(wire.fixed().ok()?),
+                        Kind::Fixed32 | Kind::Sfixed32 => Item::Fixed32(wire.fixed().ok()?),
+                        _ => Item::Varint(wire.varint().ok()?),
+                    };
+                    samples.push(scalar(&self.kind, &item)?);
+                }
+            }
+            (one, samples) => push(samples, scalar(&self.kind, one)?, is_narrow),
         }
         Some(())
     }
-}
-
-fn number(value: f64, kind: &Kind) -> Value {
-    Value::Number { value, is_narrow: matches!(kind, Kind::Float) }
 }
 
 fn stamp_ns(bytes: &[u8], seconds: u32, nanoseconds: u32) -> Result<i64, String> {
@@ -259,30 +270,6 @@ fn scalar(kind: &Kind, item: &Item) -> Option<f64> {
         }
         _ => return None,
     })
-}
-
-/// Packed numbers behind those in `samples`; `None` where their bytes do not come out even.
-fn unpack(kind: &Kind, packed: &[u8], samples: &mut Samples) -> Option<()> {
-    match (kind, samples) {
-        (Kind::Float, Samples::F32(samples)) => {
-            let (words, rest) = packed.as_chunks::<4>();
-            samples.extend(words.iter().map(|&word| f32::from_le_bytes(word)));
-            rest.is_empty().then_some(())
-        }
-        (kind, Samples::F64(samples)) => {
-            let mut wire = Wire(packed);
-            while !wire.0.is_empty() {
-                let item = match kind {
-                    Kind::Double | Kind::Fixed64 | Kind::Sfixed64 => Item::Fixed64(wire.fixed().ok()?),
-                    Kind::Float | Kind::Fixed32 | Kind::Sfixed32 => Item::Fixed32(wire.fixed().ok()?),
-                    _ => Item::Varint(wire.varint().ok()?),
-                };
-                samples.push(scalar(kind, &item)?);
-            }
-            Some(())
-        }
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::data::{Finding, McapFinding};
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base;
-use crate::ingest::times::{self, Carrier, SentTicks};
+use crate::ingest::times::{self, Carrier};
 use crate::numerics::as_f64;
 
 impl Column {
@@ -29,11 +29,12 @@ impl Column {
         }
         let samples = self.extent.as_ref().map_or(self.samples.len(), |extent| extent.samples);
         let samples_each = as_f64(samples) / as_f64(count);
-        let ticks = SentTicks { each: &each, samples_each, logged_s: seconds_from(to_ns, from_ns) };
         let stated = || Some(self.rates.first()?.statement(f64::NAN)?.rate_hz);
         let stated_hz = cask_hz.or_else(stated);
         let place = format!("the field {field} beside {source}");
-        let unit_ns = (ticks.seconds_a_unit(scale, Carrier::Field(&place), stated_hz)? * 1e9).round();
+        let (logged_s, counted) = (seconds_from(to_ns, from_ns), (scale, Carrier::Field(&place)));
+        let unit_s = times::seconds_a_tick(&each, samples_each, logged_s, counted, stated_hz)?;
+        let unit_ns = (unit_s * 1e9).round();
         #[allow(clippy::cast_possible_truncation, reason = "a float-to-integer cast saturates")]
         let ns = |tick: f64| {
             // Whole and rest apart: nanoseconds since 1970 are more than a double holds.
