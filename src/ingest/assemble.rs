@@ -176,20 +176,14 @@ fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusa
     };
     match acceleration_unit_m_s2(text) {
         Some(m_s2) => Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
-        None if is_voltage(text) => Err(Refusal::new(
-            format!("the recording gives {} in {text:?}, a voltage", spec.source),
-            format!(
-                "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in this \
-                 channel of the cask file"
-            ),
-        )),
         None => Err(Refusal::new(
             format!(
                 "the recording gives {} in {text:?}, which is no unit of acceleration known here",
                 spec.source
             ),
             "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel \
-             of the cask file",
+             of the cask file, or of a voltage `unit = \"V\"` or \"mV\" and `sensitivity` (mV per g, from \
+             the calibration sheet)",
         )),
     }
 }
@@ -389,11 +383,8 @@ mod tests {
         let mut cask_file = cask_file(&["/a.x", "/b.x"]);
         cask_file.channels[1].polarity = -1.0;
         let channels = vec![raw(2.5), raw(2.0)];
-        let apart = RawRecording {
-            channels: vec![raw(39.0), raw(2.0)],
-            zero_unix_ns: None,
-            issues: Vec::new(),
-        };
+        let apart =
+            RawRecording { channels: vec![raw(39.0), raw(2.0)], zero_unix_ns: None, issues: Vec::new() };
         let refused = recording(Path::new("r"), RecordingFormat::Mcap, "ab".into(), apart, &cask_file);
         assert!(refused.unwrap_err().to_string().contains("37 s apart"));
         let raw =

@@ -61,10 +61,6 @@ impl<'a> ChannelTimes<'a> {
     pub fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         check_lengths(self.each_s.len(), samples.len())?;
         claims.cask_hz.map_or(Ok(()), check_rate)?;
-        self.placed(samples, claims)
-    }
-
-    fn placed(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         let mut issues = Vec::new();
         let Ordered { times_s, mut samples, is_coarse } =
             order::ordered(self.each_s, self.rise, samples, &mut issues)?;

@@ -30,25 +30,19 @@ pub(super) fn lz4(packed: &[u8], most: u64, into: &mut Vec<u8>) -> io::Result<us
     decoder.take(most).read_to_end(into)
 }
 
-/// Unpacks deflated bytes with a check sum behind them into their place; the count of those that came.
-pub(super) fn zlib(packed: &[u8], into: &mut [u8]) -> Option<usize> {
+/// Unpacks deflated bytes, in the wrapping of zlib or bare, into their place; the count of those that came.
+pub(super) fn inflate(packed: &[u8], is_wrapped: bool, into: &mut [u8]) -> Option<usize> {
     #[cfg(feature = "native")]
-    let count = libdeflater::Decompressor::new().zlib_decompress(packed, into).ok();
+    let count = {
+        let mut unpacker = libdeflater::Decompressor::new();
+        if is_wrapped {
+            unpacker.zlib_decompress(packed, into)
+        } else {
+            unpacker.deflate_decompress(packed, into)
+        }
+    };
     #[cfg(not(feature = "native"))]
     let count =
-        miniz_oxide::inflate::decompress_slice_iter_to_slice(into, [packed].into_iter(), true, false).ok();
-    count
-}
-
-/// What deflated bytes unpack to, empty where it is not `length` bytes.
-pub(super) fn deflate(packed: &[u8], length: usize) -> Vec<u8> {
-    let mut bytes = vec![0; length];
-    #[cfg(feature = "native")]
-    let count = libdeflater::Decompressor::new().deflate_decompress(packed, &mut bytes).ok();
-    #[cfg(not(feature = "native"))]
-    let count =
-        miniz_oxide::inflate::decompress_slice_iter_to_slice(&mut bytes, [packed].into_iter(), false, false)
-            .ok();
-    bytes.truncate(count.unwrap_or_default());
-    bytes
+        miniz_oxide::inflate::decompress_slice_iter_to_slice(into, [packed].into_iter(), is_wrapped, false);
+    count.ok()
 }

@@ -215,7 +215,7 @@ impl ChunkLayout<'_> {
             *packed = unshuffled(packed, self.value_bytes);
         }
         bytes.resize(whole, 0);
-        (unpack::zlib(packed, bytes)? == whole).then_some(())
+        (unpack::inflate(packed, true, bytes)? == whole).then_some(())
     }
 
     /// The chunk's share of the column out of its bytes; `None` where it is short of it.

@@ -187,18 +187,12 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             }
             return Ok(());
         };
-        if count == 0 {
-            if let Some(slot) = node.and_then(|node| node.slot(Want::Numbers)) {
-                self.slots.set(slot, Value::Array(Samples::F64(Vec::new())));
-            }
-            return Ok(());
-        }
         let bytes = number.bytes();
-        self.reader.align(bytes)?;
+        if count > 0 {
+            self.reader.align(bytes)?;
+        }
         if count.saturating_mul(bytes) > self.reader.remaining() {
-            return Err(Undecoded::new(format!(
-                "{count} numbers are announced, and the message ends before them"
-            )));
+            return Err(re_cdr::Error::UnexpectedEof.into());
         }
         let slot = node.and_then(|node| node.slot(Want::Numbers));
         let (Some(slot), Some(node)) = (slot, node) else {

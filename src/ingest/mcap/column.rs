@@ -277,12 +277,10 @@ impl Column {
 
     /// Memory of its times and samples.
     pub(super) fn held_bytes(&self) -> u64 {
-        let (narrow, wide) = match &self.samples {
-            Samples::F32(samples) => (samples.len(), 0),
-            Samples::F64(samples) => (0, samples.len()),
-        };
+        let sample_bytes = if matches!(self.samples, Samples::F32(_)) { 4 } else { 8 };
         let digests = self.extent.as_ref().map_or(0, |extent| extent.digests.len());
-        (4 * narrow + 8 * (wide + self.times_ns.len() + self.counts.len() + digests)) as u64
+        let others = self.times_ns.len() + self.counts.len() + digests;
+        (sample_bytes * self.samples.len() + 8 * others) as u64
     }
 
     /// The earliest and the latest time of a message, ns since 1970.

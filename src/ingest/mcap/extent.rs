@@ -2,7 +2,7 @@
 //! a block.
 
 use super::plan::Value;
-use crate::data::{Samples, is_number};
+use crate::data::is_number;
 
 /// What a listing shows of samples, which it does not keep of blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,10 +23,7 @@ impl Extent {
     pub(super) fn see(&mut self, value: &Value, is_block: bool) {
         let digest = match value {
             Value::Number { value, .. } => self.see_all(std::iter::once(*value), is_block),
-            Value::Array(Samples::F32(samples)) => {
-                self.see_all(samples.iter().copied().map(f64::from), is_block)
-            }
-            Value::Array(Samples::F64(samples)) => self.see_all(samples.iter().copied(), is_block),
+            Value::Array(samples) => self.see_all((0..samples.len()).map(|i| samples.get(i)), is_block),
             _ => return,
         };
         if is_block {

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, HashMap};
 ///
 /// # Errors
 /// Only where the file cannot be read at all.
-pub(in crate::ingest) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
+pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     let path = request.file.path;
     let bytes = request.file.length().map_err(|source| error::io(path, &source))?;
     let walked = walk(request, None)?;

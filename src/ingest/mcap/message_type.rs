@@ -39,7 +39,7 @@ pub(super) enum MessageType {
 }
 
 /// The message types of a file: each schema is taken apart once, all of them within a limit.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct MessageTypes {
     known: HashMap<(u16, String), Result<MessageType, String>>,
     left_bytes: u64,
@@ -50,11 +50,8 @@ impl MessageTypes {
     /// For a file of `file_bytes`.
     pub(super) fn new(limits: Limits, file_bytes: u64) -> Self {
         let left_bytes = limits.schemas_bytes(file_bytes);
-        Self {
-            known: HashMap::new(),
-            left_bytes,
-            largest_bytes: file_bytes.saturating_add(ALWAYS_READ_BYTES),
-        }
+        let largest_bytes = file_bytes.saturating_add(ALWAYS_READ_BYTES);
+        Self { known: HashMap::new(), left_bytes, largest_bytes }
     }
 
     /// The type of a channel's messages.

@@ -10,17 +10,11 @@ use std::sync::Arc;
 
 /// Names under which a message states the time of its first sample; nanoseconds follow as a structure.
 pub(super) const STAMP_NAMES: [&[&str]; 3] = [&["timestamp"], &["header", "stamp"], &["stamp"]];
-/// Names under which a message states the rate of its samples, Hz.
+/// Names under which a message states the rate of its samples, Hz; the last as protobuf writes them into JSON.
+#[rustfmt::skip]
 pub(super) const RATE_NAMES: [&str; 8] = [
-    "sample_rate_hz",
-    "sample_rate",
-    "fs",
-    "sampling_rate_hz",
-    "sampling_rate",
-    "fs_hz",
-    // As protobuf and others write them into JSON.
-    "sampleRateHz",
-    "sampleRate",
+    "sample_rate_hz", "sample_rate", "fs", "sampling_rate_hz", "sampling_rate", "fs_hz",
+    "sampleRateHz", "sampleRate",
 ];
 /// Names under which a message states their unit.
 pub(super) const UNIT_NAMES: [&str; 2] = ["unit", "units"];
@@ -280,14 +274,10 @@ impl Slots {
     /// Fills the slots of single elements from the array in `array_slot`.
     pub(super) fn pick(&mut self, array_slot: usize, elements: &[(usize, usize)]) {
         for &(index, slot) in elements {
-            let value = match self.values.get(array_slot) {
-                Some(Value::Array(Samples::F32(samples))) => {
-                    samples.get(index).map(|&x| (f64::from(x), true))
-                }
-                Some(Value::Array(Samples::F64(samples))) => samples.get(index).map(|&x| (x, false)),
-                _ => None,
-            };
-            if let Some((value, is_narrow)) = value {
+            if let Some(Value::Array(samples)) = self.values.get(array_slot)
+                && index < samples.len()
+            {
+                let (value, is_narrow) = (samples.get(index), matches!(samples, Samples::F32(_)));
                 self.set(slot, Value::Number { value, is_narrow });
             }
         }

@@ -17,10 +17,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// A topic or field that is not there, or gives no samples on a time base.
-pub(in crate::ingest) fn read(
-    request: ReadRequest,
-    cask_file: &CaskFile,
-) -> Result<RawRecording, IngestError> {
+pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
     let path = request.file.path;
     let specs = &cask_file.channels;
     let (scanned, mut series) = walk(request, Some(cask_file))?.finish();

@@ -228,7 +228,9 @@ impl Gathered {
                 column.settle_clock();
                 if has_further {
                     column.refuse(Refusal::new(
-                        format!("its messages name more than {MOST_SENSORS} sensors, which are not told apart"),
+                        format!(
+                            "its messages name more than {MOST_SENSORS} sensors, which are not told apart"
+                        ),
                         "have the recorder write a channel for each sensor",
                     ));
                 }

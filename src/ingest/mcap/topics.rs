@@ -27,6 +27,7 @@ pub(super) const LISTS_OF_RECORDS: &str =
     "its messages hold lists of records: a message a record is read, or an array of numbers for each field";
 
 /// What may still be listed, and what was left out.
+#[derive(Default)]
 struct Room {
     left: usize,
     topics_out: usize,
@@ -43,6 +44,7 @@ impl Room {
 }
 
 /// The schemas, channels and topics met so far, and how to take their messages.
+#[derive(Default)]
 pub(super) struct Topics<'a> {
     /// Whose channels name the fields that are asked for; every numeric one is for a listing.
     asked: Option<&'a CaskFile>,
@@ -74,14 +76,8 @@ impl<'a> Topics<'a> {
             asked,
             limits,
             types: MessageTypes::new(limits, file_bytes),
-            schemas: HashMap::new(),
-            all: Vec::new(),
-            by_type: HashMap::new(),
-            undecided: BTreeSet::new(),
-            by_channel: HashMap::new(),
-            channels: Vec::new(),
-            room: Room { left: MOST_LISTED, topics_out: 0, fields_out: 0 },
-            held_bytes: 0,
+            room: Room { left: MOST_LISTED, ..Room::default() },
+            ..Self::default()
         }
     }
 

@@ -53,7 +53,11 @@ impl ZipEntry {
         let packed = bytes_at(&mut file, head_at + HEAD_BYTES + behind, number(&self.0, 20, 4))?;
         let bytes = match number(&self.0, 10, 2) {
             0 => packed,
-            8 => unpack::deflate(&packed, usize::try_from(self.bytes()).unwrap_or_default()),
+            8 => {
+                let mut bytes = vec![0; usize::try_from(self.bytes()).unwrap_or_default()];
+                bytes.truncate(unpack::inflate(&packed, false, &mut bytes).unwrap_or_default());
+                bytes
+            }
             method => {
                 return Err(io::Error::other(format!("it is packed by method {method}, not by deflate")));
             }

@@ -24,7 +24,7 @@ const LEAST_SHARED: usize = 3;
 
 /// Of so many samples the first blocks of a channel are kept where its samples are not: enough to tell
 /// whether they overlap.
-pub(in crate::ingest) const PREFIX: usize = 1 << 16;
+pub(crate) const PREFIX: usize = 1 << 16;
 
 /// The rate of a channel in blocks.
 struct BlockRate {
@@ -39,11 +39,7 @@ struct BlockRate {
 ///
 /// # Errors
 /// [`Refusal`] where claims and stamps give no rate, or stamps no record.
-pub(in crate::ingest) fn place(
-    blocks: &[Block],
-    claims: &Claims,
-    samples: Samples,
-) -> Result<Uniform, Refusal> {
+pub(crate) fn place(blocks: &[Block], claims: &Claims, samples: Samples) -> Result<Uniform, Refusal> {
     let content = BlockContent { samples: &samples, digests: None };
     let BlockRate { laid_hz, stated_hz, issues } = rate(blocks, claims, &content)?;
     let mut uniform = blocks::from_blocks(blocks, laid_hz, samples)?;
@@ -56,11 +52,7 @@ pub(in crate::ingest) fn place(
 ///
 /// # Errors
 /// As [`place`].
-pub(in crate::ingest) fn lay(
-    blocks: &[Block],
-    claims: &Claims,
-    content: &BlockContent,
-) -> Result<Laid, Refusal> {
+pub(crate) fn lay(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Laid, Refusal> {
     let BlockRate { laid_hz, stated_hz, .. } = rate(blocks, claims, content)?;
     let mut laid = blocks::lay(blocks, laid_hz, content)?;
     laid.sample_rate_hz = stated_hz.unwrap_or(laid.sample_rate_hz);

@@ -42,15 +42,15 @@ pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<U
 }
 
 /// Where blocks lie on a uniform base.
-pub(in crate::ingest) struct Laid {
+pub(crate) struct Laid {
     /// Those that are kept, in the order of their stamps.
     pieces: Vec<Piece>,
     /// Time of the first sample, s.
-    pub(in crate::ingest) start_s: f64,
+    pub(crate) start_s: f64,
     /// Hz.
-    pub(in crate::ingest) sample_rate_hz: f64,
+    pub(crate) sample_rate_hz: f64,
     /// Samples that are missing between blocks, from when to when, s.
-    gaps: Vec<missing::Gap>,
+    pub(crate) gaps: Vec<missing::Gap>,
     doubles: Doubles,
     issues: Vec<Finding>,
 }
@@ -73,7 +73,7 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
     if present < 2 {
         return Err(error::too_few(present));
     }
-    let stamps = Intervals::between(&pieces.iter().map(Piece::block).collect::<Vec<Block>>());
+    let stamps = Intervals::between(&pieces, |piece| (piece.start_s, piece.samples.len()));
     let cut = stamps.cut(rate_hz);
     let tolerance = stamp_tolerance(&stamps, rate_hz, cut);
     issues.extend(hidden_loss(&stamps, rate_hz, tolerance));
@@ -93,13 +93,8 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
 
 impl Laid {
     /// Number of samples, missing ones too.
-    pub(in crate::ingest) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.pieces.iter().map(Piece::end).max().unwrap_or(0)
-    }
-
-    /// Number of stretches that are missing between blocks.
-    pub(in crate::ingest) fn gap_count(&self) -> usize {
-        self.gaps.len()
     }
 }
 

@@ -73,7 +73,10 @@ pub(super) fn place(
                 changes + 1
             ),
         };
-        return Err(Refusal::new(problem, "give sample_rate_hz for this channel, or name its times (`time`)"));
+        return Err(Refusal::new(
+            problem,
+            "give sample_rate_hz for this channel, or name its times (`time`)",
+        ));
     }
     // Uneven changes tell no rate that could contradict a stated one.
     let even = steps.filter(|steps| steps.is_even || claims.is_empty());

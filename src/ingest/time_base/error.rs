@@ -21,7 +21,7 @@ pub(super) fn check_rate(sample_rate_hz: f64) -> Result<(), Refusal> {
 }
 
 /// That there are not as many times as samples, where there are not.
-pub(in crate::ingest) fn check_lengths(times: usize, samples: usize) -> Result<(), Refusal> {
+pub(crate) fn check_lengths(times: usize, samples: usize) -> Result<(), Refusal> {
     if times == samples {
         return Ok(());
     }

@@ -17,10 +17,6 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    pub(super) fn block(&self) -> Block {
-        Block { start_s: self.start_s, count: self.samples.len() }
-    }
-
     /// The place behind its last sample.
     pub(super) fn end(&self) -> usize {
         self.place + self.samples.len()
@@ -39,11 +35,11 @@ pub(super) fn pieces(blocks: &[Block]) -> Vec<Piece> {
 }
 
 /// The samples of blocks as far as the rate depends on them.
-pub(in crate::ingest) struct BlockContent<'a> {
+pub(crate) struct BlockContent<'a> {
     /// Those of the first blocks at least, one block after another.
-    pub(in crate::ingest) samples: &'a Samples,
+    pub(crate) samples: &'a Samples,
     /// A number for the samples of each block, where not all are at hand.
-    pub(in crate::ingest) digests: Option<&'a [u64]>,
+    pub(crate) digests: Option<&'a [u64]>,
 }
 
 impl BlockContent<'_> {

@@ -55,13 +55,15 @@ impl Intervals {
         let mut order = blocks.to_vec();
         order.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
         order.dedup_by(|later, kept| later.start_s <= kept.start_s);
-        Self::between(&order)
+        Self::between(&order, |block| (block.start_s, block.count))
     }
 
-    /// Of blocks in order.
-    pub(super) fn between(blocks: &[Block]) -> Self {
-        let interval =
-            |pair: &[Block]| Interval { length: as_f64(pair[0].count), s: pair[1].start_s - pair[0].start_s };
+    /// Of what is in order, each with its stamp and how many samples it has.
+    pub(super) fn between<B>(blocks: &[B], stamped: impl Fn(&B) -> (f64, usize)) -> Self {
+        let interval = |pair: &[B]| {
+            let [(start_s, count), (next_s, _)] = [&pair[0], &pair[1]].map(&stamped);
+            Interval { length: as_f64(count), s: next_s - start_s }
+        };
         Self(blocks.windows(2).map(interval).collect())
     }
 
@@ -180,7 +182,7 @@ fn mean_hz<'a>(intervals: impl Iterator<Item = &'a Interval>) -> f64 {
 }
 
 /// The middle of points, and the slope of the line through them that is nearest in y.
-pub(in crate::ingest) fn line(points: &[(f64, f64)]) -> ((f64, f64), f64) {
+pub(crate) fn line(points: &[(f64, f64)]) -> ((f64, f64), f64) {
     let n = as_f64(points.len());
     let mean_x = points.iter().map(|point| point.0).sum::<f64>() / n;
     let mean_y = points.iter().map(|point| point.1).sum::<f64>() / n;

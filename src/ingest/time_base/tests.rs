@@ -185,7 +185,10 @@ fn what_is_no_time_base_says_why() {
         assert!(error.to_string().contains(expected), "{error}");
     }
     assert!(told(from_times(&[0.0, 1.0], f64s(&[1.0]), None)).contains("2 times but 1 samples"));
-    assert!(told(from_claims(0.0, &Claims::of_cask(Some(0.0)), f64s(&[1.0, 2.0]))).contains("the sample rate is 0 Hz"));
+    assert!(
+        told(from_claims(0.0, &Claims::of_cask(Some(0.0)), f64s(&[1.0, 2.0])))
+            .contains("the sample rate is 0 Hz")
+    );
 }
 
 /// A block and its samples.

@@ -51,11 +51,7 @@ impl Column {
     ///
     /// # Errors
     /// Rate or times that give no base.
-    pub(in super::super) fn uniform(
-        self,
-        zero_ns: i64,
-        cask_hz: Option<f64>,
-    ) -> Result<Uniform, Refusal> {
+    pub(crate) fn uniform(self, zero_ns: i64, cask_hz: Option<f64>) -> Result<Uniform, Refusal> {
         self.heeded()?;
         if self.counts.is_empty() {
             // A rate in messages of single numbers is that of something else, such as blocks beside them.
@@ -72,16 +68,12 @@ impl Column {
     ///
     /// # Errors
     /// As that.
-    pub(in super::super) fn list_times(
-        self,
-        zero_ns: i64,
-        listed: &mut ListedChannel,
-    ) -> Result<(), Refusal> {
+    pub(crate) fn list_times(self, zero_ns: i64, listed: &mut ListedChannel) -> Result<(), Refusal> {
         let (start_s, sample_rate_hz, count, gaps) = match &self.extent {
             Some(extent) if !self.counts.is_empty() => {
                 let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
                 let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-                (laid.start_s, laid.sample_rate_hz, laid.count(), laid.gap_count() + extent.holes)
+                (laid.start_s, laid.sample_rate_hz, laid.count(), laid.gaps.len() + extent.holes)
             }
             _ => {
                 let uniform = self.uniform(zero_ns, None)?;

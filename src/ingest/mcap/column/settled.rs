@@ -15,11 +15,7 @@ impl Column {
     ///
     /// # Errors
     /// Nothing says their unit.
-    pub(in super::super) fn settle_ticks(
-        &mut self,
-        source: &str,
-        cask_hz: Option<f64>,
-    ) -> Result<(), Refusal> {
+    pub(crate) fn settle_ticks(&mut self, source: &str, cask_hz: Option<f64>) -> Result<(), Refusal> {
         let Some(SentTimes { field, scale, mut each }) = self.ticks.take() else { return Ok(()) };
         let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.times_ns.len()) else { return Ok(()) };
         each.resize(count, f64::NAN);
@@ -48,7 +44,7 @@ impl Column {
 
     /// That the log times of its messages run at another pace than their stamps.
     #[allow(clippy::float_cmp, reason = "slopes of the same numbers")]
-    pub(in super::super) fn log_drift(&self) -> Option<Finding> {
+    pub(crate) fn log_drift(&self) -> Option<Finding> {
         /// Fewer messages tell no pace.
         const FEWEST: usize = 16;
         let &(_, log_from_ns) =
