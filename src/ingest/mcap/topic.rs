@@ -167,7 +167,7 @@ impl Gathered {
         }
         self.has_further |= other.has_further;
         for more in &mut other.sensors {
-            let at = self.sensor(|own| *own == more.rows, || more.rows.clone());
+            let at = self.sensor(more.rows.as_ref().map(|rows| &*rows.is), || more.rows.clone());
             let own = &mut self.sensors[at];
             let known = own.columns.len().min(more.columns.len());
             own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
@@ -175,13 +175,10 @@ impl Gathered {
         }
     }
 
-    /// The place of the sensor that `is_it`, which is added where it is not there yet.
-    fn sensor(
-        &mut self,
-        is_it: impl Fn(&Option<RowsOf>) -> bool,
-        rows: impl FnOnce() -> Option<RowsOf>,
-    ) -> usize {
-        if let Some(at) = self.sensors.iter().position(|sensor| is_it(&sensor.rows)) {
+    /// The place of the sensor `is`, which is added where it is not there yet.
+    fn sensor(&mut self, is: Option<&str>, rows: impl FnOnce() -> Option<RowsOf>) -> usize {
+        let is_it = |sensor: &Sensor| sensor.rows.as_ref().map(|rows| &*rows.is) == is;
+        if let Some(at) = self.sensors.iter().position(is_it) {
             return at;
         }
         if self.sensors.len() < MOST_SENSORS {
@@ -199,10 +196,9 @@ impl Gathered {
         field: usize,
         is_listed: bool,
     ) -> &mut Column {
-        let is_it = |rows: &Option<RowsOf>| rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
         let rows =
             |(is, beside): &(Cow<str>, &Beside)| RowsOf { column: beside.field.clone(), is: is.to_string() };
-        let at = self.sensor(is_it, || named.map(rows));
+        let at = self.sensor(named.map(|(is, _)| &**is), || named.map(rows));
         let columns = &mut self.sensors[at].columns;
         if columns.len() <= field {
             columns.resize_with(field + 1, || Column::new(is_listed));
