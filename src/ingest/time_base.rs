@@ -10,15 +10,14 @@ mod order;
 mod pieces;
 mod resample;
 mod stamps;
-mod uniform;
 
 pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
 pub use blocks::from_blocks;
 pub(super) use error::check_lengths;
 use error::check_rate;
 pub(super) use pieces::BlockContent;
+pub use pieces::{Block, Uniform};
 pub(super) use stamps::line;
-pub use uniform::{Block, Uniform};
 
 use super::clock::{self, Claims, Taken};
 use super::refusal::Refusal;

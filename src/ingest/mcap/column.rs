@@ -1,7 +1,6 @@
 //! What the messages of one topic gave for one field, message by message.
 
-use super::extent::Extent;
-use super::numbers::{append, push};
+use super::numbers::{Extent, append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
 use crate::ingest::refusal::Refusal;
@@ -9,7 +8,6 @@ use crate::ingest::time_base::PREFIX;
 use crate::ingest::times::Scale;
 
 mod based;
-mod settled;
 
 /// The time of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! An MCAP file to its listing: every numeric field of every topic, as reading would take it.
 
 use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
-use super::extent::Extent;
+use super::numbers::Extent;
 use super::plan::AskedField;
 use super::scanned::Scanned;
 use super::topic::{Series, TopicChannel};

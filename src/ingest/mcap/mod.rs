@@ -7,7 +7,6 @@ mod chunk;
 mod column;
 mod complaint;
 mod descriptors;
-mod extent;
 #[cfg(any(test, fuzzing))]
 pub(super) mod fuzz_tests;
 mod json;
@@ -23,7 +22,6 @@ mod records;
 mod ros_type;
 mod scanned;
 mod summary;
-mod summed;
 mod topic;
 mod topics;
 mod walk;

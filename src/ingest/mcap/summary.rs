@@ -1,6 +1,8 @@
-//! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins.
+//! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins;
+//! and its bytes to whether they are those that its writer summed up.
 
 use super::records::{RECORD_HEADER_BYTES, Records};
+use crate::ingest::recording_file::OpenFile;
 use mcap::records::{Record, op};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -102,4 +104,45 @@ fn data_end_before(file: &mut (impl Read + Seek), end: u64) -> std::io::Result<O
 fn summary_start(footer: &[u8]) -> Option<u64> {
     let body = footer.strip_prefix(&[op::FOOTER, 20, 0, 0, 0, 0, 0, 0, 0])?.strip_suffix(mcap::MAGIC)?;
     body.first_chunk().map(|bytes| u64::from_le_bytes(*bytes))
+}
+
+/// A file that is summed up as it is read, from its beginning to the end of its data.
+pub(super) struct Summed {
+    file: OpenFile,
+    /// The sum so far and how many bytes it lacks, where the file states one.
+    pub(super) sum: Option<(crc32fast::Hasher, u64)>,
+    stated: u32,
+}
+
+impl Summed {
+    pub(super) fn of(file: OpenFile, summary: Option<&Summary>) -> Self {
+        let end = summary.and_then(|summary| summary.data_end).filter(|end| end.check_sum != 0);
+        let sum = end.map(|end| (crc32fast::Hasher::new(), end.at));
+        Self { file, sum, stated: end.map_or(0, |end| end.check_sum) }
+    }
+
+    /// Whether all of it was read, and is not what was summed up when it was written.
+    pub(super) fn is_changed(&self) -> bool {
+        self.sum.as_ref().is_some_and(|(sum, lacking)| *lacking == 0 && sum.clone().finalize() != self.stated)
+    }
+}
+
+impl Read for Summed {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.file.read(buffer)?;
+        if let Some((sum, lacking)) = &mut self.sum {
+            let summed = read.min(usize::try_from(*lacking).unwrap_or(usize::MAX));
+            sum.update(&buffer[..summed]);
+            *lacking -= summed as u64;
+        }
+        Ok(read)
+    }
+}
+
+impl Seek for Summed {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        // Bytes that are left out are in no sum.
+        self.sum = None;
+        self.file.seek(to)
+    }
 }

@@ -4,8 +4,7 @@
 use super::chunk::{Chunk, ChunkFault};
 use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
-use super::summary::{self, Summary};
-use super::summed::Summed;
+use super::summary::{self, Summary, Summed};
 use super::topic::{Part, Series};
 use super::topics::Topics;
 use crate::data::{CaskFile, FileEnd, McapFinding};

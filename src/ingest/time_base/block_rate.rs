@@ -3,9 +3,8 @@
 
 use super::blocks::{self, Laid};
 use super::error::check_rate;
-use super::pieces::{BlockContent, Piece, pieces};
+use super::pieces::{Block, BlockContent, Piece, Uniform, pieces};
 use super::stamps::{Intervals, Told};
-use super::uniform::{Block, Uniform};
 use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
 use crate::ingest::refusal::Refusal;

@@ -7,7 +7,7 @@
 //! record)², 1 % for ten steps (docs/formats.md).
 
 use super::missing;
-use super::uniform::Uniform;
+use super::pieces::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
 use crate::ingest::refusal::Refusal;

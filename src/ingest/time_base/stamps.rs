@@ -1,6 +1,6 @@
 //! Stamps of blocks to the rate that they tell, and to what they are cut to, where that shows.
 
-use super::uniform::Block;
+use super::pieces::Block;
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::ingest::shown::to_digits;
 use crate::numerics::{as_f64, robust};
