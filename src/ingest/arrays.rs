@@ -8,7 +8,7 @@ use super::statement::Statement;
 use super::time_base::{self, ChannelTimes};
 use super::unchanged::hexadecimal;
 use super::{RawChannel, RawRecording, assemble, cask_file};
-use crate::data::{CaskFile, HeldSamples, Recording, RecordingFormat, Samples};
+use crate::data::{CaskFile, ChannelSpec, HeldSamples, Recording, RecordingFormat, Samples};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -68,10 +68,10 @@ fn chosen<'a>(held: &'a [HeldSamples], cask_file: &CaskFile) -> Result<Vec<&'a H
     let by_source: Option<Vec<_>> = channels.iter().map(|spec| by(&spec.source.to_string())).collect();
     let by_name = || channels.iter().map(|spec| by(&spec.name)).collect();
     by_source.or_else(by_name).ok_or_else(|| {
-        let of_source = |wanted: &&crate::data::ChannelSpec| by(&wanted.source.to_string()).is_none();
-        let of_name = |wanted: &&crate::data::ChannelSpec| by(&wanted.name).is_none();
-        let missing = channels.iter().find(|spec| of_source(spec) && of_name(spec));
-        let spec = missing.or_else(|| channels.iter().find(of_source)).unwrap_or(&channels[0]);
+        let lacks_source = |spec: &&ChannelSpec| by(&spec.source.to_string()).is_none();
+        let missing = channels.iter().filter(lacks_source);
+        let spec = missing.clone().find(|spec| by(&spec.name).is_none()).or(missing.clone().next());
+        let spec = spec.unwrap_or(&channels[0]);
         let there: Vec<String> = held.iter().map(|held| format!("{:?}", held.name)).collect();
         let there = if there.is_empty() { "none".to_owned() } else { there.join(", ") };
         let refusal = Refusal::new(

@@ -229,11 +229,7 @@ fn declared(unit: Unit) -> (f64, &'static str) {
 /// Whether the recording's word means the unit `name`, worth `m_s2`.
 #[allow(clippy::float_cmp, reason = "both come from the same constants")]
 fn same_unit(text: &str, name: &str, m_s2: f64) -> bool {
-    text == name || (!is_voltage(name) && acceleration_unit_m_s2(text) == Some(m_s2))
-}
-
-fn is_voltage(text: &str) -> bool {
-    matches!(text.trim(), "V" | "v" | "mV" | "mv" | "volt" | "Volt" | "volts" | "Volts")
+    text == name || (!matches!(name, "V" | "mV") && acceleration_unit_m_s2(text) == Some(m_s2))
 }
 
 #[cfg(test)]

@@ -51,27 +51,9 @@ pub(super) struct Taken {
     pub issues: Vec<Finding>,
 }
 
-/// How two rates get along.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Agreement {
-    /// Within rounding and what clocks are apart.
-    Same,
-    /// By more than that.
-    Apart,
-    /// By more than 1 %.
-    FarApart,
-}
-
-fn agreement(one: &Statement, other: &Statement) -> Agreement {
-    let apart = (one.rate_hz / other.rate_hz - 1.0).abs();
-    let explained = one.rounding + other.rounding;
-    if apart <= RATE_TOLERANCE.max(explained) {
-        Agreement::Same
-    } else if apart <= FAR.max(explained) {
-        Agreement::Apart
-    } else {
-        Agreement::FarApart
-    }
+/// Whether two rates differ by more than this part of themselves, and than their rounding explains.
+fn are_apart(one: &Statement, other: &Statement, tolerance: f64) -> bool {
+    (one.rate_hz / other.rate_hz - 1.0).abs() > tolerance.max(one.rounding + other.rounding)
 }
 
 /// The rate that recorded times tell in Hz, and how uncertain it is as a part of itself.
@@ -103,7 +85,7 @@ impl Claims {
         // Times that are coarse tell a rate less well than a statement that they bear out.
         let is_better = |stated: &&Statement| {
             times.is_none_or(|times| {
-                times.rounding > RATE_TOLERANCE && agreement(stated, times) == Agreement::Same
+                times.rounding > RATE_TOLERANCE && !are_apart(stated, times, RATE_TOLERANCE)
             })
         };
         let taken = cask_file.or_else(|| nearest.filter(is_better).cloned()).or_else(|| times.cloned());
@@ -114,14 +96,13 @@ impl Claims {
             ));
         };
         let mut issues: Vec<Finding> = Vec::new();
-        let mut overruled = |other| issues.push(ClockFinding::Rates(apart(&taken, other)).into());
         for other in times.into_iter().chain(&self.stated).filter(|other| **other != taken) {
             let is_open = !is_decided && other.distance <= taken.distance;
-            match agreement(&taken, other) {
-                Agreement::Same => {}
-                Agreement::Apart if !is_open || times.is_some() => overruled(other),
-                Agreement::FarApart if !is_open => overruled(other),
-                Agreement::Apart | Agreement::FarApart => return Err(contradiction(&taken, other)),
+            if is_open && are_apart(&taken, other, if times.is_some() { FAR } else { RATE_TOLERANCE }) {
+                return Err(contradiction(&taken, other));
+            }
+            if are_apart(&taken, other, RATE_TOLERANCE) {
+                issues.push(ClockFinding::Rates(apart(&taken, other)).into());
             }
         }
         let is_of_times = times == Some(&taken);
@@ -286,10 +267,9 @@ mod tests {
     #[test]
     fn what_rounding_explains_is_no_contradiction() {
         let rounded = Statement { rounding: 0.03, ..stated(1e4, 0) };
-        for (rate_hz, expected) in
-            [(9_800.0, Agreement::Same), (9_600.0, Agreement::FarApart), (9_500.0, Agreement::FarApart)]
-        {
-            assert_eq!(agreement(&rounded, &stated(rate_hz, 0)), expected, "{rate_hz}");
+        for (rate_hz, is_apart) in [(9_800.0, false), (9_600.0, true), (9_500.0, true)] {
+            let found = [RATE_TOLERANCE, FAR].map(|part| are_apart(&rounded, &stated(rate_hz, 0), part));
+            assert_eq!(found, [is_apart; 2], "{rate_hz}");
         }
     }
 

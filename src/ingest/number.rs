@@ -63,7 +63,7 @@ impl Leading {
         }
         // Fifteen digits stay below 2^53.
         if count > 15 || matches!(text.get(at), Some(b'e' | b'E')) {
-            let (value, used) = with_exponent(text, at, &Digits { mantissa, count, fraction }, decimal)?;
+            let (value, used) = with_exponent(text, at, mantissa, [count, fraction], decimal)?;
             return Some(Self { value, used, whole, fraction, has_mark });
         }
         let value = as_f64(mantissa) / POWERS[fraction];
@@ -73,17 +73,16 @@ impl Leading {
     }
 }
 
-/// The digits of a number as one whole one, how many they are, and how many of them stand behind the mark.
-struct Digits {
-    mantissa: u64,
-    count: usize,
-    fraction: usize,
-}
-
-/// The number whose digits end at `at`, of any length and with its exponent.
+/// The number whose digits end at `at`, of any length and with its exponent; so many in all and so many behind
+/// the mark make the `mantissa`.
 #[cold]
-fn with_exponent(text: &[u8], at: usize, digits: &Digits, decimal: u8) -> Option<(f64, usize)> {
-    let &Digits { mantissa, count, fraction } = digits;
+fn with_exponent(
+    text: &[u8],
+    at: usize,
+    mantissa: u64,
+    [count, fraction]: [usize; 2],
+    decimal: u8,
+) -> Option<(f64, usize)> {
     let has_exponent = matches!(text.get(at), Some(b'e' | b'E'));
     let (exponent, at) = if has_exponent { exponent_at(text, at) } else { (0, at) };
     let power = exponent - i64::try_from(fraction).ok()?;

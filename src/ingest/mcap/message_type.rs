@@ -16,8 +16,6 @@ use std::sync::Arc;
 /// A schema is larger than this and the file only to do harm: those of sensors take tens of kilobytes, and
 /// each byte of one that is no schema takes five hundred as it is taken apart.
 const ALWAYS_READ_BYTES: u64 = 256 << 10;
-/// Message encodings that are read.
-const READ: &str = "those that can be read are json, protobuf, and cdr with ros2msg";
 
 /// A schema record.
 #[derive(Debug)]
@@ -100,15 +98,13 @@ impl MessageType {
                 ros_type::parse(&schema.name, &String::from_utf8_lossy(&schema.data), left)
                     .map(|fields| Self::Cdr(fields.into()))
             }
-            (encoding @ ("protobuf" | "cdr"), None) => {
-                Err(format!("its messages are encoded as {encoding:?} and their schema is missing"))
-            }
-            (encoding, Some(schema)) => Err(format!(
-                "its messages are encoded as {encoding:?} with a schema in {:?}; {READ}",
-                schema.encoding
-            )),
-            (encoding, None) => {
-                Err(format!("its messages are encoded as {encoding:?} without a schema; {READ}"))
+            (encoding, schema) => {
+                let schema =
+                    schema.map_or("no schema".into(), |schema| format!("a schema in {:?}", schema.encoding));
+                Err(format!(
+                    "its messages are encoded as {encoding:?} with {schema}; those that can be read are json, \
+                     protobuf with its schema, and cdr with ros2msg"
+                ))
             }
         }
     }
