@@ -73,40 +73,15 @@ impl Cdr {
             )?;
         }
         let needed = self.fields.get(..self.needed).unwrap_or_default();
-        let walked = CdrWalk::<Order>::new(body, slots, wide_bytes).fields(needed, Some(&self.root));
-        walked.map_err(|problem| problem.to_string())
-    }
-}
-
-/// Why a message does not decode.
-#[derive(Debug, thiserror::Error)]
-#[error("at {field}: {what}")]
-struct Undecoded {
-    field: String,
-    what: String,
-}
-
-impl Undecoded {
-    fn new(what: impl Into<String>) -> Self {
-        Self { field: String::new(), what: what.into() }
-    }
-
-    /// The same in a message that is the field `name`.
-    fn below(mut self, name: &str) -> Self {
-        if !self.field.is_empty() {
-            self.field.insert(0, '.');
-        }
-        self.field.insert_str(0, name);
-        self
-    }
-}
-
-impl From<re_cdr::Error> for Undecoded {
-    fn from(error: re_cdr::Error) -> Self {
-        match error {
-            re_cdr::Error::UnexpectedEof => Self::new("the message ends before it"),
-            other => Self::new(other.to_string()),
-        }
+        let mut walk = CdrWalk::<Order>::new(body, slots, wide_bytes);
+        walk.fields(needed, Some(&self.root)).map_err(|error| {
+            walk.undecoded.reverse();
+            let what = match error {
+                re_cdr::Error::UnexpectedEof => "the message ends before it".to_owned(),
+                other => other.to_string(),
+            };
+            format!("at {}: {what}", walk.undecoded.join("."))
+        })
     }
 }
 
@@ -116,22 +91,25 @@ struct CdrWalk<'a, Order: CdrEndian> {
     slots: &'a mut Slots,
     /// Of a letter of wide text.
     wide_bytes: usize,
+    /// The field that does not decode, and those that it lies in, from the innermost.
+    undecoded: Vec<String>,
 }
 
 impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     fn new(body: &'a [u8], slots: &'a mut Slots, wide_bytes: usize) -> Self {
-        Self { reader: CdrReader::new(body), slots, wide_bytes }
+        Self { reader: CdrReader::new(body), slots, wide_bytes, undecoded: Vec::new() }
     }
 
-    fn fields(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
+    fn fields(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), re_cdr::Error> {
         for field in fields {
             let child = node.and_then(|node| node.field(&field.name));
-            self.value(&field.kind, child).map_err(|problem| problem.below(&field.name))?;
+            let walked = self.value(&field.kind, child);
+            walked.inspect_err(|_| self.undecoded.push(field.name.clone()))?;
         }
         Ok(())
     }
 
-    fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), Undecoded> {
+    fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), re_cdr::Error> {
         match kind {
             Type::Text => {
                 let text = self.text()?;
@@ -158,7 +136,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         }
     }
 
-    fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
+    fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), re_cdr::Error> {
         let slot = node.and_then(|node| node.slot(Want::Stamp));
         if let (Some(slot), [seconds, nanoseconds], true) = (slot, fields, is_time(fields))
             && let (Type::Number(seconds), Type::Number(nanoseconds)) = (&seconds.kind, &nanoseconds.kind)
@@ -171,7 +149,12 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         self.fields(fields, node)
     }
 
-    fn array(&mut self, element: &Type, length: Option<usize>, node: Option<&Node>) -> Result<(), Undecoded> {
+    fn array(
+        &mut self,
+        element: &Type,
+        length: Option<usize>,
+        node: Option<&Node>,
+    ) -> Result<(), re_cdr::Error> {
         let count = match length {
             Some(count) => count,
             None => self.reader.read_u32()? as usize,
@@ -192,7 +175,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             self.reader.align(bytes)?;
         }
         if count.saturating_mul(bytes) > self.reader.remaining() {
-            return Err(re_cdr::Error::UnexpectedEof.into());
+            return Err(re_cdr::Error::UnexpectedEof);
         }
         let slot = node.and_then(|node| node.slot(Want::Numbers));
         let (Some(slot), Some(node)) = (slot, node) else {
@@ -205,7 +188,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         Ok(())
     }
 
-    fn numbers(&mut self, number: NumberType, count: usize) -> Result<Samples, Undecoded> {
+    fn numbers(&mut self, number: NumberType, count: usize) -> Result<Samples, re_cdr::Error> {
         Ok(match number {
             NumberType::F32 => Samples::F32(self.reader.read_numeric_vec(count)?),
             NumberType::F64 => Samples::F64(self.reader.read_numeric_vec(count)?),
@@ -219,23 +202,26 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         })
     }
 
-    fn converted<From: re_cdr::CdrPod + Into<To>, To>(&mut self, count: usize) -> Result<Vec<To>, Undecoded> {
+    fn converted<From: re_cdr::CdrPod + Into<To>, To>(
+        &mut self,
+        count: usize,
+    ) -> Result<Vec<To>, re_cdr::Error> {
         let numbers: Vec<From> = self.reader.read_numeric_vec(count)?;
         Ok(numbers.into_iter().map(Into::into).collect())
     }
 
-    fn number(&mut self, number: NumberType) -> Result<f64, Undecoded> {
+    fn number(&mut self, number: NumberType) -> Result<f64, re_cdr::Error> {
         Ok(number.value(self.stored(number)?, !Order::IS_LITTLE))
     }
 
     /// The bytes of a number.
-    fn stored(&mut self, number: NumberType) -> Result<&'a [u8], Undecoded> {
+    fn stored(&mut self, number: NumberType) -> Result<&'a [u8], re_cdr::Error> {
         self.reader.align(number.bytes())?;
         Ok(self.reader.read_bytes(number.bytes())?)
     }
 
     /// A string's bytes without the closing zero.
-    fn text(&mut self) -> Result<&'a [u8], Undecoded> {
+    fn text(&mut self) -> Result<&'a [u8], re_cdr::Error> {
         let length = self.reader.read_u32()? as usize;
         let bytes = self.reader.read_bytes(length)?;
         Ok(bytes.strip_suffix(&[0]).unwrap_or(bytes))

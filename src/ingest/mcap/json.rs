@@ -35,7 +35,7 @@ impl Json {
         let from = past_spaces(text, 0);
         match slots.value(&self.root, &text[from..]) {
             Ok(used) if past_spaces(text, from + used) == text.len() => Ok(()),
-            Err(WalkFault::Value(problem)) => Err(problem),
+            Err(Some(problem)) => Err(problem),
             // The grammar says where a text ceases to be JSON.
             _ => match serde_json::from_slice::<IgnoredAny>(text) {
                 Err(error) => Err(error.to_string()),
@@ -82,24 +82,11 @@ fn without_bare_nan(text: &[u8]) -> Option<Vec<u8>> {
     found.then_some(out)
 }
 
-/// Why a walk ends before its text does.
-enum WalkFault {
-    /// The text is no JSON.
-    Grammar,
-    /// A wanted value is none that is read.
-    Value(String),
-}
-
-impl From<serde_json::Error> for WalkFault {
-    fn from(_: serde_json::Error) -> Self {
-        Self::Grammar
-    }
-}
-
-/// A walk along a message in JSON: what stands at a place goes into the slots of its node.
+/// A walk along a message in JSON: what stands at a place goes into the slots of its node. It fails by a wanted
+/// value that is none that is read, or, without a word, where the text is no JSON.
 impl Slots {
     /// The value at the start of `text`; how many bytes it takes.
-    fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
+    fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, Option<String>> {
         let numbers = node.slot(Want::Numbers);
         if text.first() == Some(&b'{') && node.slot(Want::Stamp).is_none() {
             return self.object(node, text);
@@ -114,7 +101,7 @@ impl Slots {
     }
 
     /// The fields of the object at the start of `text`; how many bytes it takes.
-    fn object(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
+    fn object(&mut self, node: &Node, text: &[u8]) -> Result<usize, Option<String>> {
         let mut at = past_spaces(text, 1);
         if text.get(at) == Some(&b'}') {
             return Ok(at + 1);
@@ -123,7 +110,7 @@ impl Slots {
             let (FieldName(key), used) = first(&text[at..])?;
             at = past_spaces(text, at + used);
             if text.get(at) != Some(&b':') {
-                return Err(WalkFault::Grammar);
+                return Err(None);
             }
             at = past_spaces(text, at + 1);
             at += match node.field(&key).or_else(|| node.below(&key)) {
@@ -134,7 +121,7 @@ impl Slots {
             match text.get(at) {
                 Some(b',') => at = past_spaces(text, at + 1),
                 Some(b'}') => return Ok(at + 1),
-                _ => return Err(WalkFault::Grammar),
+                _ => return Err(None),
             }
         }
     }
@@ -146,11 +133,11 @@ impl Slots {
 
     /// A value other than a run of plain numbers: one, words, a time, or what holds such at places of their
     /// own.
-    fn take(&mut self, node: &Node, value: &Tree) -> Result<(), WalkFault> {
+    fn take(&mut self, node: &Node, value: &Tree) -> Result<(), Option<String>> {
         match (node.slot(Want::Numbers), value) {
             (Some(slot), Tree::Array(elements)) => {
                 let no_number = |element| format!("{element} stands in an array where a number should");
-                let sample = |element| number(element).ok_or_else(|| WalkFault::Value(no_number(element)));
+                let sample = |element| number(element).ok_or_else(|| Some(no_number(element)));
                 let samples = elements.iter().map(sample).collect::<Result<_, _>>()?;
                 self.array(node, slot, samples);
                 return Ok(());
@@ -221,9 +208,9 @@ fn number(value: &Tree) -> Option<f64> {
 struct FieldName<'a>(#[serde(borrow)] Cow<'a, str>);
 
 /// The first value of `text` and how many bytes it takes.
-fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), WalkFault> {
+fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), Option<String>> {
     let mut values = serde_json::Deserializer::from_slice(text).into_iter::<T>();
-    let value = values.next().ok_or(WalkFault::Grammar)??;
+    let value = values.next().ok_or(None)?.map_err(|_| None)?;
     Ok((value, values.byte_offset()))
 }
 
