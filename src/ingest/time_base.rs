@@ -21,7 +21,7 @@ pub(super) use stamps::line;
 
 use super::clock::{self, Claims, Taken};
 use super::refusal::Refusal;
-use crate::data::{Jitter, Samples, TimesFinding};
+use crate::data::{Samples, TimesFinding};
 use crate::numerics::as_f64;
 use fit::BaseFit;
 use order::Ordered;
@@ -72,29 +72,19 @@ impl<'a> ChannelTimes<'a> {
         let own = clock::of_times(1.0 / fit.period_s, rounding);
         let Taken { rate_hz: sample_rate_hz, issues: of_rate, .. } = claims.weigh(Some(&own))?;
         issues.extend(of_rate);
-        let non_finite = missing::mark(&mut samples, 0, |i| times_s[i], &mut issues);
+        let mut gaps = missing::mark(&mut samples, 0, |i| times_s[i], &mut issues);
         missing::report_gaps(&fit, &times_s, &mut issues);
+        let (mut start_s, mut time_jitter_s) = (fit.start_s, 0.0);
         if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
             let moved = resample::resample(&times_s, &samples, &fit);
-            issues.push(TimesFinding::Jitter(jitter(&fit, &times_s, &moved)).into());
-            let (gaps, time_jitter_s) = (missing::spans(&moved.samples), fit.rms_s);
-            return Ok(Uniform {
-                start_s: moved.start_s,
-                sample_rate_hz,
-                samples: moved.samples,
-                gaps,
-                time_jitter_s,
-                issues,
-            });
+            issues.push(TimesFinding::Jitter(moved.jitter).into());
+            (start_s, time_jitter_s, samples) = (moved.start_s, fit.rms_s, moved.samples);
+            gaps = missing::spans(&samples);
+        } else if fit.runs.len() > 1 {
+            samples = missing::spread(&samples, &fit);
+            gaps = missing::spans(&samples);
         }
-        let (samples, gaps) = if fit.runs.len() == 1 {
-            (samples, non_finite)
-        } else {
-            let spread = missing::spread(&samples, &fit);
-            let gaps = missing::spans(&spread);
-            (spread, gaps)
-        };
-        Ok(Uniform { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+        Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s, issues })
     }
 
     /// The base nearest to the times as they stand, where they rise.
@@ -140,13 +130,6 @@ pub(super) fn at_taken(start_s: f64, taken: Taken, mut samples: Samples) -> Resu
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     issues.extend(taken.issues);
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
-}
-
-fn jitter(fit: &BaseFit, times_s: &[f64], moved: &resample::Resampled) -> Jitter {
-    let &resample::Resampled { rms_percent, max_percent, .. } = moved;
-    let rates_hz = fit::two_periods(times_s).map(|(short_s, long_s)| (1.0 / short_s, 1.0 / long_s));
-    let &BaseFit { period_s, rms_s, max_s, .. } = fit;
-    Jitter { period_s, rms_s, max_s, rms_percent, max_percent, rates_hz }
 }
 
 #[cfg(test)]

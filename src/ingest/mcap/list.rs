@@ -59,11 +59,7 @@ pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
 fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
     let is_set = |ns: &i64| *ns >= CLOCK_IS_SET_NS;
     let start = zero_ns.filter(is_set).and_then(|ns| jiff::Timestamp::from_nanosecond(ns.into()).ok());
-    let compressions: Vec<&str> = scanned
-        .compressions
-        .iter()
-        .map(|name| if name.is_empty() { "none" } else { name.as_str() })
-        .collect();
+    let compressions: Vec<&str> = scanned.compressions.iter().map(String::as_str).collect();
     [
         ("profile", scanned.profile.clone()),
         ("library", scanned.library.clone()),

@@ -283,7 +283,8 @@ impl Walk<'_, '_> {
     fn join(&mut self, chunk: &mut Chunk) {
         let Walked { scanned, taken, .. } = &mut self.walked;
         let &mut Chunk { start: at, claimed, counts, .. } = chunk;
-        scanned.compressions.extend(chunk.compression().map(str::to_owned));
+        let compression = chunk.compression().map(|name| if name.is_empty() { "none" } else { name });
+        scanned.compressions.extend(compression.map(str::to_owned));
         scanned.counts.add(op::CHUNK);
         let messages = counts.messages();
         match chunk.fault.take() {

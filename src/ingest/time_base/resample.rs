@@ -1,16 +1,15 @@
 //! Samples at jittering times to samples at uniform times, by local cubic interpolation.
 
-use super::fit::BaseFit;
-use crate::data::Samples;
+use super::fit::{BaseFit, two_periods};
+use crate::data::{Jitter, Samples};
 use crate::numerics::{as_count, as_f64, reduce};
 
-/// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest
-/// sample.
+/// Samples moved onto a base, and how far their times are from it: what that may cost is how far cubic and
+/// linear interpolation lie apart, in percent of the largest sample.
 pub(super) struct Resampled {
     pub start_s: f64,
     pub samples: Samples,
-    pub rms_percent: f64,
-    pub max_percent: f64,
+    pub jitter: Jitter,
 }
 
 /// The samples at the places of the base that the record covers, NaN in gaps; a place half a period beyond an
@@ -55,7 +54,10 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
     let percent = if largest > 0.0 { 100.0 / largest } else { 0.0 };
     let rms = (sum / as_f64(count.max(1))).sqrt();
     let (rms_percent, max_percent) = (rms * percent, max * percent);
-    Resampled { start_s, samples: samples.alike(moved), rms_percent, max_percent }
+    let rates_hz = two_periods(times_s).map(|(short_s, long_s)| (1.0 / short_s, 1.0 / long_s));
+    let &BaseFit { period_s, rms_s, max_s, .. } = fit;
+    let jitter = Jitter { period_s, rms_s, max_s, rms_percent, max_percent, rates_hz };
+    Resampled { start_s, samples: samples.alike(moved), jitter }
 }
 
 /// In a gap: the sample at its edge where that is within half a period, else none.
