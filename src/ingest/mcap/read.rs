@@ -63,9 +63,10 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
 /// The place of the samples that a channel means: of the longest topic that gave some.
 fn chosen(path: &Path, spec: &ChannelSpec, series: &[Series], scanned: &Scanned) -> Result<usize, Refusal> {
     let name_bytes = |at: &usize| series[*at].topic().name.len();
+    // A topic that cannot be read has no field to differ.
     let fits = |one: &Series| {
-        let field = one.field.as_ref().map(|field| &field.asked.path);
-        field.is_some() && path::field_in(&spec.source, &one.topic().name).as_ref() == field
+        let path = path::field_in(&spec.source, &one.topic().name);
+        path.is_some_and(|path| one.field.as_ref().is_none_or(|field| field.asked.path == path))
     };
     let mut all: Vec<usize> = (0..series.len()).filter(|&at| fits(&series[at])).collect();
     let Some(longest) = all.iter().rev().copied().max_by_key(name_bytes) else {

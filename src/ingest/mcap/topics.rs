@@ -3,7 +3,7 @@
 
 use super::chunk::Chunk;
 use super::json;
-use super::message_type::{MessageTypes, SchemaInfo};
+use super::message_type::{MessageType, MessageTypes, SchemaInfo};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
@@ -141,23 +141,13 @@ impl<'a> Topics<'a> {
             self.room.topics_out += 1;
             return None;
         }
-        let message_type = is_asked.then(|| self.types.of(channel, schema));
+        let message_type = is_asked.then(|| self.types.of(channel, schema)).transpose();
         let mut topic = Topic { name: channel.topic.clone(), encoding, schema_name, ..Topic::default() };
-        match message_type {
-            None => {}
-            Some(Err(reason)) => {
-                topic.unreadable = Some(reason);
-                let asked = self.asked.map_or_else(Vec::new, |file| asked_of(file, &topic.name));
-                topic.plan = Plan::new(&asked, &[], |_| false);
-            }
-            Some(Ok(message_type)) => {
-                let leaves = message_type.leaves();
-                topic.message_type = Some(message_type);
-                // A message in JSON tells its fields itself.
-                if let Some(leaves) = leaves {
-                    self.prepare(&mut topic, leaves);
-                }
-            }
+        topic.unreadable = message_type.as_ref().err().cloned();
+        topic.message_type = message_type.ok().flatten();
+        // A message in JSON tells its fields itself.
+        if let Some(leaves) = topic.message_type.as_ref().and_then(MessageType::leaves) {
+            self.prepare(&mut topic, leaves);
         }
         if topic.is_undecided() {
             self.undecided.insert(self.all.len());
