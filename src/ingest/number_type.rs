@@ -1,21 +1,69 @@
-//! Bytes of a number, as files of several formats store it, to its value.
+//! Bytes of numbers, as files of several formats store them, to their values.
 
+use crate::data::Samples;
 use serde::{Deserialize, Serialize};
 
-/// A number as Rust has it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum NumberType {
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
-    F32,
-    F64,
+macro_rules! number_types {
+    ($($name:ident = $number:ident as $sample:ident in $samples:ident),*) => {
+        /// A number as Rust has it.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        pub(super) enum NumberType {
+            $($name),*
+        }
+
+        #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what \
+            no sensor resolves")]
+        impl NumberType {
+            /// Bytes of one.
+            pub(super) fn bytes(self) -> usize {
+                match self { $(Self::$name => size_of::<$number>()),* }
+            }
+
+            /// Whether it is held as f64.
+            pub(super) fn is_wide(self) -> bool {
+                match self { $(Self::$name => size_of::<$sample>() == 8),* }
+            }
+
+            /// From as many bytes as it has.
+            pub(super) fn value(self, stored: &[u8], is_big_endian: bool) -> f64 {
+                match self {
+                    $(Self::$name => {
+                        let bytes = stored.first_chunk().copied().unwrap_or_default();
+                        let [low, high] = [$number::from_le_bytes(bytes), $number::from_be_bytes(bytes)];
+                        (if is_big_endian { high } else { low }) as f64
+                    })*
+                }
+            }
+
+            /// Numbers one behind another.
+            pub(super) fn samples(self, stored: &[u8], is_big_endian: bool) -> Samples {
+                match self {
+                    $(Self::$name => {
+                        let numbers = stored.as_chunks().0.iter();
+                        Samples::$samples(if is_big_endian {
+                            numbers.map(|bytes| $number::from_be_bytes(*bytes) as $sample).collect()
+                        } else {
+                            numbers.map(|bytes| $number::from_le_bytes(*bytes) as $sample).collect()
+                        })
+                    })*
+                }
+            }
+        }
+    };
 }
+// Held as f32 are f32 itself and short integers.
+number_types!(
+    I8 = i8 as f32 in F32,
+    I16 = i16 as f32 in F32,
+    I32 = i32 as f64 in F64,
+    I64 = i64 as f64 in F64,
+    U8 = u8 as f32 in F32,
+    U16 = u16 as f32 in F32,
+    U32 = u32 as f64 in F64,
+    U64 = u64 as f64 in F64,
+    F32 = f32 as f32 in F32,
+    F64 = f64 as f64 in F64
+);
 
 impl NumberType {
     /// An integer of so many bytes; `None` where Rust has none.
@@ -36,37 +84,5 @@ impl NumberType {
     /// Whether it is an integer.
     pub(super) fn is_whole(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
-    }
-
-    /// Whether it is held as f64.
-    pub(super) fn is_wide(self) -> bool {
-        matches!(self, Self::F64 | Self::I32 | Self::I64 | Self::U32 | Self::U64)
-    }
-
-    /// Bytes of one.
-    pub(super) fn bytes(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
-
-    /// From as many bytes as it has.
-    #[allow(clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
-    pub(super) fn value(self, stored: &[u8], is_big_endian: bool) -> f64 {
-        let (mut bytes, length) = ([0; 8], stored.len());
-        bytes[..length].copy_from_slice(stored);
-        if is_big_endian {
-            bytes[..length].reverse();
-        }
-        let (unsigned, beside) = (u64::from_le_bytes(bytes), 64 - 8 * u32::try_from(length).unwrap_or(8));
-        match self {
-            Self::F32 => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]).into(),
-            Self::F64 => f64::from_bits(unsigned),
-            Self::U8 | Self::U16 | Self::U32 | Self::U64 => unsigned as f64,
-            _ => ((unsigned << beside).cast_signed() >> beside) as f64,
-        }
     }
 }

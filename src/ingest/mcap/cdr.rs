@@ -5,9 +5,7 @@ use super::plan::{
     unix_ns,
 };
 use super::ros_type::{RosField, Type};
-use crate::data::Samples;
 use crate::ingest::number_type::NumberType;
-use crate::numerics::single;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
 use std::sync::Arc;
 
@@ -170,44 +168,15 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             }
             return Ok(());
         };
-        let bytes = number.bytes();
         if count > 0 {
-            self.reader.align(bytes)?;
+            self.reader.align(number.bytes())?;
         }
-        if count.saturating_mul(bytes) > self.reader.remaining() {
-            return Err(re_cdr::Error::UnexpectedEof);
+        let stored = self.reader.read_bytes(count.saturating_mul(number.bytes()))?;
+        if let Some((node, slot)) = node.and_then(|node| Some((node, node.slot(Want::Numbers)?))) {
+            self.slots.set(slot, Value::Array(number.samples(stored, !Order::IS_LITTLE)));
+            self.slots.pick(slot, &node.elements());
         }
-        let slot = node.and_then(|node| node.slot(Want::Numbers));
-        let (Some(slot), Some(node)) = (slot, node) else {
-            self.reader.read_bytes(count * bytes)?;
-            return Ok(());
-        };
-        let samples = self.numbers(number, count)?;
-        self.slots.set(slot, Value::Array(samples));
-        self.slots.pick(slot, &node.elements());
         Ok(())
-    }
-
-    fn numbers(&mut self, number: NumberType, count: usize) -> Result<Samples, re_cdr::Error> {
-        Ok(match number {
-            NumberType::F32 => Samples::F32(self.reader.read_numeric_vec(count)?),
-            NumberType::F64 => Samples::F64(self.reader.read_numeric_vec(count)?),
-            NumberType::I16 => Samples::F32(self.converted::<i16, f32>(count)?),
-            NumberType::I32 => Samples::F64(self.converted::<i32, f64>(count)?),
-            other => {
-                let wide = (0..count).map(|_| self.number(other)).collect::<Result<Vec<f64>, _>>()?;
-                let narrow = || wide.iter().copied().map(single).collect();
-                if other.is_wide() { Samples::F64(wide) } else { Samples::F32(narrow()) }
-            }
-        })
-    }
-
-    fn converted<From: re_cdr::CdrPod + Into<To>, To>(
-        &mut self,
-        count: usize,
-    ) -> Result<Vec<To>, re_cdr::Error> {
-        let numbers: Vec<From> = self.reader.read_numeric_vec(count)?;
-        Ok(numbers.into_iter().map(Into::into).collect())
     }
 
     fn number(&mut self, number: NumberType) -> Result<f64, re_cdr::Error> {
