@@ -8,6 +8,7 @@ use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
 use crate::ingest::Limits;
+use mcap::Schema;
 use mcap::records::Channel;
 use prost_reflect::MessageDescriptor;
 use std::collections::HashMap;
@@ -16,14 +17,6 @@ use std::sync::Arc;
 /// A schema is larger than this and the file only to do harm: those of sensors take tens of kilobytes, and
 /// each byte of one that is no schema takes five hundred as it is taken apart.
 const ALWAYS_READ_BYTES: u64 = 256 << 10;
-
-/// A schema record.
-#[derive(Debug)]
-pub(super) struct SchemaInfo {
-    pub(super) name: String,
-    pub(super) encoding: String,
-    pub(super) data: Vec<u8>,
-}
 
 /// What is known of a channel's messages.
 #[derive(Debug, Clone)]
@@ -56,11 +49,7 @@ impl MessageTypes {
     ///
     /// # Errors
     /// Why its messages cannot be read.
-    pub(super) fn of(
-        &mut self,
-        channel: &Channel,
-        schema: Option<&SchemaInfo>,
-    ) -> Result<MessageType, String> {
+    pub(super) fn of(&mut self, channel: &Channel, schema: Option<&Schema>) -> Result<MessageType, String> {
         /// What is kept of a type besides its text takes a few hundred bytes.
         const LEAST_BYTES: u64 = 256;
         /// A field of `ros2msg` is paid for by itself: two lines of text double the number of fields.
@@ -88,7 +77,7 @@ impl MessageTypes {
 impl MessageType {
     /// The type of a channel's messages.
     /// As [`MessageTypes::of`] says; the fields of a `ros2msg` are taken from what is `left`.
-    fn new(encoding: &str, schema: Option<&SchemaInfo>, left: &mut usize) -> Result<Self, String> {
+    fn new(encoding: &str, schema: Option<&Schema>, left: &mut usize) -> Result<Self, String> {
         match (encoding, schema) {
             ("json", _) => Ok(Self::Json),
             ("protobuf", Some(schema)) if schema.encoding == "protobuf" => {

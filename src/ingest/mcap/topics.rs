@@ -3,14 +3,15 @@
 
 use super::chunk::Chunk;
 use super::json;
-use super::message_type::{MessageType, MessageTypes, SchemaInfo};
+use super::message_type::{MessageType, MessageTypes};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
 use super::topic::{Gathered, Message, Part, Series, Topic};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
-use mcap::records::{Channel, Record, op};
+use mcap::Schema;
+use mcap::records::{Channel, Record, SchemaHeader, op};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
@@ -51,7 +52,7 @@ pub(super) struct Topics<'a> {
     limits: Limits,
     types: MessageTypes,
     /// The first of an id stands.
-    pub(super) schemas: HashMap<u16, SchemaInfo>,
+    pub(super) schemas: HashMap<u16, Schema<'static>>,
     /// In the order of the file.
     all: Vec<Topic>,
     /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
@@ -94,8 +95,8 @@ impl<'a> Topics<'a> {
             Record::Schema { header, data } => {
                 if let Entry::Vacant(free) = self.schemas.entry(header.id) {
                     self.held_bytes += (header.name.len() + header.encoding.len() + data.len()) as u64;
-                    let (name, encoding) = (header.name, header.encoding);
-                    free.insert(SchemaInfo { name, encoding, data: data.into_owned() });
+                    let (data, SchemaHeader { id, name, encoding }) = (data.into_owned().into(), header);
+                    free.insert(Schema { id, name, encoding, data });
                 }
             }
             Record::Channel(channel) if !self.by_channel.contains_key(&channel.id) => {
