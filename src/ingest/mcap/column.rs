@@ -245,9 +245,8 @@ impl Column {
     pub(super) fn forget_times(&mut self) {
         if let (false, Some(extent)) = (self.is_empty(), &mut self.extent) {
             let kept = Extent { digests: Vec::new(), is_without_times: true, ..std::mem::take(extent) };
-            let (units, rates) = (std::mem::take(&mut self.units), std::mem::take(&mut self.rates));
-            let refused = self.refused.take();
-            *self = Self { extent: Some(kept), units, rates, refused, ..Self::new(true) };
+            let Self { units, rates, refused, .. } = std::mem::take(self);
+            *self = Self { extent: Some(kept), units, rates, refused, ..Self::default() };
         }
     }
 
