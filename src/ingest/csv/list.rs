@@ -6,7 +6,7 @@ use super::super::lines::Text;
 use super::super::refusal::Refusal;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
-use super::complaint::{self, no_table, row_error};
+use super::complaint::{no_table, row_error};
 use super::header::TableColumn;
 use super::layout::Layout;
 use super::plan::ColumnPlan;

@@ -50,11 +50,10 @@ fn rows_are_channels_where_they_are_few_and_long() {
     let sources =
         ["/plain[1]", "/chunked[2]", "/packed[1]", "/one", "/one[0]", "/down", "/down[0]", "/short[19]"];
     let read = channels(&made, &sources);
-    for (channel, (number, scale)) in
-        read.iter().zip([(1, 1.0), (2, 1.0), (1, 2.0), (0, 1.0), (0, 1.0), (0, 1.0), (0, 1.0)])
-    {
+    let scales = [(1, 1.0), (2, 1.0), (1, 2.0), (0, 1.0), (0, 1.0), (0, 1.0), (0, 1.0)];
+    for ((channel, source), (number, scale)) in read.iter().zip(sources).zip(scales) {
         let expected: Vec<f64> = (0..LONG).map(|i| f64::from(sample(number, i)) * scale).collect();
-        assert!(values(channel) == expected, "{}", sources[channel.spec]);
+        assert!(values(channel) == expected, "{source}");
     }
     assert_eq!(values(&read[7]), [19.0, 39.0, 59.0]);
     for source in ["/plain", "/plain[3]"] {
@@ -102,9 +101,9 @@ fn a_field_of_records_is_a_channel() {
     for table in ["plain", "chunked", "packed", "shuffled"] {
         let sources = [".a1", ".a2", ".imu[1]", ".A3 [g]"].map(|field| format!("/daq/{table}{field}"));
         let read = channels(&made, &sources.each_ref().map(String::as_str));
-        for (channel, factor) in read.iter().zip([0.5, -1.0, -0.5, 1.0]) {
+        for ((channel, source), factor) in read.iter().zip(&sources).zip([0.5, -1.0, -0.5, 1.0]) {
             let expected: Vec<f64> = (0..ROWS).map(|i| factor * f64::from(i)).collect();
-            assert!(values(channel) == expected, "{}", sources[channel.spec]);
+            assert!(values(channel) == expected, "{source}");
             assert!(
                 (channel.uniform.sample_rate_hz - 1e3).abs() < 1e-6,
                 "{}",

@@ -1,6 +1,7 @@
 //! Tests of the CDR decoder against messages that the CDR library encodes.
 
 use super::*;
+use crate::data::Samples;
 use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::mcap::plan::AskedField;
 use crate::ingest::mcap::ros_type;

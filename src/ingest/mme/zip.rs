@@ -55,7 +55,8 @@ impl ZipEntry {
             0 => packed,
             8 => {
                 let mut bytes = vec![0; usize::try_from(self.bytes()).unwrap_or_default()];
-                bytes.truncate(unpack::inflate(&packed, false, &mut bytes).unwrap_or_default());
+                let count = unpack::inflate(&packed, false, &mut bytes);
+                bytes.truncate(count.unwrap_or_default());
                 bytes
             }
             method => {
