@@ -7,8 +7,8 @@
 const TIMES: [&str; 34] = [
     "time", "__time", "t", "zeit", "times", "timestamp", "timestamps", "time stamp", "zeitstempel",
     "messzeit", "abtastzeit", "uhrzeit", "elapsed", "elapsed time", "relative time", "relative zeit",
-    "rel. time", "rel. zeit", "datetime", "date/time", "date time", "x_value", "sec", "secs", "seconds",
-    "ms", "msec", "us", "µs", "usec", "ns", "temps", "tempo", "tiempo",
+    "rel. time", "rel. zeit", "datetime", "date/time", "date time", "x_value", "sec", "secs", "seconds", "ms",
+    "msec", "us", "µs", "usec", "ns", "temps", "tempo", "tiempo",
 ];
 
 /// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an
@@ -21,8 +21,7 @@ const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"
 const RATES: [&str; 10] = [
     // `startingtimerate` is what NWB has beside the time of the first sample.
     "startingtimerate", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency", "fs",
-    "scanrate", "abtastrate",
-    "abtastfrequenz", "samplingfrequenz",
+    "scanrate", "abtastrate", "abtastfrequenz", "samplingfrequenz",
 ];
 
 /// Names of the interval between samples, as [`RATES`]; `wfincrement` is that of LabVIEW's waveforms.
@@ -30,8 +29,7 @@ const RATES: [&str; 10] = [
 const INTERVALS: [&str; 11] = [
     // `xinc` is Keysight's, with its unit beside it.
     "xinc", "hresolution", "dt", "deltat", "wfincrement", "sampleinterval", "samplinginterval",
-    "sampleperiod",
-    "samplingperiod", "abtastintervall", "abtastperiode",
+    "sampleperiod", "samplingperiod", "abtastintervall", "abtastperiode",
 ];
 
 /// Names of the number of samples, as [`RATES`]; LabVIEW writes `Samples`.
@@ -51,16 +49,14 @@ const COUNTERS: [&str; 12] = [
 #[rustfmt::skip]
 const SENSORS: [&str; 12] = [
     "frameid", "sensor", "sensorid", "sensorname", "sensornumber", "sensorno", "device", "deviceid",
-    "devicename",
-    "node", "nodeid", "serialnumber",
+    "devicename", "node", "nodeid", "serialnumber",
 ];
 
 /// Names that say so of a row of a table; in messages they name much else.
 #[rustfmt::skip]
 const SENSORS_OF_ROWS: [&str; 14] = [
-    "id", "name", "module", "moduleid", "channel", "channelid", "channelname", "location", "source",
-    "topic", "mac",
-    "kanal", "knoten", "messstelle",
+    "id", "name", "module", "moduleid", "channel", "channelid", "channelname", "location", "source", "topic",
+    "mac", "kanal", "knoten", "messstelle",
 ];
 
 /// First words of lines above a table that name its columns, or hold their units, in exports of oscilloscopes
@@ -72,8 +68,7 @@ const UNITS: [&str; 5] = ["vunit", "unit", "units", "engineeringunit", "yunitlab
 #[rustfmt::skip]
 const SUMMARIES: [&str; 16] = [
     "sum", "summe", "total", "mean", "average", "mittelwert", "mittel", "min", "minimum", "max", "maximum",
-    "std", "rms",
-    "end", "ende", "eof",
+    "std", "rms", "end", "ende", "eof",
 ];
 
 /// Names that in capitals mean something else: FS is a full scale, DT a dead time, `delta_T` a temperature.
