@@ -25,26 +25,13 @@ const LEAST_SHARED: usize = 3;
 /// whether they overlap.
 pub(crate) const PREFIX: usize = 1 << 16;
 
-/// The rate of a channel in blocks.
-struct BlockRate {
-    /// At which the blocks follow one another, Hz.
-    laid_hz: f64,
-    /// The cask file's, where its stamps contradict it, Hz.
-    stated_hz: Option<f64>,
-    issues: Vec<Finding>,
-}
-
 /// Blocks on a uniform base by what is claimed of their rate, their `samples` one after another.
 ///
 /// # Errors
 /// [`Refusal`] where claims and stamps give no rate, or stamps no record.
 pub(crate) fn place(blocks: &[Block], claims: &Claims, samples: Samples) -> Result<Uniform, Refusal> {
     let content = BlockContent { samples: &samples, digests: None };
-    let BlockRate { laid_hz, stated_hz, issues } = rate(blocks, claims, &content)?;
-    let mut uniform = blocks::from_blocks(blocks, laid_hz, samples)?;
-    uniform.sample_rate_hz = stated_hz.unwrap_or(uniform.sample_rate_hz);
-    uniform.issues.extend(issues);
-    Ok(uniform)
+    Ok(lay(blocks, claims, &content)?.filled(samples))
 }
 
 /// The same as far as a listing shows it.
@@ -52,20 +39,12 @@ pub(crate) fn place(blocks: &[Block], claims: &Claims, samples: Samples) -> Resu
 /// # Errors
 /// As [`place`].
 pub(crate) fn lay(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Laid, Refusal> {
-    let BlockRate { laid_hz, stated_hz, .. } = rate(blocks, claims, content)?;
-    let mut laid = blocks::lay(blocks, laid_hz, content)?;
-    laid.sample_rate_hz = stated_hz.unwrap_or(laid.sample_rate_hz);
-    Ok(laid)
-}
-
-fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<BlockRate, Refusal> {
     claims.cask_hz.map_or(Ok(()), check_rate)?;
     no_shared_stamps(blocks, content)?;
     let nearest_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));
     let told = Intervals::of(blocks).told(nearest_hz);
     let Some(nearest_hz) = nearest_hz else {
-        let laid_hz = alone(blocks, told)?;
-        return Ok(BlockRate { laid_hz, stated_hz: None, issues: Vec::new() });
+        return blocks::lay(blocks, alone(blocks, told)?, content);
     };
     let is_window = |told: &Told| nearest_hz < told.rate_hz && content.overlaps(blocks, nearest_hz);
     let own = told.filter(|told| !told.is_few && !is_window(told));
@@ -83,7 +62,10 @@ fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Blo
     // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps
     // would leave a gap behind every block, or let each cover the next.
     let laid_hz = own.filter(|own| !is_borne_out(own)).map_or(nearest_hz, |own| own.rate_hz);
-    Ok(BlockRate { laid_hz, stated_hz: claims.cask_hz.filter(|hz| hz.total_cmp(&laid_hz).is_ne()), issues })
+    let mut laid = blocks::lay(blocks, laid_hz, content)?;
+    laid.stated_hz = claims.cask_hz.filter(|hz| hz.total_cmp(&laid_hz).is_ne());
+    laid.of_rate = issues;
+    Ok(laid)
 }
 
 /// The rate that stamps tell where nothing states one.

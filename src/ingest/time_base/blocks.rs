@@ -37,7 +37,7 @@ pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<U
     let count: usize = blocks.iter().map(|block| block.count).sum();
     check_lengths(count, samples.len())?;
     let laid = lay(blocks, rate_hz, &BlockContent { samples: &samples, digests: None })?;
-    Ok(filled(laid, samples))
+    Ok(laid.filled(samples))
 }
 
 /// Where blocks lie on a uniform base.
@@ -46,8 +46,12 @@ pub(crate) struct Laid {
     pieces: Vec<Piece>,
     /// Time of the first sample, s.
     pub(crate) start_s: f64,
-    /// Hz.
-    pub(crate) sample_rate_hz: f64,
+    /// At which the blocks follow one another, Hz.
+    sample_rate_hz: f64,
+    /// The cask file's, where its stamps contradict it, Hz.
+    pub(super) stated_hz: Option<f64>,
+    /// What is to be said of the rate.
+    pub(super) of_rate: Vec<Finding>,
     /// Samples that are missing between blocks, from when to when, s.
     pub(crate) gaps: Vec<missing::Gap>,
     doubles: Doubles,
@@ -87,54 +91,64 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
         }
         end = end.max(piece.end());
     }
-    Ok(Laid { pieces, start_s, sample_rate_hz, gaps, doubles, issues })
+    let (stated_hz, of_rate) = (None, Vec::new());
+    Ok(Laid { pieces, start_s, sample_rate_hz, stated_hz, of_rate, gaps, doubles, issues })
 }
 
 impl Laid {
+    /// The rate that the samples are taken at, Hz.
+    pub(crate) fn rate_hz(&self) -> f64 {
+        self.stated_hz.unwrap_or(self.sample_rate_hz)
+    }
+
     /// Number of samples, missing ones too.
     pub(crate) fn count(&self) -> usize {
         self.pieces.iter().map(Piece::end).max().unwrap_or(0)
     }
-}
 
-/// The samples at their places; of a block less what of it is already there.
-fn filled(laid: Laid, held: Samples) -> Uniform {
-    let count = laid.count();
-    let Laid { pieces, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
-    let (mut stretches, mut end) = (Vec::with_capacity(pieces.len()), 0_usize);
-    for piece in &pieces {
-        let overlap = end.saturating_sub(piece.place).min(piece.samples.len());
-        let (from, to) = (piece.samples.start + overlap, piece.samples.end);
-        stretches.push((Span { from, to }, piece.place + overlap));
-        end = end.max(piece.end());
-    }
-    let kept: usize = stretches.iter().map(|(span, _)| span.to - span.from).sum();
-    let is_in_place = [held.len(), kept] == [count; 2] && stretches.iter().all(|(span, to)| span.from == *to);
-    let mut samples = if is_in_place {
-        held
-    } else {
-        let laid = held.spread(count, &stretches);
-        for (piece, (span, _)) in pieces.iter().zip(&stretches) {
-            let from = piece.samples.start;
-            let mut doubled = (0..span.from - from)
-                .map(|i| is_same(laid.get(piece.place + i), held.get(from + i)))
-                .peekable();
-            if doubled.peek().is_some() {
-                let to_s = piece.start_s + as_f64(span.from - from) / sample_rate_hz;
-                doubles.add(doubled.all(|is_same| is_same), piece.start_s, to_s);
-            }
+    /// The samples at their places; of a block less what of it is already there.
+    pub(super) fn filled(self, held: Samples) -> Uniform {
+        let count = self.count();
+        let Self { pieces, start_s, sample_rate_hz, stated_hz, of_rate, gaps, mut doubles, mut issues } =
+            self;
+        let (mut stretches, mut end) = (Vec::with_capacity(pieces.len()), 0_usize);
+        for piece in &pieces {
+            let overlap = end.saturating_sub(piece.place).min(piece.samples.len());
+            let (from, to) = (piece.samples.start + overlap, piece.samples.end);
+            stretches.push((Span { from, to }, piece.place + overlap));
+            end = end.max(piece.end());
         }
-        laid
-    };
-    if let Some((from_s, to_s)) = doubles.span_s {
-        let Doubles { count, different, .. } = doubles;
-        let found = TimesFinding::BlocksTwice { count, different };
-        issues.push(Finding::from(found).between(from_s, to_s));
+        let kept: usize = stretches.iter().map(|(span, _)| span.to - span.from).sum();
+        let is_in_place =
+            [held.len(), kept] == [count; 2] && stretches.iter().all(|(span, to)| span.from == *to);
+        let mut samples = if is_in_place {
+            held
+        } else {
+            let laid = held.spread(count, &stretches);
+            for (piece, (span, _)) in pieces.iter().zip(&stretches) {
+                let from = piece.samples.start;
+                let mut doubled = (0..span.from - from)
+                    .map(|i| is_same(laid.get(piece.place + i), held.get(from + i)))
+                    .peekable();
+                if doubled.peek().is_some() {
+                    let to_s = piece.start_s + as_f64(span.from - from) / sample_rate_hz;
+                    doubles.add(doubled.all(|is_same| is_same), piece.start_s, to_s);
+                }
+            }
+            laid
+        };
+        if let Some((from_s, to_s)) = doubles.span_s {
+            let Doubles { count, different, .. } = doubles;
+            let found = TimesFinding::BlocksTwice { count, different };
+            issues.push(Finding::from(found).between(from_s, to_s));
+        }
+        missing::push_gaps(&gaps, &mut issues);
+        let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
+        let gaps = missing::mark(&mut samples, lost, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
+        issues.extend(of_rate);
+        let sample_rate_hz = stated_hz.unwrap_or(sample_rate_hz);
+        Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
     }
-    missing::push_gaps(&gaps, &mut issues);
-    let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
-    let gaps = missing::mark(&mut samples, lost, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
-    Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
 }
 
 fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent) -> Result<(), Refusal> {

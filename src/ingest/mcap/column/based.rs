@@ -75,7 +75,7 @@ impl Column {
             Some(extent) if !self.counts.is_empty() => {
                 let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
                 let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-                (laid.start_s, laid.sample_rate_hz, laid.count(), laid.gaps.len() + extent.holes)
+                (laid.start_s, laid.rate_hz(), laid.count(), laid.gaps.len() + extent.holes)
             }
             _ => {
                 let uniform = self.uniform(zero_ns, None)?;
