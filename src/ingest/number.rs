@@ -73,8 +73,8 @@ impl Leading {
     }
 }
 
-/// The number whose digits end at `at`, of any length and with its exponent; so many in all and so many behind
-/// the mark make the `mantissa`.
+/// The number whose digits end at `at`, of any length and with its exponent; so many in all and so many
+/// behind the mark make the `mantissa`.
 #[cold]
 fn with_exponent(
     text: &[u8],

@@ -171,8 +171,8 @@ pub(super) fn rise(numbers: &[f64]) -> bool {
     pairs > 0 && 10 * rising >= 9 * pairs && numbers[0] < numbers[pairs]
 }
 
-/// Seconds a unit of numbers that messages of so many samples carry as their times: as [`seconds_a_unit`], and
-/// where nothing states it the unit in which they run as long as the log times do.
+/// Seconds a unit of numbers that messages of so many samples carry as their times: as [`seconds_a_unit`],
+/// and where nothing states it the unit in which they run as long as the log times do.
 ///
 /// # Errors
 /// As there.

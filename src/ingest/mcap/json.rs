@@ -82,8 +82,8 @@ fn without_bare_nan(text: &[u8]) -> Option<Vec<u8>> {
     found.then_some(out)
 }
 
-/// A walk along a message in JSON: what stands at a place goes into the slots of its node. It fails by a wanted
-/// value that is none that is read, or, without a word, where the text is no JSON.
+/// A walk along a message in JSON: what stands at a place goes into the slots of its node. It fails by a
+/// wanted value that is none that is read, or, without a word, where the text is no JSON.
 impl Slots {
     /// The value at the start of `text`; how many bytes it takes.
     fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, Option<String>> {

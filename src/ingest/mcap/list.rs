@@ -92,7 +92,7 @@ fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns
             });
             continue;
         };
-        let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
+        let Extent { samples, range, .. } = column.extent.clone().unwrap_or_default();
         let source = if is_alone {
             format!("{}.{path}", topic.name)
         } else {
@@ -118,15 +118,7 @@ fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns
             encoding,
             ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
         };
-        let untimed = if is_without_times {
-            Some(
-                "its times take more memory than is allowed, and tell no rate here: allow more with \
-                  --max-memory"
-                    .into(),
-            )
-        } else {
-            timed(&mut channel, column, zero_ns).err().map(|refusal| refusal.beside(&source))
-        };
+        let untimed = timed(&mut channel, column, zero_ns).err().map(|refusal| refusal.beside(&source));
         listing.channels.push(channel);
         // What holds for one field of a topic mostly holds for all.
         if let Some(problem) = untimed.filter(|problem| !said.contains(problem)) {
@@ -141,6 +133,10 @@ fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns
 /// # Errors
 /// Why it would refuse them; too few samples are no fault of a recording.
 fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), Refusal> {
+    if column.extent.as_ref().is_some_and(|extent| extent.is_without_times) {
+        let problem = "its times take more memory than is allowed, and tell no rate here";
+        return Err(Refusal::new(problem, "allow more with --max-memory"));
+    }
     column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));

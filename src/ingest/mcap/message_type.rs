@@ -91,8 +91,8 @@ impl MessageType {
                 let schema =
                     schema.map_or("no schema".into(), |schema| format!("a schema in {:?}", schema.encoding));
                 Err(format!(
-                    "its messages are encoded as {encoding:?} with {schema}; those that can be read are json, \
-                     protobuf with its schema, and cdr with ros2msg"
+                    "its messages are encoded as {encoding:?} with {schema}; those that can be read are \
+                     json, protobuf with its schema, and cdr with ros2msg"
                 ))
             }
         }

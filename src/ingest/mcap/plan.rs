@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Names under which a message states the time of its first sample; nanoseconds follow as a structure.
 pub(super) const STAMP_NAMES: [&[&str]; 3] = [&["timestamp"], &["header", "stamp"], &["stamp"]];
-/// Names under which a message states the rate of its samples, Hz; the last as protobuf writes them into JSON.
+/// Names under which a message states the rate of its samples, Hz; the last are those of protobuf in JSON.
 #[rustfmt::skip]
 pub(super) const RATE_NAMES: [&str; 8] = [
     "sample_rate_hz", "sample_rate", "fs", "sampling_rate_hz", "sampling_rate", "fs_hz",

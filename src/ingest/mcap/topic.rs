@@ -206,8 +206,8 @@ impl Gathered {
         &mut columns[field]
     }
 
-    /// A series for each sensor and field of the channel `number`, after its last message; one without a field
-    /// where its topic has none.
+    /// A series for each sensor and field of the channel `number`, after its last message; one without a
+    /// field where its topic has none.
     pub(super) fn series(mut self, topic: Rc<Topic>, number: u16, is_listed: bool) -> Vec<Series> {
         let mut sensors = std::mem::take(&mut self.sensors);
         if sensors.is_empty() {

@@ -1,5 +1,5 @@
-//! Samples on a uniform base, and the blocks that come to one: where their samples lie among those of all, and
-//! which of them are the same.
+//! Samples on a uniform base, and the blocks that come to one: where their samples lie among those of all,
+//! and which of them are the same.
 
 use super::order::is_same;
 use crate::data::{Finding, Samples, Span};

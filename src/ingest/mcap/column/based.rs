@@ -1,5 +1,5 @@
-//! What a column's messages gave, and what they say of its rate and times, to samples on a uniform base; their
-//! log times to how their pace differs from that of the stamps.
+//! What a column's messages gave, and what they say of its rate and times, to samples on a uniform base;
+//! their log times to how their pace differs from that of the stamps.
 
 use super::{Column, SentTimes, StatedRate, seconds_from};
 use crate::data::{Finding, ListedChannel, McapFinding};
