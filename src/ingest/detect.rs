@@ -9,7 +9,6 @@ use crate::data::RecordingFormat;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// How much of a file is looked at: beyond any preamble seen in loggers' exports.
 const HEAD_BYTES: u64 = 1 << 16;
@@ -31,7 +30,7 @@ pub fn format<'a>(recording: impl Into<RecordingFile<'a>>) -> Result<RecordingFo
     if head.is_empty() {
         return Err(unknown(path, "the file is empty", "take the original from the logger again"));
     }
-    if head.starts_with(MCAP_MAGIC) {
+    if head.starts_with(mcap::MAGIC) {
         return Ok(RecordingFormat::Mcap);
     }
     if has_hdf5_signature(&mut file, length).map_err(|source| error::io(path, &source))? {

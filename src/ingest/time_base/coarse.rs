@@ -9,10 +9,10 @@
 use super::missing;
 use super::pieces::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times, usual_step};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::digits;
-use crate::numerics::{as_f64, robust};
+use crate::numerics::as_f64;
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are
 /// even.
@@ -57,8 +57,7 @@ pub(super) fn place(
     mut issues: Vec<Finding>,
 ) -> Result<Uniform, Refusal> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
-    let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
-    let step_s = if steps_s.is_empty() { 0.0 } else { robust::median(&mut steps_s) };
+    let step_s = usual_step(times_s);
     no_rows_of_sensors(&changes, step_s, times_s.len(), claims)?;
     let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
