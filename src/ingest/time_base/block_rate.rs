@@ -5,7 +5,7 @@ use super::blocks::{self, Laid};
 use super::error::check_rate;
 use super::pieces::{Block, BlockContent, Piece, Uniform, pieces};
 use super::stamps::{Intervals, Told};
-use crate::data::{Finding, Samples, TimesFinding};
+use crate::data::{Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
