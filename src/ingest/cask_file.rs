@@ -165,9 +165,9 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let of_recording = root.table("recording")?;
-    let time = of_recording.words("time")?;
+    let time = of_recording.text("time")?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let rest = of_recording.text("rest")?.map(|rest| folder.join(rest.value));
+    let rest = of_recording.text("rest")?.map(|rest| folder.join(rest));
     let (channels, others) = channel::channels(&root, &cask)?;
     let test = record::test(&root.table("test")?, photos)?;
     let observed = record::observed(&root.table("observed")?)?;
@@ -218,28 +218,22 @@ pub(crate) fn contact(table: &Section) -> Result<Contact, IngestError> {
         return Ok(table.word("friction", &words, MEND)?.unwrap_or(Contact::Unknown));
     }
     let coefficient = table.required_number("friction")?;
-    if coefficient.value < 0.0 {
-        return Err(table.wrong(
-            coefficient.span,
-            format!("a coefficient of friction of {} cannot be", coefficient.value),
-            "0 or more".into(),
-            MEND,
-        ));
+    if coefficient < 0.0 {
+        let message = format!("a coefficient of friction of {coefficient} cannot be");
+        return Err(table.refuse("friction", message, MEND));
     }
-    Ok(Contact::Coulomb(coefficient.value))
+    Ok(Contact::Coulomb(coefficient))
 }
 
 fn filter(table: &Section) -> Result<FilterChoice, IngestError> {
-    match (table.number("cfc")?, table.number("cutoff_hz")?) {
-        (Some(_), Some(cutoff)) => Err(table.wrong(
-            cutoff.span,
-            "[filter] gives both cfc and cutoff_hz".into(),
-            "one of the two".into(),
-            "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete the other \
-             line",
-        )),
-        (Some(class), None) => Ok(FilterChoice::Cfc(class.value)),
-        (None, Some(cutoff)) => Ok(FilterChoice::CutoffHz(cutoff.value)),
+    const MEND: &str = "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete \
+                        the other line";
+    match (table.given("cfc")?, table.given("cutoff_hz")?) {
+        (Some(_), Some(_)) => {
+            Err(table.refuse("cutoff_hz", "[filter] gives both cfc and cutoff_hz", MEND))
+        }
+        (Some(class), None) => Ok(FilterChoice::Cfc(class)),
+        (None, Some(cutoff_hz)) => Ok(FilterChoice::CutoffHz(cutoff_hz)),
         (None, None) => Ok(FilterChoice::Auto),
     }
 }

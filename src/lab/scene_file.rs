@@ -74,7 +74,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         rates,
     };
     let mut scene = Scene {
-        name: root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value),
+        name: root.text("name")?.unwrap_or_else(|| cask.name.clone()),
         seed: whole(&root, "seed")?.unwrap_or(by_pulses.seed),
         first_end: crushable(&first, by_pulses.first_end)?,
         second_end: crushable(&second, by_pulses.second_end)?,
@@ -107,7 +107,7 @@ fn loose_mass(table: &Section, cask: &Cask) -> Result<LooseMass, CaskFileError> 
         return Err(contradicts(table, "gap_m", "not above play_m", "the mass lies between its pads"));
     }
     Ok(LooseMass {
-        mass_kg: table.required_number("mass_kg")?.value,
+        mass_kg: table.required_number("mass_kg")?,
         position_m: channel::position_m(table, "position_m", cask)?.unwrap_or(cask.cog_m),
         gap_m,
         play_m,
@@ -164,7 +164,7 @@ fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, Ca
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {
     Ok(BendingMode {
         order: whole(table, "order")?.unwrap_or(1),
-        frequency_hz: table.required_number("frequency_hz")?.value,
+        frequency_hz: table.required_number("frequency_hz")?,
         damping: value(table, "damping")?,
         strength: value(table, "strength")?,
     })
@@ -180,12 +180,7 @@ fn channels(tables: &[Section], cask: &Cask) -> Result<Vec<channel::Both>, CaskF
         let both = channel::channel(table, cask)?;
         if channels.iter().any(|other| other.0.name == both.0.name) {
             let message = format!("two channels are named \"{}\"", both.0.name);
-            return Err(table.wrong(
-                table.place("name"),
-                message,
-                "a name of its own".into(),
-                "name each channel once",
-            ));
+            return Err(table.refuse("name", message, "name each channel once"));
         }
         channels.push(both);
     }
@@ -199,12 +194,9 @@ fn affordable(root: &Section, tables: &[Section], scene: &Scene) -> Result<(), C
         return Ok(());
     };
     let table = tables.get(at).unwrap_or(root);
-    Err(table.wrong(
-        table.place("sample_rate_hz"),
-        format!("sample_rate_hz over {long_s} s gives more than {MOST_SAMPLES:.0} samples"),
-        "fewer samples".into(),
-        "shorten before_s and after_s, or lower sample_rate_hz",
-    ))
+    let message = format!("sample_rate_hz over {long_s} s gives more than {MOST_SAMPLES:.0} samples");
+    let mend = "shorten before_s and after_s, or lower sample_rate_hz";
+    Err(table.refuse("sample_rate_hz", message, mend))
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use crate::data::{
     Unit, rate_unit_rad_s,
 };
 use crate::ingest::IngestError;
-use std::ops::Range;
 use toml::de::DeValue;
 
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: \
@@ -38,45 +37,30 @@ pub(super) fn channels(
     root: &Section,
     cask: &Cask,
 ) -> Result<(Vec<ChannelSpec>, Vec<OtherSpec>), IngestError> {
-    let mut channels: Vec<ChannelSpec> = Vec::new();
-    let mut others: Vec<OtherSpec> = Vec::new();
-    let mut lines: Vec<usize> = Vec::new();
+    let (mut channels, mut others): (Vec<ChannelSpec>, Vec<OtherSpec>) = (Vec::new(), Vec::new());
     let tables = root.tables("channel")?;
     if let Some(beyond) = tables.get(MOST_CHANNELS) {
-        return Err(beyond.wrong(
-            beyond.span(),
-            format!("the file has {} channels", tables.len()),
-            format!("at most {MOST_CHANNELS}"),
-            "keep those of the accelerometers on the cask",
-        ));
+        let message = format!("the file has {} channels, and at most {MOST_CHANNELS} are read", tables.len());
+        return Err(beyond.refuse("name", message, "keep those of the accelerometers on the cask"));
     }
-    for table in tables {
-        let (channel, name_span) = channel(&table, cask)?;
-        if let Some(first) = channels.iter().position(|other| other.name == channel.name) {
-            return Err(table.wrong(
-                name_span,
-                format!("two channels are named \"{}\", the first on line {}", channel.name, lines[first]),
-                "a name of its own".into(),
-                "name each channel as the test's documents do, each name once",
-            ));
+    for table in &tables {
+        let channel = channel(table, cask)?;
+        let name = &channel.name;
+        if let Some(first) = channels.iter().position(|other| other.name == *name) {
+            let line = tables[first].line("name");
+            let message = format!("two channels are named \"{name}\", the first on line {line}");
+            let mend = "name each channel as the test's documents do, each name once";
+            return Err(table.refuse("name", message, mend));
         }
-        let is_read = |other: &ChannelSpec| other.source == channel.source && other.rows == channel.rows;
-        if let Some(first) = channels.iter().position(is_read) {
-            return Err(table.wrong(
-                table.place("source"),
-                format!(
-                    "{} reads the same source as {}, {}",
-                    channel.name, channels[first].name, channel.source
-                ),
-                "read already".into(),
-                "`dropcheck inspect RECORDING` lists the sources: name each sensor's own",
-            ));
+        let is_read = |other: &&ChannelSpec| other.source == channel.source && other.rows == channel.rows;
+        if let Some(first) = channels.iter().find(is_read) {
+            let message = format!("{name} reads the same source as {}, {}", first.name, channel.source);
+            let mend = "`dropcheck inspect RECORDING` lists the sources: name each sensor's own";
+            return Err(table.refuse("source", message, mend));
         }
-        lines.push(table.line(name_span.start));
-        let rate = rate(&table)?;
-        if rate.is_some() || end_or_none(&table)?.is_none() {
-            let unit = table.words("unit")?;
-            others.push(OtherSpec { read: channel.clone(), unit, rate });
+        let rate = rate(table)?;
+        if rate.is_some() || end_or_none(table)?.is_none() {
+            others.push(OtherSpec { read: channel.clone(), unit: table.text("unit")?, rate });
         }
         channels.push(channel);
     }
@@ -84,53 +68,61 @@ pub(super) fn channels(
     Ok((channels, others))
 }
 
-fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), IngestError> {
+fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
     let name = table.required_text("name")?;
-    let Some(end) = end_or_none(table)? else {
-        let words = ["beside end = \"none\"", "only with \"first\" or \"second\"", NO_PART];
-        without_meaning(table, &OF_MOTION, words)?;
-        return Ok((other(table, &name.value)?, name.span));
-    };
-    if rate(table)?.is_some() {
-        return Ok((ChannelSpec { end, ..other(table, &name.value)? }, name.span));
-    }
-    let axis = axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?;
-    let source = source(table)?;
-    let unit = unit(table)?;
-    let position_m = position_m(table, cask)?;
-    let spec = ChannelSpec {
-        name: name.value,
-        end,
-        axis,
-        source,
-        unit,
-        position_m,
-        offset_m: table.given("offset_m")?.unwrap_or(0.0),
-        polarity: polarity(table)?,
+    let end = end_or_none(table)?;
+    let plain = ChannelSpec {
+        source: source(table)?,
         full_scale: table.given("full_scale")?,
         sample_rate_hz: table.given("sample_rate_hz")?,
         rows: rows(table)?,
-        time: table.words("time")?,
-        coupling: coupling(table)?,
-        calibration: table.given("calibration_percent")?.map(|percent| percent / 100.0),
-        reference: table.words("reference")?,
-        lateral_m: table.given("lateral_m")?.unwrap_or(0.0),
+        time: table.text("time")?,
         sensor: sensor(table)?,
+        ..ChannelSpec::plain(&name, end.unwrap_or(End::First), "", 0.0)
     };
-    Ok((spec, name.span))
+    if end.is_none() {
+        without_meaning(table, &OF_MOTION, ["end = \"none\"", NO_PART])?;
+        return Ok(plain);
+    }
+    if rate(table)?.is_some() {
+        return Ok(plain);
+    }
+    Ok(ChannelSpec {
+        axis: axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?,
+        unit: unit(table)?,
+        position_m: position_m(table, cask)?,
+        offset_m: table.given("offset_m")?.unwrap_or(0.0),
+        polarity: polarity(table)?,
+        coupling: coupling(table)?,
+        calibration: calibration(table)?,
+        reference: table.text("reference")?,
+        lateral_m: table.given("lateral_m")?.unwrap_or(0.0),
+        ..plain
+    })
 }
 
-/// Refuses the first of these keys that stands in the table; the words say beside what, what it goes with,
-/// and why.
-fn without_meaning(
-    table: &Section,
-    keys: &[&str],
-    [beside, goes_with, why]: [&str; 3],
-) -> Result<(), IngestError> {
+/// Refuses the first of these keys that stands in the table; the words say beside what, and why.
+fn without_meaning(table: &Section, keys: &[&str], [beside, why]: [&str; 2]) -> Result<(), IngestError> {
     keys.iter().find(|key| table.value(key).is_some()).map_or(Ok(()), |key| {
-        let problem = format!("{key} has no meaning {beside}");
-        Err(table.wrong(table.place(key), problem, goes_with.into(), &format!("delete {key}: {why}")))
+        let problem = format!("{key} has no meaning beside {beside}");
+        Err(table.refuse(key, problem, &format!("delete {key}: {why}")))
     })
+}
+
+/// Refuses a number that stands without the words `with` of another key, or those words without the number;
+/// the mends say how to add it, and when to delete it.
+fn only_with(
+    table: &Section,
+    key: &str,
+    (with, is_with): (&str, bool),
+    [add, delete]: [&str; 2],
+) -> Result<(), IngestError> {
+    let other = with.split(' ').next().unwrap_or(with);
+    match (is_with, table.given(key)?) {
+        (true, None) => Err(table.refuse(other, format!("{with} needs {key}"), add)),
+        (false, Some(_)) => Err(table.refuse(key, format!("{key} has no meaning without {with}"), delete)),
+        _ => Ok(()),
+    }
 }
 
 /// Whether the table is that of an angular-rate sensor.
@@ -143,38 +135,27 @@ fn rate(table: &Section) -> Result<Option<RateSpec>, IngestError> {
     if !is_rate(table) || end_or_none(table)?.is_none() {
         return Ok(None);
     }
-    let words = ["beside axis = \"rate\"", "only with \"transverse\" or \"axial\"", NO_ACCELERATION];
-    without_meaning(table, &OF_MOTION[..OF_ACCELERATION], words)?;
-    if let Some(unit) = table.text("unit")?.filter(|unit| rate_unit_rad_s(&unit.value).is_none()) {
-        let problem = format!("\"{}\" is no unit of a rate of turn", unit.value);
+    without_meaning(table, &OF_MOTION[..OF_ACCELERATION], ["axis = \"rate\"", NO_ACCELERATION])?;
+    if let Some(unit) = table.text("unit")?.filter(|unit| rate_unit_rad_s(unit).is_none()) {
         let mend = "unit = \"rad/s\" or \"deg/s\"; left out: what the recording says";
-        return Err(table.wrong(unit.span, problem, "\"rad/s\" or \"deg/s\"".into(), mend));
+        return Err(table.refuse("unit", format!("\"{unit}\" is no unit of a rate of turn"), mend));
     }
     // A rigid body turns alike everywhere, so that its place says nothing.
     for key in ["position_m", "offset_m", "lateral_m"] {
-        table.number(key)?;
+        table.given(key)?;
     }
-    let calibration = table.given("calibration_percent")?.map(|percent| percent / 100.0);
-    Ok(Some(RateSpec { polarity: polarity(table)?, calibration }))
+    Ok(Some(RateSpec { polarity: polarity(table)?, calibration: calibration(table)? }))
 }
 
-/// A channel of this name that is no accelerometer.
-fn other(table: &Section, name: &str) -> Result<ChannelSpec, IngestError> {
-    Ok(ChannelSpec {
-        source: source(table)?,
-        full_scale: table.given("full_scale")?,
-        sample_rate_hz: table.given("sample_rate_hz")?,
-        rows: rows(table)?,
-        time: table.words("time")?,
-        sensor: sensor(table)?,
-        ..ChannelSpec::plain(name, End::First, "", 0.0)
-    })
+/// As a share.
+fn calibration(table: &Section) -> Result<Option<f64>, IngestError> {
+    Ok(table.given("calibration_percent")?.map(|percent| percent / 100.0))
 }
 
 fn sensor(table: &Section) -> Result<SensorRecord, IngestError> {
     Ok(SensorRecord {
-        serial: table.words("serial")?,
-        certificate: table.words("certificate")?,
+        serial: table.text("serial")?,
+        certificate: table.text("certificate")?,
         calibrated: table.date("calibrated")?,
     })
 }
@@ -201,12 +182,12 @@ fn source(table: &Section) -> Result<Source, IngestError> {
                         \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
     let Some(value) = table.value("source") else { return Err(table.missing("source", MEND)) };
     if !value.get_ref().is_table() {
-        return Ok(Source::Path(table.required_text("source")?.value));
+        return Ok(Source::Path(table.required_text("source")?));
     }
     let parts = table.table("source")?;
     Ok(Source::TopicField {
-        topic: parts.required_text("topic")?.value,
-        field: parts.required_text("field")?.value,
+        topic: parts.required_text("topic")?,
+        field: parts.required_text("field")?,
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -221,95 +202,64 @@ fn rows(table: &Section) -> Result<Option<RowsOf>, IngestError> {
         return Ok(None);
     }
     let parts = table.table("where")?;
-    let column = parts.required_text("column")?.value;
+    let column = parts.required_text("column")?;
     let is = match parts.value("is").map(toml::Spanned::get_ref) {
         Some(DeValue::Integer(number)) => number.as_str().to_owned(),
-        _ => parts.required_text("is")?.value,
+        _ => parts.required_text("is")?,
     };
     Ok(Some(RowsOf { column, is }))
 }
 
 fn unit(table: &Section) -> Result<Option<Unit>, IngestError> {
+    const MENDS: [&str; 2] = [
+        "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the amplifier's \
+         gain)",
+        "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it holds g \
+         or m/s²",
+    ];
+    let sensitivity_mv_per_g = table.given("sensitivity")?.unwrap_or(f64::NAN);
     let words = [
         ("g", Unit::G),
         ("m/s^2", Unit::MetrePerSecondSquared),
-        ("V", Unit::Volt { sensitivity_mv_per_g: f64::NAN }),
-        ("mV", Unit::Millivolt { sensitivity_mv_per_g: f64::NAN }),
+        ("V", Unit::Volt { sensitivity_mv_per_g }),
+        ("mV", Unit::Millivolt { sensitivity_mv_per_g }),
     ];
-    let mut unit = table.word("unit", &words, UNITS)?;
-    let given = table.number("sensitivity")?;
-    match (&mut unit, given) {
-        (Some(Unit::Volt { sensitivity_mv_per_g } | Unit::Millivolt { sensitivity_mv_per_g }), given) => {
-            let given = given.ok_or_else(|| {
-                table.wrong(
-                    table.place("unit"),
-                    "a unit of voltage needs sensitivity".into(),
-                    "needs sensitivity beside it".into(),
-                    "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the \
-                     amplifier's gain)",
-                )
-            })?;
-            *sensitivity_mv_per_g = given.value;
-        }
-        (_, Some(given)) => {
-            return Err(table.wrong(
-                given.span,
-                "sensitivity has no meaning without unit = \"V\" or \"mV\"".into(),
-                "only with \"V\" or \"mV\"".into(),
-                "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it \
-                 holds g or m/s²",
-            ));
-        }
-        _ => {}
-    }
+    let unit = table.word("unit", &words, UNITS)?;
+    let is_voltage = matches!(unit, Some(Unit::Volt { .. } | Unit::Millivolt { .. }));
+    only_with(table, "sensitivity", ("unit = \"V\" or \"mV\"", is_voltage), MENDS)?;
     Ok(unit)
 }
 
-pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, IngestError> {
-    let position = table.required_number("position_m")?;
-    if (0.0..=cask.length_m).contains(&position.value) {
-        return Ok(position.value);
+fn position_m(table: &Section, cask: &Cask) -> Result<f64, IngestError> {
+    let position_m = table.required_number("position_m")?;
+    if (0.0..=cask.length_m).contains(&position_m) {
+        return Ok(position_m);
     }
-    Err(table.wrong(
-        position.span,
-        format!("position_m {} lies outside the cask, which is {} m long", position.value, cask.length_m),
-        format!("0 to {} m", cask.length_m),
-        "position_m counts along the axis from the first end, in metres, for sensors on the second end too",
-    ))
+    let message = format!("position_m {position_m} lies outside the cask, which is {} m long", cask.length_m);
+    let mend = "position_m counts along the axis from the first end, in metres, for sensors on the second end \
+                too";
+    Err(table.refuse("position_m", message, mend))
 }
 
 pub(crate) fn polarity(table: &Section) -> Result<f64, IngestError> {
-    match table.number("polarity")? {
-        None => Ok(1.0),
-        Some(polarity) if (polarity.value.abs() - 1.0).abs() < f64::EPSILON => Ok(polarity.value.signum()),
-        Some(polarity) => Err(table.wrong(
-            polarity.span,
-            format!("polarity is {}", polarity.value),
-            "1 or -1".into(),
-            "-1 is for a sensor mounted the other way round; a scale belongs into sensitivity",
-        )),
+    let polarity = table.given("polarity")?.unwrap_or(1.0);
+    if (polarity.abs() - 1.0).abs() < f64::EPSILON {
+        return Ok(polarity.signum());
     }
+    let mend = "-1 is for a sensor mounted the other way round; a scale belongs into sensitivity";
+    Err(table.refuse("polarity", format!("polarity is {polarity}, and not 1 or -1"), mend))
 }
 
 pub(crate) fn coupling(table: &Section) -> Result<Coupling, IngestError> {
     const MEND: &str =
         "coupling = \"dc\" (the default: reads constant acceleration) or \"ac\" with time_constant_s";
+    const MENDS: [&str; 2] = [
+        "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet \
+         (0.5 Hz: 0.318)",
+        "write coupling = \"ac\" if the channel is AC-coupled; else delete time_constant_s",
+    ];
     let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);
-    match (is_ac, table.number("time_constant_s")?) {
-        (true, Some(constant)) => Ok(Coupling::Ac { time_constant_s: constant.value }),
-        (true, None) => Err(table.wrong(
-            table.place("coupling"),
-            "coupling = \"ac\" needs time_constant_s".into(),
-            "needs time_constant_s beside it".into(),
-            "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet \
-             (0.5 Hz: 0.318)",
-        )),
-        (false, Some(constant)) => Err(table.wrong(
-            constant.span,
-            "time_constant_s has no meaning without coupling = \"ac\"".into(),
-            "only with \"ac\"".into(),
-            "write coupling = \"ac\" if the channel is AC-coupled; else delete time_constant_s",
-        )),
-        (false, None) => Ok(Coupling::Dc),
-    }
+    only_with(table, "time_constant_s", ("coupling = \"ac\"", is_ac), MENDS)?;
+    let constant_s = table.given("time_constant_s")?;
+    Ok(constant_s.map_or(Coupling::Dc, |time_constant_s| Coupling::Ac { time_constant_s }))
 }

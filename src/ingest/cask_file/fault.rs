@@ -1,4 +1,4 @@
-//! A line of a cask file that cannot be used: which file, which line, what was expected there.
+//! A line of a cask file that cannot be used: which file, which line, what is wrong there, how to mend it.
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
@@ -15,13 +15,11 @@ pub struct WrongLine {
     pub line: usize,
     /// What is wrong.
     pub message: String,
-    /// What was expected there.
-    pub expected: String,
     /// The file's text.
     #[source_code]
     pub text: NamedSource<String>,
     /// Where in it.
-    #[label("{expected}")]
+    #[label]
     pub span: SourceSpan,
     /// How to mend it.
     #[help]

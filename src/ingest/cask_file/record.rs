@@ -1,7 +1,7 @@
 //! `[test]`, `[report]`, `[observed]` and `[limits]` to what stands around a report, and to what is held
 //! against the result.
 
-use super::section::{Placed, Section};
+use super::section::Section;
 use crate::data::keys::{LIMITS, OBSERVED};
 use crate::data::shown::bare;
 use crate::data::{Letterhead, Limit, LimitState, Observed, Photo, TestRecord};
@@ -27,18 +27,18 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
     let mut left_bytes = ALL_PHOTOS_MIB << 20;
     let photos = table.texts("photos")?.into_iter().map(|name| picture(table, name, folder, &mut left_bytes));
     Ok(TestRecord {
-        id: table.words("id")?,
-        title: table.words("title")?,
-        place: table.words("place")?,
-        operator: table.words("operator")?,
-        customer: table.words("customer")?,
-        specimen: table.words("specimen")?,
-        target: table.words("target")?,
-        remarks: table.words("remarks")?,
+        id: table.text("id")?,
+        title: table.text("title")?,
+        place: table.text("place")?,
+        operator: table.text("operator")?,
+        customer: table.text("customer")?,
+        specimen: table.text("specimen")?,
+        target: table.text("target")?,
+        remarks: table.text("remarks")?,
         date: table.date("date")?,
         temperature_c: table.given("temperature_c")?,
         photos: photos.collect::<Result<_, _>>()?,
-        signatures: table.texts("signatures")?.into_iter().map(|who| who.value).collect(),
+        signatures: table.texts("signatures")?,
         more: table.table("more")?.own_names()?,
     })
 }
@@ -46,21 +46,20 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
 /// `[report]`; its logo is looked for in `folder`, as the photographs.
 pub(super) fn letterhead(table: &Section, folder: Option<&Path>) -> Result<Letterhead, IngestError> {
     let logo = table.text("logo")?.map(|name| picture(table, name, folder, &mut (LARGEST_PHOTO_MIB << 20)));
-    Ok(Letterhead { header: table.words("header")?, footer: table.words("footer")?, logo: logo.transpose()? })
+    Ok(Letterhead { header: table.text("header")?, footer: table.text("footer")?, logo: logo.transpose()? })
 }
 
 /// A photograph or a logo, of which only the beginning is looked at; it takes its share of `left_bytes`.
 fn picture(
     table: &Section,
-    name: Placed<String>,
+    name: String,
     folder: Option<&Path>,
     left_bytes: &mut u64,
 ) -> Result<Photo, IngestError> {
-    let Placed { value: name, span } = name;
     let Some(folder) = folder else { return Ok(Photo { name, media_type: "", bytes: [].into() }) };
     let is_photo = table.row("photos").is_some();
-    let kinds = if is_photo { "PNG or JPEG" } else { "PNG, JPEG or SVG" };
-    let wrong = |what: String, mend: &str| table.wrong(span.clone(), what, kinds.into(), mend);
+    let (key, kinds) = if is_photo { ("photos", "PNG or JPEG") } else { ("logo", "PNG, JPEG or SVG") };
+    let wrong = |what: String, mend: &str| table.refuse(key, what, mend);
     let mend = "pictures stand in the folder of the cask file, by the names of their files";
     // A cask file that was sent must not carry pictures from elsewhere into a report that goes back.
     if Path::new(&name).file_name() != Some(OsStr::new(&name)) {
@@ -104,9 +103,8 @@ pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, IngestError> {
         table.value(key)?;
         let observation = || {
             let seen = table.table_as(key, "observation")?;
-            let number = |part| seen.required_number(part).map(|number| number.value);
-            let by = seen.words("by")?;
-            Ok(Observed { name: key, value: number("value")?, u95: number("u95")?, by })
+            let (value, u95) = (seen.required_number("value")?, seen.required_number("u95")?);
+            Ok(Observed { name: key, value, u95, by: seen.text("by")? })
         };
         Some(observation())
     };
@@ -122,8 +120,7 @@ pub(super) fn limits(table: &Section) -> Result<Vec<Limit>, IngestError> {
             return Ok(Limit { name, least, most, measured: None, state: LimitState::Undecided });
         }
         let message = format!("{name} has no least or most, or a least above its most");
-        let mend = format!("write it as in {}", table.example(name));
-        Err(bounds.wrong(bounds.span(), message, "least, most or both".into(), &mend))
+        Err(table.refuse(name, message, &table.form(name)))
     };
     let stated = LIMITS.iter().filter(|key| table.value(key.name).is_some());
     stated.map(|key| limit(key.name)).collect()

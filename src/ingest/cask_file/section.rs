@@ -2,7 +2,7 @@
 
 use super::fault::{THE_CASK_FILE, WrongLine};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
-use crate::data::keys::{self, FILL_IN, Key, KeyTable};
+use crate::data::keys::{self, Key, KeyTable};
 use crate::ingest::IngestError;
 use miette::NamedSource;
 use std::ops::Range;
@@ -47,13 +47,6 @@ pub(crate) struct Document<'a> {
     text: &'a str,
 }
 
-/// A value with its place in the text.
-#[derive(Debug, Clone)]
-pub(crate) struct Placed<T> {
-    pub value: T,
-    pub span: Range<usize>,
-}
-
 /// A table of the file whose keys are all known.
 pub(crate) struct Section<'a> {
     document: &'a Document<'a>,
@@ -91,7 +84,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn wrong(&self, span: Range<usize>, message: String, expected: String, mend: String) -> IngestError {
+    fn wrong(&self, span: Range<usize>, message: String, mend: String) -> IngestError {
         let start = span.start.min(self.text.len());
         let end = span.end.clamp(start, self.text.len());
         let line = line_of(self.text.as_bytes(), start);
@@ -101,7 +94,6 @@ impl<'a> Document<'a> {
             path,
             line,
             message,
-            expected,
             span: (start..end).into(),
             mend,
         })
@@ -110,6 +102,9 @@ impl<'a> Document<'a> {
 
     /// What the parser of TOML objects to, with the slips that are usual in files written by hand.
     fn syntax(&self, error: &toml::de::Error) -> IngestError {
+        const FORM: &str = "each line is `key = value` or a table's name in brackets such as [cask], each \
+                            once; words stand between two quotes, name = \"A1\", numbers have a decimal \
+                            point";
         let span = error.span().unwrap_or(0..0);
         let start = span.start.min(self.text.len());
         let from = self.text.as_bytes()[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
@@ -119,27 +114,13 @@ impl<'a> Document<'a> {
         let point = value.replace(',', ".");
         let (message, mend) = if value.contains(',') && point.parse::<f64>().is_ok() {
             (format!("{value} has a decimal comma"), format!("write a decimal point: {point}"))
-        } else if line.matches('"').count() % 2 == 1 {
-            ("a quote is missing".to_owned(), "words stand between two quotes: name = \"A1\"".to_owned())
-        } else if error.message().contains("duplicate") {
-            (
-                format!("{} stands here a second time", line.split('=').next().unwrap_or(line).trim()),
-                "delete one of the two; further channels each begin with a line [[channel]]".to_owned(),
-            )
-        } else if value.starts_with(|c: char| c.is_alphabetic() || c == '/') {
-            (format!("{value} stands without quotes"), format!("write words in quotes: \"{value}\""))
         } else if let Some((number, unit)) = number_with_unit(value) {
             (format!("{value} has a unit behind the number"), unit_mend(number, unit))
         } else {
-            let said = error.message().lines().next().unwrap_or("this is no TOML").to_owned();
-            (
-                said,
-                "each line is `key = value` or a table's name in brackets such as [cask]; words stand in \
-                    quotes, numbers have a decimal point"
-                    .to_owned(),
-            )
+            let said = error.message().lines().next().unwrap_or("this is no TOML");
+            (format!("this is not TOML: {said}"), FORM.to_owned())
         };
-        self.wrong(span, message, "this is not TOML".into(), mend)
+        self.wrong(span, message, mend)
     }
 }
 
@@ -160,19 +141,9 @@ impl<'a> Section<'a> {
         table.keys.iter().find(|row| row.name == key)
     }
 
-    /// The table as a person finds it in the file.
-    fn title(&self) -> String {
-        titled(self.name)
-    }
-
-    /// Where the section stands.
-    pub(crate) fn span(&self) -> Range<usize> {
-        self.span.clone()
-    }
-
     /// Where a key's value stands; where it is left out, its table.
-    pub(crate) fn place(&self, key: &str) -> Range<usize> {
-        self.value(key).map_or_else(|| self.span(), Spanned::span)
+    fn place(&self, key: &str) -> Range<usize> {
+        self.value(key).map_or_else(|| self.span.clone(), Spanned::span)
     }
 
     pub(crate) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
@@ -180,24 +151,22 @@ impl<'a> Section<'a> {
     }
 
     /// A diagnostic at `span`.
-    pub(crate) fn wrong(
-        &self,
-        span: Range<usize>,
-        message: String,
-        expected: String,
-        mend: &str,
-    ) -> IngestError {
-        self.document.wrong(span, message, expected, mend.to_owned())
+    fn wrong(&self, span: Range<usize>, message: String, mend: &str) -> IngestError {
+        self.document.wrong(span, message, mend.to_owned())
     }
 
-    /// The line number of a place.
-    pub(crate) fn line(&self, at: usize) -> usize {
-        line_of(self.document.text.as_bytes(), at)
+    /// The refusal of what stands behind `key`, or of the table that lacks it.
+    pub(crate) fn refuse(&self, key: &str, message: impl Into<String>, mend: &str) -> IngestError {
+        self.wrong(self.place(key), message.into(), mend)
+    }
+
+    /// The line of a key.
+    pub(crate) fn line(&self, key: &str) -> usize {
+        line_of(self.document.text.as_bytes(), self.place(key).start)
     }
 
     pub(crate) fn missing(&self, key: &str, mend: &str) -> IngestError {
-        let message = format!("{} has no {key}", self.title());
-        self.wrong(self.span(), message, format!("{key} is missing here"), mend)
+        self.refuse(key, format!("{} has no {key}", titled(self.name)), mend)
     }
 
     fn unknown_key(&self, key: &Spanned<toml::de::DeString<'a>>) -> IngestError {
@@ -211,17 +180,14 @@ impl<'a> Section<'a> {
             .filter(|table| table.keys.iter().any(|key| key.name == word))
             .map(|table| titled(table.name))
             .collect();
-        let all = known.join(", ");
-        let mend = if others.is_empty() {
-            match nearest(word, &known) {
-                Some(near) => format!("did you mean {near}? {} takes: {all}", self.title()),
-                None => format!("{} takes: {all}", self.title()),
-            }
-        } else {
-            format!("{word} belongs in {}; {} takes: {all}", others.join(" or "), self.title())
+        let (title, all) = (titled(self.name), known.join(", "));
+        let hint = match nearest(word, &known) {
+            _ if !others.is_empty() => format!("{word} belongs in {}; ", others.join(" or ")),
+            Some(near) => format!("did you mean {near}? "),
+            None => String::new(),
         };
-        let message = format!("{} knows no {what} {word}", self.title());
-        self.wrong(key.span(), message, format!("unknown {what}"), &mend)
+        let message = format!("{title} knows no {what} {word}");
+        self.wrong(key.span(), message, &format!("{hint}{title} takes: {all}"))
     }
 
     /// The table `key`; an empty one where there is none.
@@ -236,18 +202,15 @@ impl<'a> Section<'a> {
         };
         match value.get_ref() {
             DeValue::Table(table) => self.document.section(name, table.clone(), value.span()),
-            _ if name != key => Err(self.wrong(
-                value.span(),
-                format!("{key} is {}, not a table {}", described(value.get_ref()), titled(name)),
-                titled(name),
-                &format!("write it as in {}", self.example(key)),
-            )),
-            _ => Err(self.wrong(
-                value.span(),
-                format!("{key} is {}, not a table", described(value.get_ref())),
-                format!("the table [{key}]"),
-                &format!("write [{key}] once, on a line of its own, and its keys on the lines below"),
-            )),
+            found => {
+                let mend = if name == key {
+                    format!("write [{key}] once, on a line of its own, and its keys on the lines below")
+                } else {
+                    self.form(key)
+                };
+                let message = format!("{key} is {}, not a table {}", described(found), titled(name));
+                Err(self.refuse(key, message, &mend))
+            }
         }
     }
 
@@ -256,67 +219,22 @@ impl<'a> Section<'a> {
         if self.value(key).is_some() {
             return Ok(table);
         }
-        Err(self.wrong(
-            self.span(),
-            format!("{} has no [{key}]", self.document.kind.name),
-            format!("[{key}] is missing"),
-            &format!("add a line [{key}] and below it its keys: {}", table.keys().join(", ")),
-        ))
+        let message = format!("{} has no [{key}]", self.document.kind.name);
+        let mend = format!("add a line [{key}] and below it its keys: {}", table.keys().join(", "));
+        Err(self.refuse(key, message, &mend))
     }
 
     /// The tables `[[key]]`.
     pub(crate) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, IngestError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
-        let wrong = |span| {
-            self.wrong(
-                span,
-                format!("{key} is not a list of tables"),
-                format!("[[{key}]]"),
-                &format!("each {key} begins with a line [[{key}]], with two brackets"),
-            )
+        let section = |item: &Spanned<DeValue<'a>>| {
+            let table = item.get_ref().as_table()?;
+            Some(self.document.section(key, table.clone(), item.span()))
         };
-        let DeValue::Array(items) = value.get_ref() else { return Err(wrong(value.span())) };
-        items
-            .iter()
-            .map(|item| match item.get_ref() {
-                DeValue::Table(table) => self.document.section(key, table.clone(), item.span()),
-                _ => Err(wrong(item.span())),
-            })
-            .collect()
-    }
-
-    /// A finite number.
-    pub(super) fn finite(&self, key: &str) -> Result<Option<Placed<f64>>, IngestError> {
-        let Some(value) = self.value(key) else { return Ok(None) };
-        let number = match value.get_ref() {
-            DeValue::Integer(integer) if integer.radix() == 10 => {
-                integer.as_str().replace('_', "").parse().ok()
-            }
-            DeValue::Float(float) => float.as_str().replace('_', "").parse::<f64>().ok(),
-            _ => None,
-        };
-        if let Some(number) = number.filter(|number| number.is_finite()) {
-            return Ok(Some(Placed { value: number, span: value.span() }));
-        }
-        let mend = match value.get_ref() {
-            DeValue::String(text) if text == FILL_IN => return Err(self.unfilled(key, &self.example(key))),
-            DeValue::String(text) => {
-                let plain = text.trim().replace(',', ".");
-                match number_with_unit(&plain) {
-                    Some((number, unit)) => unit_mend(number, unit),
-                    None if plain.parse::<f64>().is_ok() => {
-                        format!("write it without quotes: {key} = {plain}")
-                    }
-                    None => format!("write the number only, without quotes: {key} = 1.0"),
-                }
-            }
-            DeValue::Float(float) if float.as_str().ends_with("nan") => {
-                format!("write what it is: `dropcheck init` leaves nan where only you know it, as {key}")
-            }
-            DeValue::Float(_) => "write a finite number".to_owned(),
-            _ => format!("write the number only: {key} = 1.0"),
-        };
-        let message = format!("{key} is {}, not a number", described(value.get_ref()));
-        Err(self.wrong(value.span(), message, "a number".into(), &mend))
+        let sections = value.get_ref().as_array().and_then(|items| items.iter().map(section).collect());
+        sections.unwrap_or_else(|| {
+            let mend = format!("each {key} begins with a line [[{key}]], with two brackets");
+            Err(self.refuse(key, format!("{key} is not a list of tables"), &mend))
+        })
     }
 }

@@ -16,27 +16,22 @@ pub(super) fn tolerances(
     let mut stated = Tolerances::of(left_out);
     for tolerance in &TOLERANCES {
         let key = tolerance.key;
-        let Some(given) = table.number(key)? else { continue };
-        if key.ends_with("_percent") && given.value > LARGEST_PERCENT {
-            return Err(table.wrong(
-                given.span,
-                format!("{key} is {}, more than the thing itself", given.value),
-                "0 to 100 percent".into(),
-                "the half-width of the 95 % interval, in percent: 1.5 means ± 1.5 %",
-            ));
+        let Some(given) = table.given(key)? else { continue };
+        if key.ends_with("_percent") && given > LARGEST_PERCENT {
+            let message = format!("{key} is {given}, more than the thing itself");
+            let mend = "the half-width of the 95 % interval, in percent: 1.5 means ± 1.5 %";
+            return Err(table.refuse(key, message, mend));
         }
-        tolerance.set(&mut stated, given.value, cask);
+        tolerance.set(&mut stated, given, cask);
     }
     Ok(stated)
 }
 
 /// `[corrections]`; what it leaves out is made.
 pub(super) fn corrections(table: &Section) -> Result<Corrections, IngestError> {
-    const UNQUOTED: &str = "without quotes; false leaves the samples as they are in this respect, and the \
-                            report says so";
     let mut made = Corrections::default();
     for (key, made) in made.by_key() {
-        *made = table.flag(key, UNQUOTED)?.unwrap_or(*made);
+        *made = table.flag(key)?.unwrap_or(*made);
     }
     Ok(made)
 }
@@ -77,6 +72,6 @@ mod tests {
         assert!(said("[tolerance]\nclock_percent = 101\n").contains("more than the thing itself"));
         assert!(said("[tolerance]\nclock_percent = -0.1\n").contains("line 8"));
         assert!(said("[tolerance]\nangle = 1\n").contains("angle"));
-        assert!(said("[corrections]\noffset = \"no\"\n").contains("neither true nor false"));
+        assert!(said("[corrections]\noffset = \"no\"\n").contains("not true or false"));
     }
 }

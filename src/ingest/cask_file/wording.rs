@@ -23,6 +23,7 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
 
 pub(super) fn described(value: &DeValue) -> String {
     match value {
+        DeValue::String(text) if text.trim().is_empty() => "empty".into(),
         DeValue::String(text) => format!("the text \"{text}\""),
         DeValue::Integer(number) => format!("the number {}", number.as_str()),
         DeValue::Float(number) => number.as_str().to_owned(),

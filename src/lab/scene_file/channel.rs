@@ -58,7 +58,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     let full_scale = table.given("full_scale")?;
     let coupling = coupling(table)?;
     let channel = SceneChannel {
-        name: table.required_text("name")?.value,
+        name: table.required_text("name")?,
         end,
         axis: axis(table)?.unwrap_or(Axis::Transverse),
         position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
@@ -87,7 +87,7 @@ pub(super) fn rate(table: &Section, cask: &Cask) -> Result<(RateSensor, OtherSpe
     let unit = table.word("unit", &units, "\"deg/s\" (the default) or \"rad/s\"")?.unwrap_or("deg/s");
     let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
     let sensor = RateSensor {
-        name: table.required_text("name")?.value,
+        name: table.required_text("name")?,
         position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
         unit: unit.to_owned(),
         sample_rate_hz: value(table, "sample_rate_hz")?,
@@ -106,12 +106,13 @@ fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {
 }
 
 pub(super) fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, CaskFileError> {
-    match table.number(key)? {
-        Some(at) if !(0.0..=cask.length_m).contains(&at.value) => {
-            let (what, allowed) = (format!("{key} is {}", at.value), 0.0..=cask.length_m);
-            Err(table.outside(at.span, &what, &allowed, "metres along the axis from the first end"))
+    let (at, allowed) = (table.given(key)?, 0.0..=cask.length_m);
+    match at.filter(|at| !allowed.contains(at)) {
+        None => Ok(at),
+        Some(at) => {
+            let what = format!("{key} is {at}");
+            Err(table.outside(key, &what, &allowed, "metres along the axis from the first end"))
         }
-        at => Ok(at.map(|at| at.value)),
     }
 }
 

@@ -165,7 +165,7 @@ fn every_slip_is_one_message_with_its_key() {
         ("frequency_hz = 62.0", "", &["[[mode]] has no frequency_hz"]),
         ("angle_deg = 15.0\n", "angle_deg = 0\n", &["angle_deg is 0", "0.1 to 89"]),
         ("height_m = 9.0\n", "height_m = 9000\n", &["height_m is 9000, outside 0.001 to 1000"]),
-        ("rest = true", "rest = 1", &["rest is neither true nor false"]),
+        ("rest = true", "rest = 1", &["rest is the number 1, not true or false"]),
         ("clock_error_ppm = 50", "clock_error_ppm = 1e6", &["clock_error_ppm"]),
         ("position_m = 0.2\n", "position_m = 6\n", &["position_m is 6", "0 to 5.512"]),
         ("sample_rate_hz = 1e5", "sample_rate_hz = 1", &["sample_rate_hz is 1,"]),

@@ -14,22 +14,20 @@ pub(super) fn value(table: &Section, key: &str) -> Result<f64, CaskFileError> {
 
 /// `true` or `false`; false where the key is missing.
 pub(super) fn flag(table: &Section, key: &str) -> Result<bool, CaskFileError> {
-    Ok(table.flag(key, &format!("write {key} = true, or delete the line"))?.unwrap_or(false))
+    Ok(table.flag(key)?.unwrap_or(false))
 }
 
 /// A whole number of 0 or more, within the key's range.
 pub(super) fn whole<T: std::str::FromStr>(table: &Section, key: &str) -> Result<Option<T>, CaskFileError> {
-    let Some(number) = table.number(key)? else { return Ok(None) };
-    let written = table.value(key).and_then(|value| value.get_ref().as_integer());
-    match written.and_then(|integer| integer.as_str().replace('_', "").parse().ok()) {
-        Some(whole) => Ok(Some(whole)),
-        None => Err(table.wrong(
-            number.span,
-            format!("{key} is no whole number of 0 or more"),
-            "a whole number".into(),
-            &format!("write it without point, sign and quotes: {key} = 1"),
-        )),
+    if table.given(key)?.is_none() {
+        return Ok(None);
     }
+    let written = table.value(key).and_then(|value| value.get_ref().as_integer());
+    let whole = written.and_then(|integer| integer.as_str().replace('_', "").parse().ok());
+    whole.map(Some).ok_or_else(|| {
+        let mend = format!("write it without point, sign and quotes: {key} = 1");
+        table.refuse(key, format!("{key} is no whole number of 0 or more"), &mend)
+    })
 }
 
 /// A list of `[from, to]`, in s after the first sample.
@@ -42,14 +40,10 @@ pub(super) fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, Cas
     };
     let spans: Option<Vec<_>> = spans.and_then(|spans| spans.into_iter().map(span).collect());
     spans.ok_or_else(|| {
-        table.wrong(
-            value.span(),
-            format!("{key} is no list of spans"),
-            "[[from, to], …]".into(),
-            &format!(
-                "write {key} = [[0.12, 0.14]]: from and to in s after the first sample, the later behind"
-            ),
-        )
+        let mend = format!(
+            "write {key} = [[0.12, 0.14]]: from and to in s after the first sample, the later behind"
+        );
+        table.refuse(key, format!("{key} is no list of spans"), &mend)
     })
 }
 
@@ -67,5 +61,5 @@ pub(super) fn needs(table: &Section, pairs: &[(&'static str, &str)]) -> Result<(
 /// The refusal of a key that the other keys of its table leave no meaning.
 pub(super) fn contradicts(table: &Section, key: &str, expected: &str, mend: &str) -> CaskFileError {
     let message = format!("{key} contradicts its table: {expected}");
-    table.wrong(table.place(key), message, expected.to_owned(), mend)
+    table.refuse(key, message, mend)
 }
