@@ -123,16 +123,19 @@ impl ValueType {
     /// tells: fields that differ in byte order, and references, texts and lists of varying length, which take
     /// other room in the file than in memory.
     fn fields(&self) -> Vec<RecordField> {
-        let mut fields = Vec::new();
-        if let ValueKind::Record(inner) = &self.kind
-            && self.order != Order::Mixed
-            && !self.varies()
-        {
-            let is_big_endian = self.order == Order::Highest;
-            let outer = Outer { name: b"", from: 0, depth: 0, record_bytes: self.bytes, is_big_endian };
-            outer.add(inner, &mut fields);
+        let ValueKind::Record(inner) = &self.kind else { return Vec::new() };
+        if self.order == Order::Mixed || self.varies() {
+            return Vec::new();
         }
-        fields
+        let is_big_endian = self.order == Order::Highest;
+        // A damaged type may place a field outside its record.
+        let is_within = |field: &RecordField| {
+            let bytes = field.count.checked_mul(field.number.bytes());
+            let end = bytes.and_then(|bytes| bytes.checked_add(field.from));
+            field.count > 0 && end.is_some_and(|end| end <= self.bytes)
+        };
+        let fields = numbers(inner, DEEPEST).into_iter().filter(is_within).take(MOST_FIELDS);
+        fields.map(|field| RecordField { is_big_endian, ..field }).collect()
     }
 
     fn varies(&self) -> bool {
@@ -154,38 +157,23 @@ fn number_name(number: NumberType) -> String {
     format!("{kind}{}", 8 * number.bytes())
 }
 
-/// The record, or a field of it that holds fields itself.
-struct Outer<'a> {
-    name: &'a [u8],
-    from: usize,
-    depth: usize,
-    record_bytes: usize,
-    is_big_endian: bool,
-}
-
-impl Outer<'_> {
-    fn add(&self, inner: &[TypeField], fields: &mut Vec<RecordField>) {
-        for field in inner {
-            let name = [self.name, &field.name].concat();
-            let from = self.from.saturating_add(field.from);
-            let (base, count) = match &field.held.kind {
-                ValueKind::Record(inner) if self.depth < DEEPEST => {
-                    let name = &[&name, &b"."[..]].concat();
-                    Outer { name, from, depth: self.depth + 1, ..*self }.add(inner, fields);
-                    continue;
-                }
-                ValueKind::List(base, count) => (&**base, *count),
-                _ => (&field.held, 1),
-            };
-            // A damaged type may place a field outside its record.
-            let end = count.checked_mul(base.bytes).and_then(|all| all.checked_add(from));
-            if let ValueKind::Number(number) = base.kind
-                && end.is_some_and(|end| end <= self.record_bytes)
-                && count > 0
-                && fields.len() < MOST_FIELDS
-            {
-                fields.push(RecordField { name, number, count, from, is_big_endian: self.is_big_endian });
+/// The fields of numbers among those of a record, and among those of the records in it, so many deep.
+fn numbers(fields: &[TypeField], deepest: usize) -> Vec<RecordField> {
+    let of_field = |field: &TypeField| {
+        let (base, count) = match &field.held.kind {
+            ValueKind::Record(inner) if deepest > 0 => {
+                let within = |inner: RecordField| {
+                    let name = [&field.name, &b"."[..], &inner.name].concat();
+                    RecordField { name, from: field.from.saturating_add(inner.from), ..inner }
+                };
+                return numbers(inner, deepest - 1).into_iter().map(within).collect();
             }
-        }
-    }
+            ValueKind::List(base, count) => (&**base, *count),
+            _ => (&field.held, 1),
+        };
+        let ValueKind::Number(number) = base.kind else { return Vec::new() };
+        let (name, from) = (field.name.clone(), field.from);
+        vec![RecordField { name, number, count, from, is_big_endian: false }]
+    };
+    fields.iter().flat_map(of_field).collect()
 }
