@@ -2,7 +2,6 @@
 //! has in place of the C library. What this one cannot tell it refuses.
 
 mod attributes;
-mod number;
 mod places;
 mod words;
 
@@ -20,7 +19,7 @@ use hdf5_reader::messages::filter_pipeline::FilterDescription;
 use hdf5_reader::messages::layout::DataLayout;
 use hdf5_reader::object_header::ObjectHeader;
 use hdf5_reader::{FilterRegistry, Hdf5File, OpenOptions};
-use number::{NumberIn, type_of};
+use attributes::type_of;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -232,7 +231,12 @@ impl InMemory {
         Ok(values)
     }
 
-    fn numbers(&mut self, path: &str, slab: Slab) -> Result<Numbers, Vec<Bytes>> {
+    /// The numbers of one channel among the values of a dataset.
+    fn numbers(
+        &mut self,
+        path: &str,
+        slab: Slab,
+    ) -> Result<impl Iterator<Item = f64> + use<>, Vec<Bytes>> {
         let dataset = self.file.dataset(path).map_err(words)?;
         let dtype = type_of(&dataset.raw_datatype().map_err(words)?)?;
         let sizes: Option<Vec<usize>> =
@@ -242,7 +246,7 @@ impl InMemory {
             Some([rows, columns]) => (*rows, *columns),
             _ => return Err(beyond("a dataset of more than two dimensions")),
         };
-        let number = NumberIn::of(&dtype).ok_or_else(|| beyond("values that are no numbers"))?;
+        let number = dtype.to_number().ok_or_else(|| beyond("values that are no numbers"))?;
         let (from, step, count) = match slab {
             Slab::Whole => (0, 1, rows.saturating_mul(columns)),
             Slab::Row(row) => (row.saturating_mul(columns), 1, columns),
@@ -251,10 +255,10 @@ impl InMemory {
         let values = self.values(path, slab != Slab::Whole)?;
         let [from, step] = [from, step].map(|values| values.saturating_mul(dtype.bytes));
         let last = count.saturating_sub(1).saturating_mul(step).saturating_add(from);
-        if last.saturating_add(number.bytes()) > values.len() {
+        if last.saturating_add(dtype.bytes) > values.len() {
             return Err(vec![b"the dataset has fewer values than it states".to_vec()]);
         }
-        Ok(Numbers { values, number, from, step, count })
+        Ok((0..count).map(move |i| number(&values[from + i * step..])))
     }
 }
 
@@ -281,9 +285,17 @@ impl Store for InMemory {
     }
 
     fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
-        match self.numbers(path, slab) {
-            Ok(numbers) => numbers.send(is_wide, to),
-            Err(words) => send(to, &Reply::Refused(words)),
+        let mut numbers = match self.numbers(path, slab) {
+            Ok(numbers) => numbers,
+            Err(words) => return send(to, &Reply::Refused(words)),
+        };
+        loop {
+            let next: Vec<f64> = numbers.by_ref().take(FRAME_NUMBERS).collect();
+            if next.is_empty() {
+                return Ok(());
+            }
+            let narrow = |next: Vec<f64>| Reply::Narrow(next.into_iter().map(single).collect());
+            send(to, &if is_wide { Reply::Wide(next) } else { narrow(next) })?;
         }
     }
 }
@@ -298,34 +310,6 @@ fn stored(chunk: &ChunkEntry, base: u64) -> Option<StoredChunk> {
         at: chunk.address.checked_add(base)?,
         bytes,
     })
-}
-
-/// Numbers of one channel among the values of a dataset, all within them.
-struct Numbers {
-    values: Rc<Vec<u8>>,
-    number: NumberIn,
-    /// Of the first, bytes.
-    from: usize,
-    /// From one to the next, bytes.
-    step: usize,
-    count: usize,
-}
-
-impl Numbers {
-    fn send(&self, is_wide: bool, to: &mut impl Write) -> io::Result<()> {
-        for first in (0..self.count).step_by(FRAME_NUMBERS) {
-            let places = first..self.count.min(first + FRAME_NUMBERS);
-            let numbers = places
-                .map(|i| self.number.value(&self.values[self.from + i * self.step..][..self.number.bytes()]));
-            let reply = if is_wide {
-                Reply::Wide(numbers.collect())
-            } else {
-                Reply::Narrow(numbers.map(single).collect())
-            };
-            send(to, &reply)?;
-        }
-        Ok(())
-    }
 }
 
 /// Answers on the spot, in the place of a process, what is asked.

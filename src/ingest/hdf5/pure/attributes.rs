@@ -3,9 +3,8 @@
 use super::super::answer::{AttributeValue, Bytes};
 use super::super::names;
 use super::super::tree::{MOST_BYTES, MOST_VALUES, TEXT_BYTES, joined};
-use super::super::types::ValueKind;
-use super::number::{NumberIn, type_of};
-use super::words::words;
+use super::super::types::{ValueKind, ValueType, of_message};
+use super::words::{beyond, words};
 use hdf5_reader::messages::dataspace::DataspaceType;
 use hdf5_reader::{Hdf5File, RawAttribute};
 
@@ -28,6 +27,15 @@ pub(super) fn held(
     }
     held.sort_by(|one, other| one.0.cmp(&other.0));
     Ok(held)
+}
+
+/// The type that a message states.
+pub(super) fn type_of(message: &[u8]) -> Result<ValueType, Vec<Bytes>> {
+    let dtype = of_message::of(message).ok_or_else(|| beyond("values of an unknown type"))?;
+    if matches!(dtype.kind, ValueKind::OddNumber) {
+        return Err(beyond(&format!("numbers of an unusual kind, {} bytes each", dtype.bytes)));
+    }
+    Ok(dtype)
 }
 
 /// What `count` values of the type that `message` states are; `None` where that is too much.
@@ -66,9 +74,9 @@ pub(super) fn value(
         _ => {
             // Named values are numbers, of the type that stands behind their size.
             let named = matches!(dtype.kind, ValueKind::Named).then(|| type_of(&message[8..])).transpose()?;
-            let numbers = |number: NumberIn| joined(each().map(|one| number.value(one)).collect());
-            NumberIn::of(named.as_ref().unwrap_or(&dtype))
-                .map_or(AttributeValue::Other, |number| AttributeValue::Numbers(numbers(number)))
+            named.as_ref().unwrap_or(&dtype).to_number().map_or(AttributeValue::Other, |number| {
+                AttributeValue::Numbers(joined(each().map(number).collect()))
+            })
         }
     }))
 }

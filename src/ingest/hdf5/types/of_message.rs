@@ -59,6 +59,16 @@ pub(in crate::ingest) fn of(message: &[u8]) -> Option<ValueType> {
     }
 }
 
+impl ValueType {
+    /// What turns the bytes that begin with a value into its number; `None` where values are none.
+    pub(in crate::ingest) fn to_number(&self) -> Option<impl Fn(&[u8]) -> f64 + use<>> {
+        let (number, is_big_endian) = (self.number()?, self.order == Order::Highest);
+        // Named values of a damaged type may be shorter than their numbers.
+        let value = move |stored: &[u8]| number.value(stored, is_big_endian);
+        Some(move |stored: &[u8]| stored.get(..number.bytes()).map_or(f64::NAN, value))
+    }
+}
+
 /// A record of `count` fields.
 fn record(message: &[u8], bytes: usize, count: usize) -> Option<ValueType> {
     let (version, mut at, mut fields, mut order) = (message[0] >> 4, 8, Vec::new(), Order::None);
