@@ -120,10 +120,14 @@ pub(super) fn channels(
 ) -> Result<Vec<DatasetColumn>, Refusal> {
     refuse_unread(dataset, path)?;
     let shape = shape_of(dataset, path)?;
+    // Records in rows and columns are none of channels.
+    let widest = if dataset.fields.is_empty() { most } else { 1 };
     let (place, columns, length) = match *shape {
         [length] | [length, 1] | [1, length] => (Place::Whole, 1, length),
-        [rows, length] if rows <= MOST_ROWS && length >= LONGER * rows => (Place::Row, rows, length),
-        [length, columns] if columns <= most => (Place::Column, columns, length),
+        [rows, length] if rows <= widest.min(MOST_ROWS) && length >= LONGER * rows => {
+            (Place::Row, rows, length)
+        }
+        [length, columns] if columns <= widest => (Place::Column, columns, length),
         [rows, columns] => {
             let problem = format!("has {rows} rows and {columns} columns, too many for channels");
             return Err(Refusal::of(path, problem, "save each channel as a dataset of its own"));
@@ -149,13 +153,6 @@ pub(super) fn channels(
     if dataset.fields.is_empty() {
         let number = number_of(&dataset, path)?;
         return Ok(several(path, columns, &|_| (number, place.clone())));
-    }
-    if columns > 1 {
-        return Err(Refusal::of(
-            path,
-            "holds records in rows and columns",
-            "save them as a table of one dimension, one record a sample",
-        ));
     }
     let of_field = |field: &RecordField| {
         // One number of a list, as a field of its own.
