@@ -145,41 +145,38 @@ pub(super) struct StoredChunk {
     pub bytes: usize,
 }
 
+/// Numbers of filters in the file.
+pub(super) const DEFLATE: i32 = 1;
+pub(super) const SHUFFLE: i32 = 2;
+const FLETCHER_32: i32 = 3;
+const LZF: i32 = 32_000;
+
 /// What the bytes of a chunk went through.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Filter {
-    Shuffle,
-    Deflate(u8),
-    Fletcher32,
-    Lzf,
-    /// None that is read, by its name or number.
-    Other(String),
+pub(super) struct Filter {
+    pub number: i32,
+    /// Of one that deflates, else 0.
+    pub level: u8,
 }
 
 impl Filter {
-    /// By its number in the file, and the level of one that deflates.
-    pub(super) fn of(number: i32, level: u8) -> Self {
-        match number {
-            1 => Self::Deflate(level),
-            2 => Self::Shuffle,
-            3 => Self::Fletcher32,
-            4 => Self::Other("SZIP".into()),
-            5 => Self::Other("N-bit".into()),
-            6 => Self::Other("scale-offset".into()),
-            32_000 => Self::Lzf,
-            number => Self::Other(format!("number {number}")),
-        }
+    /// Whether it is undone here or by the library.
+    pub(super) fn is_read(&self) -> bool {
+        [DEFLATE, SHUFFLE, FLETCHER_32, LZF].contains(&self.number)
     }
 }
 
 impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Shuffle => f.write_str("shuffle"),
-            Self::Deflate(level) => write!(f, "deflate({level})"),
-            Self::Fletcher32 => f.write_str("fletcher32"),
-            Self::Lzf => f.write_str("lzf"),
-            Self::Other(what) => f.write_str(what),
+        match self.number {
+            DEFLATE => write!(f, "deflate({})", self.level),
+            SHUFFLE => f.write_str("shuffle"),
+            FLETCHER_32 => f.write_str("fletcher32"),
+            4 => f.write_str("SZIP"),
+            5 => f.write_str("N-bit"),
+            6 => f.write_str("scale-offset"),
+            LZF => f.write_str("lzf"),
+            number => write!(f, "number {number}"),
         }
     }
 }
@@ -198,11 +195,12 @@ pub(super) enum Packing {
 impl Packing {
     /// `None` where only the library can unpack them.
     pub(super) fn of(filters: &[Filter]) -> Option<Self> {
-        Some(match filters {
+        let numbers: Vec<i32> = filters.iter().map(|filter| filter.number).collect();
+        Some(match numbers[..] {
             [] => Self::Plain,
-            [Filter::Deflate(_)] => Self::Deflated,
-            [Filter::Shuffle, Filter::Deflate(_)] => Self::ShuffledDeflated,
-            [Filter::Deflate(_), Filter::Shuffle] => Self::DeflatedShuffled,
+            [DEFLATE] => Self::Deflated,
+            [SHUFFLE, DEFLATE] => Self::ShuffledDeflated,
+            [DEFLATE, SHUFFLE] => Self::DeflatedShuffled,
             _ => return None,
         })
     }

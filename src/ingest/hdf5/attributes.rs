@@ -162,13 +162,9 @@ impl Attributes {
 
     /// What is done to the stored numbers, for people; empty where nothing is.
     pub(super) fn scaling(&self) -> String {
-        let (scale, offset) = (self.scale.map(|s| format!(" × {s}")), self.offset.map(|o| format!(" {o:+}")));
-        match (scale, offset) {
-            (None, None) => String::new(),
-            (scale, offset) => {
-                format!(", value = stored{}{}", scale.unwrap_or_default(), offset.unwrap_or_default())
-            }
-        }
+        let scale = self.scale.map_or_else(String::new, |scale| format!(" × {scale}"));
+        let change = self.offset.map_or(scale.clone(), |offset| format!("{scale} {offset:+}"));
+        if change.is_empty() { change } else { format!(", value = stored{change}") }
     }
 
     /// value = raw · scale + offset, NaN where raw stands for a missing sample.

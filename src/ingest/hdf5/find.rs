@@ -1,6 +1,6 @@
 //! A source as a cask file names it to the dataset, and the column, row or field of it, that it means.
 
-use super::answer::{Dataset, Filter, Object, RecordField, Storage, decoded};
+use super::answer::{Dataset, Object, RecordField, Storage, decoded};
 use super::column::{DatasetColumn, Place};
 use super::fault::{self, REPACK};
 use super::room::File;
@@ -168,10 +168,7 @@ pub(super) fn channels(
 /// What is not in the recording, or packed by what is not read. A file that was sent may name any other on
 /// this machine, and any filter.
 fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Refusal> {
-    let filter = dataset.filters.iter().find_map(|filter| match filter {
-        Filter::Other(what) => Some(what),
-        _ => None,
-    });
+    let filter = dataset.filters.iter().find(|filter| !filter.is_read());
     let (what, remedy) = match (&dataset.storage, filter) {
         (Storage::External, _) => ("the data are in another file, which is not read".to_owned(), OWN_DATA),
         (Storage::Virtual, _) => {

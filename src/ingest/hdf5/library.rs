@@ -200,7 +200,7 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
 
 fn filter(filter: &hdf5_metno::filters::Filter) -> Filter {
     let level = if let hdf5_metno::filters::Filter::Deflate(level) = filter { *level } else { 0 };
-    Filter::of(filter.id(), level)
+    Filter { number: filter.id(), level }
 }
 
 /// Where the chunks lie that this program unpacks itself; `None` where only the library can.

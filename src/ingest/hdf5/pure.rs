@@ -6,8 +6,8 @@ mod places;
 mod words;
 
 use super::answer::{
-    AttributeValue, Bytes, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Reply, Slab, Storage,
-    StoredChunk, receive, send,
+    AttributeValue, Bytes, DEFLATE, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Reply, SHUFFLE, Slab,
+    Storage, StoredChunk, receive, send,
 };
 use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
 use crate::numerics::single;
@@ -82,8 +82,9 @@ fn filters() -> FilterRegistry {
 }
 
 fn filter(filter: &FilterDescription) -> Filter {
-    let level = filter.client_data.first().map_or(0, |level| u8::try_from(*level).unwrap_or(9));
-    Filter::of(filter.id.into(), level)
+    let number = filter.id.into();
+    let level = filter.client_data.first().filter(|_| number == DEFLATE);
+    Filter { number, level: level.map_or(0, |level| u8::try_from(*level).unwrap_or(9)) }
 }
 
 /// A dataset as the library has it open.
@@ -187,7 +188,7 @@ impl InMemory {
                     dims.iter().take(shape.len()).map(|&size| (size as usize).max(1)).collect();
                 let sides = || shape.iter().zip(&chunk).map(|(&whole, &chunk)| (whole, chunk));
                 let is_cut = sides().any(|(whole, chunk)| !whole.is_multiple_of(chunk));
-                if told.filters == [Filter::Shuffle] && is_cut && chunk_indexing.is_some() {
+                if told.filters == [Filter { number: SHUFFLE, level: 0 }] && is_cut && chunk_indexing.is_some() {
                     return Err(beyond("shuffled blocks at an edge, which may be shuffled or not"));
                 }
                 let index = chunk_indexing.as_ref();
