@@ -145,6 +145,15 @@ pub(super) struct StoredChunk {
     pub bytes: usize,
 }
 
+impl StoredChunk {
+    /// With the place of its first value; `None` where filters were left out of it.
+    pub(super) fn of(place: &[u64], at: u64, bytes: u64, filter_mask: u32) -> Option<Self> {
+        let along = |i: usize| usize::try_from(place.get(i).copied().unwrap_or(0)).ok();
+        let bytes = usize::try_from(bytes).ok().filter(|_| filter_mask == 0)?;
+        Some(Self { row: along(0)?, column: along(1)?, at, bytes })
+    }
+}
+
 /// Numbers of filters in the file.
 pub(super) const DEFLATE: i32 = 1;
 pub(super) const SHUFFLE: i32 = 2;

@@ -210,13 +210,9 @@ fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Store
     }
     let (mut chunks, mut is_whole) = (Vec::new(), true);
     let visited = dataset.chunks_visit(|chunk| {
-        let place = |i: usize| chunk.offset.get(i).map_or(Some(0), |&n| usize::try_from(n).ok());
-        match (place(0), place(1), usize::try_from(chunk.size)) {
-            (Some(row), Some(column), Ok(bytes)) if chunk.filter_mask == 0 && chunks.len() < MOST_CHUNKS => {
-                chunks.push(StoredChunk { row, column, at: chunk.addr, bytes });
-            }
-            _ => is_whole = false,
-        }
+        let stored = StoredChunk::of(chunk.offset, chunk.addr, chunk.size, chunk.filter_mask);
+        is_whole &= stored.is_some() && chunks.len() < MOST_CHUNKS;
+        chunks.extend(stored.filter(|_| is_whole));
         0
     });
     (visited.is_ok() && is_whole).then_some(chunks)

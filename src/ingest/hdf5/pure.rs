@@ -11,6 +11,7 @@ use super::answer::{
 };
 use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
 use crate::numerics::single;
+use attributes::type_of;
 use hdf5_reader::chunk_index::ChunkEntry;
 use hdf5_reader::error::Error;
 use hdf5_reader::messages::HdfMessage;
@@ -19,7 +20,6 @@ use hdf5_reader::messages::filter_pipeline::FilterDescription;
 use hdf5_reader::messages::layout::DataLayout;
 use hdf5_reader::object_header::ObjectHeader;
 use hdf5_reader::{FilterRegistry, Hdf5File, OpenOptions};
-use attributes::type_of;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -87,19 +87,10 @@ fn filter(filter: &FilterDescription) -> Filter {
     Filter { number, level: level.map_or(0, |level| u8::try_from(*level).unwrap_or(9)) }
 }
 
-/// A dataset as the library has it open.
-struct OpenDataset {
-    dataset: hdf5_reader::Dataset,
-    /// Whether the library fills what was never written with an attribute, which the C library does not.
-    is_filled_otherwise: bool,
-}
-
-impl OpenDataset {
-    /// Of so many values along each side, in the file: text of varying length takes other room in memory.
-    fn bytes_of(&self, sizes: &[usize]) -> Result<u64, Vec<Bytes>> {
-        let value_bytes = self.dataset.raw_element_size().map_err(words)? as u64;
-        Ok(sizes.iter().fold(value_bytes, |all, &size| all.saturating_mul(size as u64)))
-    }
+/// Of so many values along each side, in the file: text of varying length takes other room in memory.
+fn bytes_of(dataset: &hdf5_reader::Dataset, sizes: &[usize]) -> Result<u64, Vec<Bytes>> {
+    let value_bytes = dataset.raw_element_size().map_err(words)? as u64;
+    Ok(sizes.iter().fold(value_bytes, |all, &size| all.saturating_mul(size as u64)))
 }
 
 impl InMemory {
@@ -158,10 +149,11 @@ impl InMemory {
         }
         let raw = dataset.raw_attributes().map_err(words)?;
         told.attributes = attributes::held(&self.file, &raw)?;
+        // The library fills what was never written with it, which the C library does not.
         let is_filled_otherwise =
             fill.is_none() && raw.iter().any(|attribute| attribute.name() == "_FillValue");
         let layout = layout.ok_or_else(|| beyond("a dataset without a layout"))?;
-        self.place(&mut told, layout, &OpenDataset { dataset, is_filled_otherwise })?;
+        self.place(&mut told, layout, &dataset, is_filled_otherwise)?;
         Ok(told)
     }
 
@@ -170,7 +162,8 @@ impl InMemory {
         &self,
         told: &mut Dataset,
         layout: &DataLayout,
-        dataset: &OpenDataset,
+        dataset: &hdf5_reader::Dataset,
+        is_filled_otherwise: bool,
     ) -> Result<(), Vec<Bytes>> {
         match layout {
             DataLayout::Compact { data } => {
@@ -179,7 +172,7 @@ impl InMemory {
             DataLayout::Contiguous { address: u64::MAX, .. } => told.storage = Storage::Contiguous(None),
             DataLayout::Contiguous { address, .. } => {
                 let at = address.saturating_add(self.file.superblock().base_address);
-                told.stored_bytes = dataset.bytes_of(told.shape.as_deref().unwrap_or(&[]))?;
+                told.stored_bytes = bytes_of(dataset, told.shape.as_deref().unwrap_or(&[]))?;
                 told.storage = Storage::Contiguous(Some(at));
             }
             DataLayout::Chunked { address, dims, chunk_indexing, .. } => {
@@ -188,19 +181,19 @@ impl InMemory {
                     dims.iter().take(shape.len()).map(|&size| (size as usize).max(1)).collect();
                 let sides = || shape.iter().zip(&chunk).map(|(&whole, &chunk)| (whole, chunk));
                 let is_cut = sides().any(|(whole, chunk)| !whole.is_multiple_of(chunk));
-                if told.filters == [Filter { number: SHUFFLE, level: 0 }] && is_cut && chunk_indexing.is_some() {
+                let is_shuffled = told.filters == [Filter { number: SHUFFLE, level: 0 }];
+                if is_shuffled && is_cut && chunk_indexing.is_some() {
                     return Err(beyond("shuffled blocks at an edge, which may be shuffled or not"));
                 }
                 let index = chunk_indexing.as_ref();
-                let mut chunks =
-                    places::chunks(&self.file, &dataset.dataset, *address, index).map_err(words)?;
+                let mut chunks = places::chunks(&self.file, dataset, *address, index).map_err(words)?;
                 let count =
                     sides().fold(1_usize, |all, (whole, chunk)| all.saturating_mul(whole.div_ceil(chunk)));
-                if dataset.is_filled_otherwise && chunks.len() < count {
+                if is_filled_otherwise && chunks.len() < count {
                     return Err(beyond("blocks that were never written beside an attribute _FillValue"));
                 }
                 if told.filters.is_empty() {
-                    let bytes = dataset.bytes_of(&chunk)?;
+                    let bytes = bytes_of(dataset, &chunk)?;
                     for chunk in &mut chunks {
                         chunk.size = bytes;
                     }
@@ -209,7 +202,11 @@ impl InMemory {
                 let is_told =
                     Packing::of(&told.filters).is_some() && chunk.len() <= 2 && chunks.len() <= MOST_CHUNKS;
                 let base = self.file.superblock().base_address;
-                let stored = || chunks.iter().map(|chunk| stored(chunk, base)).collect();
+                let stored = |chunk: &ChunkEntry| {
+                    let at = chunk.address.checked_add(base)?;
+                    StoredChunk::of(&chunk.offsets, at, chunk.size, chunk.filter_mask)
+                };
+                let stored = || chunks.iter().map(stored).collect();
                 told.storage = Storage::Chunked { shape: chunk, chunks: is_told.then(stored).flatten() };
             }
         }
@@ -233,11 +230,7 @@ impl InMemory {
     }
 
     /// The numbers of one channel among the values of a dataset.
-    fn numbers(
-        &mut self,
-        path: &str,
-        slab: Slab,
-    ) -> Result<impl Iterator<Item = f64> + use<>, Vec<Bytes>> {
+    fn numbers(&mut self, path: &str, slab: Slab) -> Result<impl Iterator<Item = f64> + use<>, Vec<Bytes>> {
         let dataset = self.file.dataset(path).map_err(words)?;
         let dtype = type_of(&dataset.raw_datatype().map_err(words)?)?;
         let sizes: Option<Vec<usize>> =
@@ -299,18 +292,6 @@ impl Store for InMemory {
             send(to, &if is_wide { Reply::Wide(next) } else { narrow(next) })?;
         }
     }
-}
-
-/// A chunk in a file that begins so many bytes behind its first; `None` where filters were left out.
-fn stored(chunk: &ChunkEntry, base: u64) -> Option<StoredChunk> {
-    let place = |i: usize| chunk.offsets.get(i).map_or(Some(0), |&n| usize::try_from(n).ok());
-    let bytes = usize::try_from(chunk.size).ok()?;
-    (chunk.filter_mask == 0).then_some(StoredChunk {
-        row: place(0)?,
-        column: place(1)?,
-        at: chunk.address.checked_add(base)?,
-        bytes,
-    })
 }
 
 /// Answers on the spot, in the place of a process, what is asked.
