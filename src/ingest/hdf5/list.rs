@@ -29,6 +29,9 @@ const MOST_VALUES: u64 = 1 << 30;
 const UNGUARDED: &str = ", which this system keeps from no other file or call: read files of strangers \
                          elsewhere (docs/dependencies.md)";
 
+/// What links are to what is not there or not followed; they stand behind the channels.
+const BROKEN: &str = "link";
+
 /// A list as it grows, and what it may still cost.
 struct Lister {
     limits: Limits,
@@ -37,8 +40,6 @@ struct Lister {
     /// What is said of the starts of channels that have a clock.
     starts: Vec<(String, Start)>,
     listing: Listing,
-    /// Links to what is not there or not followed; they stand behind the channels.
-    broken: Vec<ListedChannel>,
 }
 
 /// Lists what an HDF5 file holds.
@@ -65,8 +66,8 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     };
     // No number takes fewer than four bytes once it is unpacked and turned.
     let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
-    let (clocks, starts, broken) = (Clocks::default(), Vec::new(), Vec::new());
-    let mut lister = Lister { limits: file.limits, values_left, clocks, starts, listing, broken };
+    let (clocks, starts) = (Clocks::default(), Vec::new());
+    let mut lister = Lister { limits: file.limits, values_left, clocks, starts, listing };
     let objects = file.walk();
     for (number, (path, object)) in objects.iter().enumerate() {
         lister.add(file, path, object);
@@ -75,8 +76,8 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     if let Err(fault) = starts::require_common(&lister.starts) {
         lister.listing.issues.push(ClockFinding::Refused(fault.beside("")).into());
     }
-    let Lister { mut listing, broken, .. } = lister;
-    listing.channels.extend(broken);
+    let mut listing = lister.listing;
+    listing.channels.sort_by_key(|listed| listed.kind == BROKEN);
     count_from_first(&mut listing);
     listing
 }
@@ -91,6 +92,10 @@ fn count_from_first(Listing { channels, issues, .. }: &mut Listing) {
 
 impl Lister {
     fn add(&mut self, file: &Rc<File>, path: &str, object: &Object) {
+        let unread = |kind, reason: &str| ListedChannel {
+            unreadable: Some(reason.to_owned()),
+            ..ListedChannel::named(path, kind)
+        };
         match object {
             Object::Group { .. } => self.count("groups"),
             Object::Dataset(dataset) => {
@@ -102,26 +107,19 @@ impl Lister {
                     Ok(channels) => channels.iter().for_each(|column| self.list(column)),
                     Err(fault) => self.listing.channels.push(ListedChannel {
                         encoding: dataset.described(),
-                        unreadable: Some(why_unreadable(fault)),
-                        ..ListedChannel::named(path, "dataset")
+                        ..unread("dataset", &why_unreadable(fault))
                     }),
                 }
             }
             Object::NamedType | Object::Nothing => {}
-            Object::NotFollowed(what) => self.list_broken(path, what),
+            Object::NotFollowed(what) => self.listing.channels.push(unread(BROKEN, what)),
             Object::Broken(words) => {
                 const NOTHING: &str = "a link to what is not there, or what the HDF5 library cannot open";
-                self.list_broken(
-                    path,
-                    fault::meaning(words).as_ref().map_or(NOTHING, |fault| &fault.problem),
-                );
+                let meaning = fault::meaning(words);
+                let reason = meaning.as_ref().map_or(NOTHING, |fault| &fault.problem);
+                self.listing.channels.push(unread(BROKEN, reason));
             }
         }
-    }
-
-    fn list_broken(&mut self, path: &str, reason: &str) {
-        let unreadable = Some(reason.to_owned());
-        self.broken.push(ListedChannel { unreadable, ..ListedChannel::named(path, "link") });
     }
 
     fn count(&mut self, counted: &str) {

@@ -131,21 +131,19 @@ impl File {
         is_wide: bool,
     ) -> Result<Samples, Refusal> {
         self.ask(&Query::Read { path: path.to_owned(), is_wide, slab });
-        let (mut narrow, mut wide) = (Vec::new(), Vec::new());
+        let mut samples = if is_wide { Samples::F64(Vec::new()) } else { Samples::F32(Vec::new()) };
         while self.lost.get().is_none() {
             self.link.borrow().wait_for(count.saturating_mul(8) as u64);
             let answer = self.link.borrow_mut().answer();
-            match answer {
-                Ok((Reply::Narrow(more), _)) if more.len() <= count - narrow.len() => narrow.extend(more),
-                Ok((Reply::Wide(more), _)) if more.len() <= count - wide.len() => wide.extend(more),
-                Ok((Reply::Refused(words), _)) => {
+            let left = count - samples.len();
+            match (answer.map(|(answer, _)| answer), &mut samples) {
+                (Ok(Reply::Narrow(more)), Samples::F32(held)) if more.len() <= left => held.extend(more),
+                (Ok(Reply::Wide(more)), Samples::F64(held)) if more.len() <= left => held.extend(more),
+                (Ok(Reply::Refused(words)), _) => {
                     self.note();
                     return Err(fault::of_words(&words).at(path));
                 }
-                Ok((Reply::Done, _)) if is_wide && wide.len() == count => return Ok(Samples::F64(wide)),
-                Ok((Reply::Done, _)) if !is_wide && narrow.len() == count => {
-                    return Ok(Samples::F32(narrow));
-                }
+                (Ok(Reply::Done), _) if left == 0 => return Ok(samples),
                 _ => {
                     self.lose();
                 }
