@@ -20,7 +20,6 @@ use super::shown::bare;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
-use fault::THE_CASK_FILE;
 pub use fault::WrongLine;
 pub use overrides::{key_of_column, with_columns};
 use section::{CASK_FILE, Document, Kind, Section};
@@ -82,11 +81,8 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), In
     if !cask_file.channels.is_empty() {
         return Ok(());
     }
-    let problem = if cask_file.others.is_empty() {
-        "the cask file has no [[channel]], so that no sensor can be found in the recording"
-    } else {
-        "the cask file has no [[channel]] of an accelerometer, for each has end = \"none\" or axis = \"rate\""
-    };
+    let problem = "the cask file has no [[channel]] of an accelerometer, with end = \"first\" or \"second\", so \
+                   that none can be found in the recording";
     let mend = format!(
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \
          the accelerometers",
@@ -106,27 +102,18 @@ pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, IngestError> {
 }
 
 fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, IngestError> {
-    let option = if name == THE_CASK_FILE { " after --cask" } else { "" };
     bytes_of(path, most_mib).map_err(|refusal| {
-        let mend = format!("check the name{option}, and that you may read it");
-        no_cask_file(path, &format!("{name} cannot be read: {}", bare(&refusal)), &mend)
+        let problem = format!("{name} cannot be read: {}", bare(&refusal));
+        no_cask_file(path, &problem, "check the name, and that you may read it")
     })
-}
-
-/// Where the TOML file stands on the command line.
-fn order(kind: &Kind) -> &'static str {
-    if kind.name == CASK_FILE.name {
-        "the recording comes first, the TOML file after --cask"
-    } else {
-        "name the TOML file of the scene"
-    }
 }
 
 /// The text, without a byte-order mark.
 pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, IngestError> {
     if bytes.starts_with(b"\x89HDF") || bytes.starts_with(b"\x89MCAP") {
         let problem = format!("this is a recording, not {}", kind.name);
-        return Err(no_cask_file(path, &problem, order(kind)));
+        let mend = "name the TOML file here; a recording comes first, its cask file after --cask";
+        return Err(no_cask_file(path, &problem, mend));
     }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -139,11 +126,8 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
         )
     })?;
     if text.trim().is_empty() {
-        let mend = if kind.name == CASK_FILE.name {
-            "`dropcheck init RECORDING` writes one to fill in"
-        } else {
-            "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg"
-        };
+        let mend = "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg; `dropcheck \
+                    init RECORDING` writes a cask file to fill in";
         return Err(no_cask_file(path, &format!("{} is empty", kind.name), mend));
     }
     Ok(text)
@@ -229,9 +213,7 @@ fn filter(table: &Section) -> Result<FilterChoice, IngestError> {
     const MEND: &str = "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete \
                         the other line";
     match (table.given("cfc")?, table.given("cutoff_hz")?) {
-        (Some(_), Some(_)) => {
-            Err(table.refuse("cutoff_hz", "[filter] gives both cfc and cutoff_hz", MEND))
-        }
+        (Some(_), Some(_)) => Err(table.refuse("cutoff_hz", "[filter] gives both cfc and cutoff_hz", MEND)),
         (Some(class), None) => Ok(FilterChoice::Cfc(class)),
         (None, Some(cutoff_hz)) => Ok(FilterChoice::CutoffHz(cutoff_hz)),
         (None, None) => Ok(FilterChoice::Auto),

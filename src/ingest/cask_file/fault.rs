@@ -2,9 +2,6 @@
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
-/// What a cask file is called in a message.
-pub(crate) const THE_CASK_FILE: &str = "the cask file";
-
 /// A line of a cask file that is wrong, with its place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{path}, line {line}: {message}")]

@@ -1,6 +1,6 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
-use super::fault::{THE_CASK_FILE, WrongLine};
+use super::fault::WrongLine;
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use crate::data::keys::{self, Key, KeyTable};
 use crate::ingest::IngestError;
@@ -19,7 +19,7 @@ pub(crate) struct Kind {
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind { name: THE_CASK_FILE, root: &[], tables: &keys::TABLES };
+pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[], tables: &keys::TABLES };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
