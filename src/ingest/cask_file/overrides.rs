@@ -56,7 +56,6 @@ pub fn with_columns(path: &Path, columns: &[(String, String)]) -> Result<CaskFil
 
 fn set(document: &mut DocumentMut, column: &str, words: &str) -> Result<(), String> {
     let Some(key) = key_of_column(column)? else { return Ok(()) };
-    let value = value(key, column, words)?;
     let (table, name) = column.split_once('.').unwrap_or_default();
     let place: Option<&mut dyn TableLike> = if table == "channel" {
         let channel = name.rsplit_once('.').map_or("", |(channel, _)| channel);
@@ -68,34 +67,26 @@ fn set(document: &mut DocumentMut, column: &str, words: &str) -> Result<(), Stri
         document.entry(table).or_insert_with(toml_edit::table).as_table_like_mut()
     };
     let place = place.ok_or_else(|| format!("{column}: {table} is no table there"))?;
-    place.insert(key.name, Item::Value(value));
+    place.insert(key.name, Item::Value(value(key, words.trim())));
     Ok(())
 }
 
-/// A cell as the value that its key takes.
-fn value(key: &Key, column: &str, words: &str) -> Result<Value, String> {
-    let words = words.trim();
+/// A cell as the value that its key takes, where it can be; else a text, which is refused as that of a file.
+fn value(key: &Key, words: &str) -> Value {
     #[allow(clippy::cast_possible_truncation, reason = "whole and small, tested before")]
     let number = || {
         let number: f64 = words.replace(',', ".").parse().ok()?;
         let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
         Some(if is_whole { Value::from(number as i64) } else { Value::from(number) })
     };
-    let wrong = |what: &str| format!("{column} is \"{words}\", and it takes {what}");
-    match key.takes {
-        Takes::Text => Ok(Value::from(words)),
-        Takes::TextOrTable => {
-            Ok(words.parse().ok().filter(Value::is_inline_table).unwrap_or_else(|| words.into()))
-        }
-        Takes::TextOrNumber => Ok(number().unwrap_or_else(|| words.into())),
-        Takes::Number(_) => number().ok_or_else(|| wrong("a number")),
-        Takes::Flag => {
-            words.to_lowercase().parse::<bool>().map(Value::from).map_err(|_| wrong("true or false"))
-        }
-        Takes::Date | Takes::Texts | Takes::Table | Takes::Observation => {
-            words.parse().map_err(|_| wrong("what stands behind the key in a cask file"))
-        }
-    }
+    let value = match key.takes {
+        Takes::Text => None,
+        Takes::TextOrTable => words.parse().ok().filter(Value::is_inline_table),
+        Takes::TextOrNumber | Takes::Number(_) => number(),
+        Takes::Flag => words.to_lowercase().parse::<bool>().ok().map(Value::from),
+        Takes::Date | Takes::Texts | Takes::Table | Takes::Observation => words.parse().ok(),
+    };
+    value.unwrap_or_else(|| words.into())
 }
 
 #[cfg(test)]
@@ -134,7 +125,7 @@ mod tests {
     #[test]
     fn what_cannot_be_is_said_with_its_column() {
         for (column, words, part) in [
-            ("drop.angle_deg", "steep", "takes a number"),
+            ("drop.angle_deg", "steep", "angle_deg is the text \"steep\", not a number"),
             ("drop.angle_deg", "95", "95"),
             ("drop.angel_deg", "5", "did you mean drop.angle_deg?"),
             ("channel.B9.polarity", "1", "no [[channel]] with name = \"B9\""),
