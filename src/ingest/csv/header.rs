@@ -78,7 +78,8 @@ pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> O
 }
 
 /// Why the line that looks most like a header is none.
-pub(super) fn unfit(above: &[Line], delimiter: Delimiter, columns: usize) -> Option<String> {
+pub(super) fn unfit(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Option<String> {
+    let columns = judged.columns;
     let filled = above.iter().enumerate().rev().filter(|(_, line)| !line.text.trim().is_empty());
     let mut named = filled.take(MOST_LINES).map(|(at, line)| (at, header_cells(&line.text, delimiter)));
     let (at, cells) = named.find(|(_, cells)| cells.len() > 1 && is_names(cells, columns))?;

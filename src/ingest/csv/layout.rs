@@ -17,8 +17,8 @@ pub(super) struct Layout {
     pub columns: Vec<TableColumn>,
     /// Line of the header, from 1; 0 without one.
     pub header_line: u64,
-    /// Why a line that looks like a header is none.
-    pub unfit: Option<String>,
+    /// Why a line that looks like a header is none, in brackets; empty without such a line.
+    pub unfit: String,
     /// Lines before the header (or the rows).
     pub preamble_lines: u64,
     /// Line of the first row, from 1.
@@ -76,14 +76,12 @@ impl Layout {
         );
         let is_time = |column| times.taken == Some(column) || times.sure.contains(&column);
         let sensors = sensors::find(&columns, is_time, &rows);
+        let unfit = if header.is_some() { None } else { header::unfit(&lines[..first], delimiter, &judged) };
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
         Some(Self {
             dialect,
-            unfit: header
-                .is_none()
-                .then(|| header::unfit(&lines[..first], delimiter, judged.columns))
-                .flatten(),
+            unfit: unfit.map_or_else(String::new, |unfit| format!(" ({unfit})")),
             header_line: header.as_ref().map_or(0, |header| header.line as u64 + 1),
             preamble_lines: above as u64,
             data_line: first as u64 + 1,

@@ -315,8 +315,7 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
     let header = if layout.header_line > 0 {
         format!("line {}", layout.header_line)
     } else {
-        let unfit = layout.unfit.as_ref().map_or(String::new(), |unfit| format!(" ({unfit})"));
-        format!("none: columns count 1, 2, …{unfit}")
+        format!("none: columns count 1, 2, …{}", layout.unfit)
     };
     let time = layout
         .times

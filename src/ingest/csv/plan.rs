@@ -88,11 +88,11 @@ fn find(path: &Path, wanted: &str, layout: &Layout) -> Result<usize, Refusal> {
             if layout.header_line > 0 {
                 format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
             } else {
-                let unfit = layout.unfit.as_ref().map_or(String::new(), |unfit| format!(" ({unfit})"));
                 format!(
-                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows \
-                     have{unfit}; its columns count 1, 2, …",
-                    layout.columns.len()
+                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have{}; \
+                     its columns count 1, 2, …",
+                    layout.columns.len(),
+                    layout.unfit
                 )
             },
             error::near_names(path, wanted, "column", &layout.names()),

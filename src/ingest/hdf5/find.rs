@@ -170,16 +170,12 @@ pub(super) fn channels(
 fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Refusal> {
     let filter = dataset.filters.iter().find(|filter| !filter.is_read());
     let (what, remedy) = match (&dataset.storage, filter) {
-        (Storage::External, _) => ("the data are in another file, which is not read".to_owned(), OWN_DATA),
-        (Storage::Virtual, _) => {
-            ("it is put together from other datasets, which is not read".into(), OWN_DATA)
-        }
-        (_, Some(filter)) => {
-            (format!("its data are packed by the filter {filter}, which is not read"), REPACK)
-        }
+        (Storage::External, _) => ("the data are in another file".to_owned(), OWN_DATA),
+        (Storage::Virtual, _) => ("it is put together from other datasets".to_owned(), OWN_DATA),
+        (_, Some(filter)) => (format!("its data are packed by the filter {filter}"), REPACK),
         _ => return Ok(()),
     };
-    Err(Refusal::new(what, remedy).at(name))
+    Err(Refusal::new(format!("{what}, which is not read"), remedy).at(name))
 }
 
 const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack IN OUT` makes one";
