@@ -5,8 +5,8 @@
 //! over as bytes: the other process may have been taken over by the file, so nothing in an answer is believed
 //! before [`Dataset::is_sane`] and the reader held it against the file.
 
+use crate::ingest::lines;
 use crate::ingest::number_type::NumberType;
-use encoding_rs::WINDOWS_1252;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Error, ErrorKind, Read, Write};
@@ -21,8 +21,7 @@ pub(super) type Bytes = Vec<u8>;
 
 /// Text of a file in UTF-8, else in Windows-1252, which loggers on Windows write whatever the file says.
 pub(super) fn decoded(bytes: &[u8]) -> String {
-    std::str::from_utf8(bytes)
-        .map_or_else(|_| WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned(), ToOwned::to_owned)
+    lines::text(bytes).into_owned()
 }
 
 /// What is asked.
