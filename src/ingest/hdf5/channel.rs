@@ -166,8 +166,6 @@ impl DatasetChannel {
 /// What a cask file names; a bare name is looked for beside the samples first, in their own records before
 /// all.
 fn named_beside(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Refusal> {
-    let records = column.is_field().then(|| format!("{}.{name}", column.path));
-    let mut beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
-    let found = beside.find_map(|source| find::find(&column.file, &source).ok()?);
+    let found = clocks::places(column).find_map(|place| find::find(&column.file, &(place + name)).ok()?);
     found.filter(|_| !name.starts_with('/')).map_or_else(|| find::locate(&column.file, name), Ok)
 }

@@ -54,7 +54,7 @@ impl Clocks {
 }
 
 /// Where what is beside a channel stands: in the same records, and in its group.
-fn places(column: &DatasetColumn) -> impl Iterator<Item = String> {
+pub(super) fn places(column: &DatasetColumn) -> impl Iterator<Item = String> {
     let records = column.is_field().then(|| format!("{}.", column.path));
     records.into_iter().chain([format!("{}/", column.group())])
 }

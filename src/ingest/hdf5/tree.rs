@@ -136,7 +136,9 @@ impl<S: Store> Tree<S> {
         }
         match self.store.object(path) {
             Ok(Object::Group { attributes, .. }) => {
-                Object::Group { attributes, times: self.times_in(&group) }
+                let is_beside = |name: &&String| names::is_time(name) || names::is_sensor(name);
+                let times = self.members(&group).keys().filter(is_beside).cloned().collect();
+                Object::Group { attributes, times }
             }
             Ok(Object::Dataset(mut told)) => {
                 let is_class = |(name, _): &&(String, AttributeValue)| name == names::MATLAB_CLASS;
@@ -178,14 +180,6 @@ impl<S: Store> Tree<S> {
             }
         }
         object
-    }
-
-    fn times_in(&mut self, group: &str) -> Vec<String> {
-        self.members(group)
-            .keys()
-            .filter(|name| names::is_time(name) || names::is_sensor(name))
-            .cloned()
-            .collect()
     }
 
     /// The members of a group, named by its path without a slash at its end.
