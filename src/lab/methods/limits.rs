@@ -1,7 +1,7 @@
 //! What was measured to what is accepted: each limit of the table beside what was found.
 
-use super::points::ALL_CLASSES;
 use super::references::{FINITE_ELEMENTS, OWN, References, built_in};
+use super::ways::ALL_CLASSES;
 use crate::data::Verdict;
 use crate::lab::campaign::{half_widths_off, is_missed};
 use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};

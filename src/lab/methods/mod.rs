@@ -1,16 +1,13 @@
 //! Whole ways of working and damages that grow to what is accepted: speed, accuracy, failure.
 
-mod drops;
 mod limits;
 mod map;
-mod points;
 mod references;
 mod ways;
 
 pub use limits::limits;
-pub use points::{ALL_CLASSES, READING};
 pub use references::References;
-pub use ways::{WAYS, points as ways};
+pub use ways::{ALL_CLASSES, READING, WAYS, points as ways};
 
 use crate::ingest::Progress;
 use crate::lab::campaign;

@@ -1,20 +1,66 @@
 //! Recordings in files to points of how far off each way of working with them is, timed whole from file to
 //! answer.
 
-use super::drops::{CALM, DropClass, NOISY, ONE_MODE, SLOW_MODE, conditioned};
-use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
 use crate::analysis::flight_search::{self, Patience};
-use crate::analysis::{analyze, sticking};
-use crate::data::{CaskFile, Events, ReconstructionRung, Recording};
+use crate::analysis::{self, analyze, sticking};
+use crate::data::{
+    CaskFile, CoarseEvent, Estimate, Events, ReconstructionRung, Recording, STANDARD_GRAVITY_M_S2, Signal,
+};
+use crate::lab::chance::Chance;
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};
+use crate::lab::drawn::{BUILDS, DropPlan};
 use crate::lab::report::{SyntheticFormat, synthetic_files};
 use crate::motion::{self, Integrated};
-use crate::{analysis, events, ingest};
+use crate::numerics::{as_f64, robust};
+use crate::{condition, events, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
+
+/// Drops that have one difficulty in common.
+#[derive(Clone, Copy)]
+struct DropClass {
+    name: &'static str,
+    /// What makes a sound drop one of the class, with its flight, s, and a number between 0 and 1.
+    make: fn(&mut DropPlan, f64, f64),
+}
+
+/// Nothing rings.
+const CALM: DropClass = DropClass { name: "calm", make: |_, _, _| {} };
+const NOISY: DropClass = DropClass {
+    name: "5 g of noise",
+    make: |plan, _, _| plan.chain.white_noise_m_s2 = 5.0 * STANDARD_GRAVITY_M_S2,
+};
+const ONE_MODE: DropClass = DropClass {
+    name: "one mode, 2 to 5 periods",
+    make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (2.0 + 3.0 * share) / flight_s)],
+};
+const SLOW_MODE: DropClass = DropClass {
+    name: "slow mode, 0.7 to 1.2 periods",
+    make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (0.7 + 0.5 * share) / flight_s)],
+};
+
+impl DropClass {
+    /// The drops of the class; the same class and seed give the same.
+    fn plans(&self, count: u64, request: &TrialRequest) -> Vec<DropPlan> {
+        let plan = |number: u64| {
+            let mut chance = Chance::new(request.seed, number);
+            let build = BUILDS[usize::try_from(number).unwrap_or(0) % BUILDS.len()];
+            let (angle_deg, k) = (chance.even(8.0, 22.0), chance.even(0.2, 0.7));
+            let mut plan = DropPlan::of(build, angle_deg, k, request.seed + number);
+            plan.pulse_s = chance.even(3e-3, 8e-3);
+            // Not on the same place of the first sample's interval every time.
+            plan.before_s += chance.even(0.0, 1e-3);
+            let sound_s = plan.flight_s();
+            (self.make)(&mut plan, sound_s, chance.even(0.0, 1.0));
+            plan
+        };
+        (0..count).into_par_iter().map(plan).collect()
+    }
+}
 
 /// Drops of one kind, and what is wrong with them: a row of the table of damages, and its size.
 type WayClass = (DropClass, Option<(&'static str, f64)>);
@@ -39,10 +85,21 @@ const BEFORE_S: f64 = 0.4;
 
 /// A drop as its files hold it.
 struct FiledDrop {
-    known: KnownDrop,
+    class: &'static str,
+    /// Speed and k.
+    truth: [Option<f64>; 2],
     recording: PathBuf,
     cask: PathBuf,
 }
+
+/// Speed, m/s, and k, as a way says them of a drop.
+type Answer = [Option<Estimate>; 2];
+
+/// The families of what is worked from file to answer.
+pub const WAYS: [&str; 2] = ["speed, from file to answer", "k, from file to answer"];
+
+/// Of what the error of each is a share, or its unit, and how much a verdict needs.
+const NEEDED: [(&str, f64); 2] = [("% of the slap-down speed", 1.0), ("1", 0.01)];
 
 /// From a recording to what a way says of it.
 type Working = fn(&Recording, &CaskFile) -> Option<Answer>;
@@ -52,10 +109,22 @@ const TAKEN: &str = "dropcheck, as taken";
 
 /// Ways of working with a recording that is read.
 const WORKINGS: [(&str, Working); 3] = [
-    (TAKEN, |recording, file| Some(Answer::of(&analyze(recording, file).result))),
+    (TAKEN, |recording, file| {
+        let result = analyze(recording, file).result;
+        Some([result.slap_down.speed, result.k])
+    }),
     ("planar alone", |recording, file| alone(ReconstructionRung::Planar, recording, file)),
     ("flight alone", |recording, file| alone(ReconstructionRung::Flight, recording, file)),
 ];
+
+/// The conditioned channels of a recording about the first impact, and where that lies; none without an
+/// impact.
+fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, CoarseEvent)> {
+    let coarse = events::Changes::of(&recording.channels).locate(file.drop.transverse_velocity_m_s())?;
+    let reach = condition::Reach::of(&file.cask, &file.drop);
+    let (signals, _) = condition::condition(recording, &coarse, &reach, file.corrections);
+    Some((signals, coarse))
+}
 
 /// A simple rung of the reconstruction, without the others, the checks and the prediction.
 fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Option<Answer> {
@@ -81,7 +150,12 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     }
     let moved = motion::outcome(&integrated, &flight, &events, &setup)?;
     let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
-    Some(Answer::bare(speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s)))
+    Some([speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s)].map(bare))
+}
+
+/// A number without an interval.
+fn bare(value: Option<f64>) -> Option<Estimate> {
+    value.map(|value| Estimate::new(value, f64::NAN, ""))
 }
 
 /// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time
@@ -101,8 +175,7 @@ pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
         }
     }
     worked.extend(in_python(&drops, folder.path()));
-    let known: Vec<KnownDrop> = drops.iter().map(|drop| drop.known).collect();
-    [SPEED, K].iter().flat_map(|quantity| scored(quantity, &worked, &known)).collect()
+    (0..WAYS.len()).flat_map(|quantity| scored(quantity, &worked, &drops)).collect()
 }
 
 fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
@@ -113,7 +186,7 @@ fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
 /// The drops of a class as files in a folder; those in which R does not strike are left out.
 fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
     let plans = class.plans(request.either(6, 30), request);
-    let filed = |(number, plan): (usize, &crate::lab::drawn::DropPlan)| {
+    let filed = |(number, plan): (usize, &DropPlan)| {
         let mut plan = plan.clone();
         (plan.rate_hz, plan.before_s) = (RATE_HZ, plan.before_s + BEFORE_S);
         let mut drop = plan.draw();
@@ -129,8 +202,8 @@ fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> V
             std::fs::write(&path, bytes).ok().map(|()| path)
         });
         truth.speed?;
-        let known = KnownDrop { class: class.name, truth };
-        Some(FiledDrop { known, recording: recording?, cask: cask? })
+        let truth = [truth.speed, truth.k];
+        Some(FiledDrop { class: class.name, truth, recording: recording?, cask: cask? })
     };
     plans.par_iter().enumerate().filter_map(filed).collect()
 }
@@ -148,12 +221,101 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
         let [seconds, speed_m_s, k] = numbers[..] else { return None };
-        let number = |number: f64| number.is_finite().then_some(number);
-        worked.answers.push(Answer::bare(number(speed_m_s), number(k)));
+        let number = |number: f64| bare(number.is_finite().then_some(number));
+        worked.answers.push([speed_m_s, k].map(number));
         worked.times_ns.push(1e9 * seconds);
     }
     (worked.answers.len() == drops.len()).then_some(worked)
 }
 
-/// The families of what is worked from file to answer.
-pub const WAYS: [&str; 2] = [SPEED.family, K.family];
+/// What stands for an error that is no number or beyond all bounds: the way diverged.
+const DIVERGED: f64 = 1e9;
+
+/// What all classes together are called.
+pub const ALL_CLASSES: &str = "all";
+
+/// What a reading alone is called.
+pub const READING: &str = "reading alone";
+
+/// What a way says of every drop, and how long it takes for each, ns.
+struct Worked {
+    name: String,
+    /// Whether it is what the program takes.
+    is_default: bool,
+    answers: Vec<Answer>,
+    times_ns: Vec<f64>,
+}
+
+impl Worked {
+    fn named(name: &str, is_default: bool) -> Self {
+        Self { name: name.to_owned(), is_default, answers: Vec::new(), times_ns: Vec::new() }
+    }
+
+    /// One answer more, timed; no answer is an empty one.
+    fn timed(&mut self, work: impl FnOnce() -> Option<Answer>) {
+        let begun = Instant::now();
+        let answer = black_box(work()).unwrap_or_default();
+        self.times_ns.push(1e9 * begun.elapsed().as_secs_f64());
+        self.answers.push(answer);
+    }
+}
+
+/// A point a way and class, and one of all classes; a way that never says anything of the quantity is none
+/// for it. The drops of a class stand together.
+fn scored(quantity: usize, worked: &[Worked], drops: &[FiledDrop]) -> Vec<TrialPoint> {
+    let mut classes: Vec<&'static str> = drops.iter().map(|drop| drop.class).collect();
+    classes.dedup();
+    classes.extend(drops.first().map(|_| ALL_CLASSES));
+    let on_class = |class| worked.iter().map(move |way| point(quantity, way, drops, class));
+    let points = classes.into_iter().flat_map(on_class);
+    points.filter(|point| point.cases > 0 || point.method == READING).collect()
+}
+
+/// What a way says of the drops of a class, and how long it takes.
+fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> TrialPoint {
+    let is_own = |i: &usize| class == ALL_CLASSES || drops[*i].class == class;
+    let own: Vec<usize> = (0..drops.len()).filter(is_own).collect();
+    let off = |i: &usize| {
+        let (stated, truth) = way.answers[*i][quantity].zip(drops[*i].truth[quantity])?;
+        let scale = if quantity == 0 { 100.0 / truth } else { 1.0 };
+        Some((scale * (stated.value - truth).abs(), scale * stated.u95))
+    };
+    let said: Vec<(f64, f64)> = own.iter().filter_map(off).collect();
+    let held = said.iter().filter(|(error, half_width)| error <= half_width).count();
+    let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.into_iter().unzip();
+    let cases = errors.len();
+    let promised = (cases > 0).then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
+    let [median_error, p95_error] = median_and_p95(errors);
+    let mut taken_ns: Vec<f64> = own.iter().map(|i| way.times_ns[*i]).collect();
+    taken_ns.sort_by(f64::total_cmp);
+    let (unit, matters) = NEEDED[quantity];
+    let counted = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    TrialPoint {
+        family: WAYS[quantity].to_owned(),
+        method: way.name.clone(),
+        class: class.to_owned(),
+        is_default: way.is_default,
+        median_error,
+        p95_error,
+        error_unit: unit.to_owned(),
+        time_ns: taken_ns[(taken_ns.len() - 1) / 2],
+        cases: counted(cases),
+        missing: counted(own.len() - cases),
+        matters,
+        promised,
+        held: promised.map(|_| as_f64(held) / as_f64(cases)),
+    }
+}
+
+/// Median and 95th percentile, each that of a drop; what is no number counts as diverged.
+fn median_and_p95(mut errors: Vec<f64>) -> [f64; 2] {
+    for error in &mut errors {
+        *error = if error.is_nan() { DIVERGED } else { error.abs().min(DIVERGED) };
+    }
+    errors.sort_by(f64::total_cmp);
+    let Some(last) = errors.len().checked_sub(1) else { return [DIVERGED; 2] };
+    [errors[last / 2], errors[(95 * last).div_ceil(100)]]
+}
+
+#[cfg(test)]
+mod tests;
