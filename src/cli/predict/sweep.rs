@@ -9,56 +9,41 @@ use crate::data::{Sweep, SweepVariable};
 /// of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
 
-/// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
-const ALIKE: f64 = 0.75;
-
 /// What can be swept, and what a person may call it.
 struct Known {
     variable: SweepVariable,
     names: &'static [&'static str],
-    /// Least and largest value.
+    /// Least and largest value, and where they lie, as a sentence goes on.
     range: (f64, f64),
+    lies: &'static str,
     example: &'static str,
 }
 
-const KNOWN: [Known; 5] = [
-    Known {
-        variable: Angle,
-        names: &["angle", "angle_deg", "phi", "φ"],
-        range: (0.0, 90.0),
-        example: "5:45:5",
-    },
-    Known { variable: K, names: &["k", "restitution"], range: (0.0, 1.0), example: "k=0:1:0.1" },
-    Known {
-        variable: Friction,
-        names: &["friction", "contact", "mu", "μ", "µ"],
-        range: (0.0, f64::INFINITY),
-        example: "friction=0:1:0.1",
-    },
-    Known {
-        variable: Length,
-        names: &["length", "length_m"],
-        range: (0.01, 100.0),
-        example: "length=4:6:0.1",
-    },
-    Known {
-        variable: DropHeight,
-        names: &["height", "drop_height", "drop_height_m"],
-        range: (0.001, 1000.0),
-        example: "height=1:9:0.5",
-    },
-];
-
-/// Where its values lie, as a sentence goes on.
-fn range_words(variable: SweepVariable) -> &'static str {
-    match variable {
-        Angle => "lies between 0 (flat) and 90 (upright) degrees",
-        K => "lies between 0 and 1",
-        Friction => "is 0 or more",
-        Length => "lies between 0.01 and 100 m: it is the length of the cask, in metres",
-        DropHeight => "lies between 0.001 and 1000 m: it is the height of the drop, in metres",
+impl Known {
+    const fn new(
+        variable: SweepVariable,
+        names: &'static [&'static str],
+        range: (f64, f64),
+        lies: &'static str,
+        example: &'static str,
+    ) -> Self {
+        Self { variable, names, range, lies, example }
     }
 }
+
+const DEGREES: &str = "lies between 0 (flat) and 90 (upright) degrees";
+const LENGTHS: &str = "lies between 0.01 and 100 m: it is the length of the cask, in metres";
+const HEIGHTS: &str = "lies between 0.001 and 1000 m: it is the height of the drop, in metres";
+const FRICTIONS: &[&str] = &["friction", "contact", "mu", "μ", "µ"];
+const DROPS: &[&str] = &["height", "drop_height", "drop_height_m"];
+
+const KNOWN: [Known; 5] = [
+    Known::new(Angle, &["angle", "angle_deg", "phi", "φ"], (0.0, 90.0), DEGREES, "5:45:5"),
+    Known::new(K, &["k", "restitution"], (0.0, 1.0), "lies between 0 and 1", "k=0:1:0.1"),
+    Known::new(Friction, FRICTIONS, (0.0, f64::INFINITY), "is 0 or more", "friction=0:1:0.1"),
+    Known::new(Length, &["length", "length_m"], (0.01, 100.0), LENGTHS, "length=4:6:0.1"),
+    Known::new(DropHeight, DROPS, (0.001, 1000.0), HEIGHTS, "height=1:9:0.5"),
+];
 
 /// What the variable is called on the command line.
 pub fn name(variable: SweepVariable) -> &'static str {
@@ -82,7 +67,7 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
     for (word, value) in [("FROM", from), ("TO", to)] {
         let inside = (known.range.0..=known.range.1).contains(&value);
         if !inside {
-            return Err(format!("{word} is {value}: {} {}", known.names[0], range_words(known.variable)));
+            return Err(format!("{word} is {value}: {} {}", known.names[0], known.lies));
         }
     }
     ascending(from, to)?;
@@ -110,17 +95,8 @@ fn called(word: &str) -> Option<&'static Known> {
 }
 
 fn find(word: &str) -> Result<&'static Known, String> {
-    if let Some(known) = called(word) {
-        return Ok(known);
-    }
-    let near = KNOWN
-        .iter()
-        .flat_map(|known| known.names.iter().map(|name| (strsim::jaro_winkler(word, name), known.names[0])))
-        .filter(|(alike, _)| *alike >= ALIKE)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    let near = near.map_or_else(String::new, |(_, name)| format!("did you mean {name}? "));
-    let all: Vec<&str> = KNOWN.iter().map(|known| known.names[0]).collect();
-    Err(format!("no variable {word}: {near}known are {} (of the drop)", all.join(", ")))
+    let all = KNOWN.map(|known| known.names[0]).join(", ");
+    called(word).ok_or_else(|| format!("no variable {word}: known are {all} (of the drop)"))
 }
 
 #[cfg(test)]
@@ -186,8 +162,8 @@ mod tests {
             ("0:90:nan", "no finite number"),
             ("0:inf:1", "no finite number"),
             ("0:90:1e-9", "larger STEP"),
-            ("angel=0:90:1", "did you mean angle?"),
-            ("frict=0:1:1", "did you mean friction?"),
+            ("angel=0:90:1", "no variable angel: known are angle"),
+            ("frict=0:1:1", "no variable frict: known are angle, k, friction"),
             ("mass=1:2:1", "known are angle, k, friction, length, height (of the drop)"),
             ("0:90:5,k=0:1:0.1", "once for each variable"),
             ("k=0:1:0.1,angle=0:90:1", "once for each variable"),
