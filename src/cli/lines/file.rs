@@ -95,8 +95,6 @@ pub struct LineRecord {
     end: u64,
     /// What is in it.
     pub lines: LineFiles,
-    /// Whether its lines stand by number, each once, and nothing else.
-    is_in_order: bool,
 }
 
 impl LineRecord {
@@ -109,31 +107,22 @@ impl LineRecord {
         is_own: impl Fn(&Value) -> miette::Result<Option<usize>>,
     ) -> miette::Result<Self> {
         let mut file = held(path, inputs)?;
-        let (path, lines) = (path.to_path_buf(), LineFiles::default());
-        let mut record = Self { path, file: None, end: 0, lines, is_in_order: true };
+        let (mut lines, mut end) = (LineFiles::default(), 0);
         if resume {
-            record.take_over(is_own)?;
+            lines.add(path, |_, _, line| {
+                // The run was stopped in the middle of the last one.
+                if !line.ends_with(b"\n") {
+                    return Ok(None);
+                }
+                end += line.len() as u64;
+                is_own(&serde_json::from_slice(line).unwrap_or_default())
+            })?;
+        } else {
+            lines.files.push(path.to_path_buf());
         }
-        let kept = file.set_len(record.end).and_then(|()| file.seek(SeekFrom::Start(record.end)));
-        kept.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", record.path.display()))?;
-        Ok(Self { file: Some(file), ..record })
-    }
-
-    fn take_over(&mut self, is_own: impl Fn(&Value) -> miette::Result<Option<usize>>) -> miette::Result<()> {
-        let (mut end, mut last, mut is_in_order) = (0, None, true);
-        self.lines.add(&self.path, |_, _, line| {
-            // The run was stopped in the middle of the last one.
-            if !line.ends_with(b"\n") {
-                return Ok(None);
-            }
-            end += line.len() as u64;
-            let number = is_own(&serde_json::from_slice(line).unwrap_or_default())?;
-            is_in_order &= number.is_some() && number > last;
-            last = number;
-            Ok(number)
-        })?;
-        (self.end, self.is_in_order) = (end, is_in_order);
-        Ok(())
+        let kept = file.set_len(end).and_then(|()| file.seek(SeekFrom::Start(end)));
+        kept.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+        Ok(Self { path: path.to_path_buf(), file: Some(file), end, lines })
     }
 
     /// Writes one line at its end.
@@ -141,37 +130,30 @@ impl LineRecord {
         let file = self.file.as_mut().ok_or_else(|| io::Error::other("it was closed"));
         let written = file.and_then(|file| file.write_all(line)).into_diagnostic();
         written.wrap_err_with(|| format!("{} could not be written", self.path.display()))?;
-        if self.lines.files.is_empty() {
-            self.lines.files.push(self.path.clone());
-        }
-        self.is_in_order &= self.lines.places.last_key_value().is_none_or(|(last, _)| *last < number);
         self.lines.places.insert(number, LinePlace { file: 0, from: self.end, length: line.len() });
         self.end += line.len() as u64;
         Ok(())
     }
 
-    /// Puts the lines in order, where a run that was stopped has left them in another.
+    /// Puts the lines in order, where a run that was stopped has left them in another, or others among them.
     pub fn finish(&mut self) -> miette::Result<()> {
-        if self.is_in_order {
+        let mut due = 0;
+        let is_next = |place: &LinePlace| {
+            let is_next = place.from == due;
+            due += place.length as u64;
+            is_next
+        };
+        if self.lines.places.values().all(is_next) && due == self.end {
             return Ok(());
         }
-        let mut sorted = LineFiles { files: vec![self.path.clone()], places: BTreeMap::new() };
-        let (mut from, mut numbers) = (0, self.lines.numbers());
         replace_by(&self.path, |put| {
-            self.lines.each(|line| {
-                if let Some(number) = numbers.next() {
-                    sorted.places.insert(number, LinePlace { file: 0, from, length: line.len() });
-                }
-                from += line.len() as u64;
-                put(line)
-            })?;
+            self.lines.each(put)?;
             // Windows replaces no file that is open.
             self.file = None;
             Ok(())
         })?;
-        drop(numbers);
-        self.lines = sorted;
-        Ok(())
+        let mut numbers = std::mem::take(&mut self.lines).places.into_keys();
+        self.lines.add(&self.path, |_, _, _| Ok(numbers.next()))
     }
 }
 
