@@ -145,13 +145,11 @@ fn open_record(
         (None, None) => return Ok(None),
     };
     let own = plan.own();
-    let is_own = |line: &Value| {
-        let number = usize::try_from(line["campaign"]["number"].as_u64()?).ok()?;
-        own.binary_search(&number).ok()?;
-        let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
-        (line["campaign"] == place && report::impossible(line).is_none()).then_some(number)
+    let own_number = |line: &Value| {
+        let number = lines::own_number(line, &own, |number| plan.place(number));
+        Ok(number.filter(|_| report::impossible(line).is_none()))
     };
-    LineRecord::open(&path, arguments.resume, inputs, |line| Ok(is_own(line))).map(Some)
+    LineRecord::open(&path, arguments.resume, inputs, own_number).map(Some)
 }
 
 /// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.

@@ -4,7 +4,7 @@
 use super::manifest;
 use super::paths::{recordings, stem};
 use super::planned::{PlannedTest, cask_of};
-use crate::data::Program;
+use super::super::lines;
 use crate::ingest::{bytes_of, hexadecimal};
 use crate::report::folder_name;
 use miette::miette;
@@ -82,15 +82,12 @@ impl CampaignPlan {
     pub fn place(&self, number: usize) -> String {
         let test = &self.tests[number];
         let object = |pairs: &[(String, String)]| pairs.iter().cloned().collect::<BTreeMap<String, String>>();
-        let Program { version, commit, .. } = Program::this();
         let place = json!({
-            "of": self.of, "source": self.source, "version": version, "commit": commit,
-            "number": number, "count": self.tests.len(), "shard": [self.shard.0, self.shard.1],
+            "of": self.of, "source": self.source, "number": number, "count": self.tests.len(), "shard": [self.shard.0, self.shard.1],
             "recording": test.shown, "cask": test.cask_shown, "report": test.folder,
             "stated": object(&test.stated), "carried": object(&test.carried),
         });
-        // The schema first: by it the file is known.
-        format!("{{\"schema\":\"{SHARD_SCHEMA}\",{}", &place.to_string()[1..])
+        lines::place(SHARD_SCHEMA, place)
     }
 
     /// Refuses a folder for the reports in which a recording would be overwritten.

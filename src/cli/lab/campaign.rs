@@ -4,12 +4,12 @@
 use super::super::Ending;
 use super::super::lines::{self, LineOutput, LineRecord};
 use super::super::output::{Folder, print};
-use crate::lab::campaign::{self, ScenePlace, Tally};
+use crate::lab::campaign::{self, Tally};
 use crate::lab::data::{CampaignRequest, CampaignRow};
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// The file in a campaign's folder.
@@ -40,10 +40,15 @@ pub fn run(request: &CampaignRequest, parts: &Parts, out: Option<&Path>) -> miet
     let (index, count) = parts.shard;
     let numbers = campaign::numbers(request);
     lines::holds_some(parts.shard, numbers.len())?;
-    let place = ScenePlace::first(request, numbers.len(), count);
+    let place = |number: usize| {
+        let shard = [number % count, count];
+        let own = json!({"of": request, "count": numbers.len(), "number": number, "shard": shard});
+        lines::place(campaign::SCHEMA, own)
+    };
     let own: Vec<usize> = (index..numbers.len()).step_by(count).collect();
     let open = |path: &PathBuf| {
-        LineRecord::open(path, parts.resume, &[], |line| own_number(place, &own, path, line).map(Some))
+        let own_number = |line: &Value| lines::own_number(line, &own, place).ok_or_else(|| foreign(path));
+        LineRecord::open(path, parts.resume, &[], |line| own_number(line).map(Some))
     };
     let file = parts.jsonl.as_ref().filter(|path| *path != Path::new("-")).map(open).transpose()?;
     let mut output = LineOutput::new(file, parts.jsonl.as_deref());
@@ -52,7 +57,8 @@ pub fn run(request: &CampaignRequest, parts: &Parts, out: Option<&Path>) -> miet
             return Ok(None);
         }
         let row = campaign::row(request, numbers[number]);
-        campaign::line(&place.at(number), &row).map(Some).into_diagnostic()
+        let row = serde_json::to_string(&row).into_diagnostic()?;
+        Ok(Some(format!("{{\"campaign\":{},{}\n", place(number), &row[1..])))
     };
     let tables = tabled(request, out, |take| {
         output.each(own.clone(), rayon::current_num_threads(), make, |line| take(line.as_bytes()))
@@ -76,18 +82,11 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     Ok(Ending::Clear)
 }
 
-/// The number of a line that an earlier run of the same words has left in the file at `path`, one of `own`.
-fn own_number(place: ScenePlace, own: &[usize], path: &Path, line: &Value) -> miette::Result<usize> {
-    let number = line["campaign"]["number"].as_u64().and_then(|number| usize::try_from(number).ok());
-    let is_own = |number: &usize| {
-        let is_said = serde_json::to_value(place.at(*number)).is_ok_and(|place| line["campaign"] == place);
-        own.binary_search(number).is_ok() && is_said
-    };
-    number.filter(is_own).ok_or_else(|| {
-        let (mend, path) = ("name another file, or leave out --resume to begin anew", path.display());
-        let other = "another campaign, of another shard of it, or of another build of dropcheck";
-        miette!(help = mend, "{path} holds lines of {other}")
-    })
+/// The refusal of a file with lines of other words.
+fn foreign(path: &Path) -> miette::Report {
+    let (mend, path) = ("name another file, or leave out --resume to begin anew", path.display());
+    let other = "another campaign, of another shard of it, or of another build of dropcheck";
+    miette!(help = mend, "{path} holds lines of {other}")
 }
 
 /// The tables of all lines that `work` hands over, in a folder where one is named.

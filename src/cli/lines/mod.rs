@@ -5,7 +5,7 @@ mod file;
 mod shards;
 
 pub use file::{LineFiles, LineRecord};
-pub use shards::{holds_some, merged, no_shard, part, schema};
+pub use shards::{holds_some, merged, no_shard, own_number, part, place, schema};
 
 use super::output::print_plain;
 use super::progress::CountedProgress;

@@ -2,6 +2,7 @@
 //! version is named.
 
 use super::file::{LineFiles, next_line};
+use crate::data::Program;
 use crate::ingest::opened;
 use miette::miette;
 use serde_json::Value;
@@ -16,6 +17,26 @@ const COMMON: [(&str, &str); 5] = [
     ("of", "is of another campaign, or of another state of its manifest or cask file"),
     ("count", "is of another campaign"),
 ];
+
+/// What a line says of its place in a campaign besides `own`, as JSON: the schema first, by which its file is
+/// known, and the program that wrote it.
+pub fn place(schema: &str, mut own: Value) -> String {
+    let Program { version, commit, .. } = Program::this();
+    (own["version"], own["commit"]) = (version.into(), commit.into());
+    format!("{{\"schema\":\"{schema}\",{}", &own.to_string()[1..])
+}
+
+/// The number of a line, where it is one of `own` and the line says of its place what this run does.
+pub fn own_number(line: &Value, own: &[usize], place: impl Fn(usize) -> String) -> Option<usize> {
+    let number = whole(&line["campaign"]["number"]).filter(|number| own.binary_search(number).is_ok())?;
+    let said: Value = serde_json::from_str(&place(number)).ok()?;
+    (line["campaign"] == said).then_some(number)
+}
+
+/// A whole number.
+fn whole(value: &Value) -> Option<usize> {
+    usize::try_from(value.as_u64()?).ok()
+}
 
 /// The lines of all shards, and what the first of them says of the campaign; `problem` says what makes a line
 /// one of none.
@@ -32,8 +53,7 @@ pub fn merged(
         lines.add(path, |before, count, bytes| {
             let line: Value = serde_json::from_slice(bytes).unwrap_or_default();
             let own = &line["campaign"];
-            let number = own["number"].as_u64().and_then(|number| usize::try_from(number).ok());
-            let Some(number) = number.filter(|_| bytes.ends_with(b"\n")) else {
+            let Some(number) = whole(&own["number"]).filter(|_| bytes.ends_with(b"\n")) else {
                 return Err(cut(path, count));
             };
             if let Some(problem) = problem(&line) {
@@ -41,7 +61,7 @@ pub fn merged(
                 return Err(refused(mend, &format!("{}, line {count}: {problem}", path.display())));
             }
             let first = first.get_or_insert_with(|| {
-                all = own["count"].as_u64().and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
+                all = whole(&own["count"]).unwrap_or(0);
                 own.clone()
             });
             for (key, words) in COMMON {
@@ -72,9 +92,8 @@ fn complete(shards: &[PathBuf], all: usize, lines: &LineFiles) -> miette::Result
     let missing = lines.numbers().enumerate().find(|(due, own)| due != own);
     let missing = missing.map_or(all - count, |(due, _)| due);
     // Any line says into how many parts its campaign was cut.
-    let parts =
-        lines.numbers().next().and_then(|number| lines.line(number)?["campaign"]["shard"][1].as_u64());
-    let parts = parts.map_or(1, |parts| usize::try_from(parts).unwrap_or(1)).max(1);
+    let any = lines.numbers().next().and_then(|number| lines.line(number));
+    let parts = any.and_then(|line| whole(&line["campaign"]["shard"][1])).unwrap_or(1).max(1);
     let (own, of_own) = (missing % parts, (missing % parts..all).step_by(parts).len());
     let of_part: Vec<usize> = lines.numbers().filter(|number| number % parts == own).collect();
     let lost = of_own - of_part.len();

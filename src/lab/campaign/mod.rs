@@ -2,14 +2,12 @@
 //! often it says so.
 
 mod draw;
-mod lines;
 mod recorder;
 mod score;
 mod statistics;
 mod tables;
 mod tally;
 
-pub use lines::{SCHEMA, ScenePlace, line, read};
 pub use statistics::outcome;
 pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
@@ -28,6 +26,9 @@ use crate::numerics::as_f64;
 use crate::ordered_parallel;
 use score::RecordedScene;
 use std::convert::Infallible;
+
+/// What the first key of every line names.
+pub const SCHEMA: &str = "dropcheck.scenes/1";
 
 /// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
@@ -78,6 +79,11 @@ pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let read = scene.drop.read(&scene.recording);
     let analysis = read.map(|read| measure(&read, &scene.drop.stated));
     score::row(number, scene, analysis.as_ref())
+}
+
+/// What a line says; `None` where it is no whole one.
+pub fn read(line: &[u8]) -> Option<CampaignRow> {
+    serde_json::from_slice(line.strip_suffix(b"\n")?).ok()
 }
 
 fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
