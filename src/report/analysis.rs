@@ -5,14 +5,11 @@ use super::document::{
     TableShape, Tone, Words,
 };
 use super::first_screen::{agreement, cause, of_corner, untested};
-use super::impacts::impacts;
-use super::others::others;
+use super::impacts::{impacts, prototype};
 use super::prediction::prediction_columns;
-use super::prototype::prototype;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
-use super::record::{self, TOLD, tested};
+use super::record::{self, TOLD, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
-use super::settings;
 use super::text::{
     Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
     verdict_sentence, verdict_style, verdict_word, yes,
@@ -341,7 +338,7 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     });
     facts.splice(5..5, own.map(|sha256| Fact::code("SHA-256 of the program", sha256)));
     facts.splice(4..4, rest.into_iter().flatten());
-    let stated = settings::of_cask_file(file, &result.settings);
+    let stated = record::of_cask_file(file, &result.settings);
     let is_new = |s: &&Setting| !TOLD.contains(&s.name.as_str());
     let all: Vec<_> = result.settings.iter().chain(&stated).filter(is_new).collect();
     let settings = ReportTable::of(&all)

@@ -1,9 +1,10 @@
 //! What a person is to read to a document of chapters: tables, facts and sentences, each once for every
 //! medium.
 
-pub(crate) use super::medium::{Medium, Words};
 use super::rounding::MISSING;
-pub(crate) use super::table::{CellKind, ReportColumn, ReportTable, TableCell, TableRows, TableShape};
+pub(crate) use super::table::{
+    CellKind, Medium, ReportColumn, ReportTable, TableCell, TableRows, TableShape, Words,
+};
 use super::text::Style;
 use crate::data::{Letterhead, Photo};
 

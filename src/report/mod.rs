@@ -11,7 +11,6 @@ pub(crate) mod as_text;
 mod campaign;
 mod check;
 mod complaint;
-mod curves_csv;
 #[cfg(feature = "native")]
 pub(crate) mod curves_h5;
 #[cfg(feature = "native")]
@@ -24,11 +23,8 @@ mod impacts;
 pub(crate) mod json;
 mod latex;
 mod listing;
-pub(crate) mod medium;
-mod others;
 pub(crate) mod pictures;
 mod prediction;
-mod prototype;
 mod reconstruction;
 pub(crate) mod record;
 pub(crate) mod records;
@@ -39,9 +35,6 @@ mod sample;
 mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
-#[cfg(feature = "native")]
-mod scratch;
-mod settings;
 pub(crate) mod table;
 mod template;
 pub(crate) mod text;
@@ -56,7 +49,7 @@ pub use check::{CHECK_NAMES, CheckedSetup, check_files, table as check_table};
 #[cfg(feature = "native")]
 pub(crate) use complaint::{in_lines, told};
 pub use complaint::{message, sentence};
-pub use curves_csv::in_german;
+pub use grid::in_german;
 pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};
 pub use json::{in_a_line, pretty as pretty_json};
@@ -150,7 +143,7 @@ fn file_names(analysis: &Analysis) -> &'static [&'static str] {
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let (binary, (curves_csv, pictures)) = rayon::join(
         || binary_curves(analysis),
-        || rayon::join(|| curves_csv::bytes(&analysis.curves), || pictures::draw(analysis)),
+        || rayon::join(|| grid::table_bytes(&analysis.curves), || pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
     let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));

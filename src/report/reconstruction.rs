@@ -2,7 +2,7 @@
 
 use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
-use super::settings::to_state;
+use super::record::to_state;
 use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 

@@ -1,12 +1,17 @@
-//! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to
-//! sign.
+//! What a cask file says of the test to the head of its report, its sensors and other channels, its settings,
+//! its photographs and its lines to sign.
 
-use super::document::{Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape};
-use super::rounding::{MISSING, interval, optional_fixed, plain};
+use super::document::{
+    Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape, Words,
+};
+use super::rounding::{MISSING, interval, optional, optional_fixed, plain, significant};
 use super::text::{Style, json_word};
 use super::words::contact_words;
 use crate::data::keys::{LIMITS, OBSERVED};
-use crate::data::{CaskFile, ChannelSpec, Limit, LimitState, ObservedBeside, Photo, TestRecord};
+use crate::data::{
+    CaskFile, ChannelSpec, Contact, Contribution, DropResult, Extreme, Limit, LimitState, ObservedBeside,
+    OtherSummary, Photo, Setting, SpectralLine, TOLERANCES, TestRecord,
+};
 
 /// The heading of the report: the test's number and title, and of the cask what is not stated.
 pub(super) fn heading(test: &TestRecord, cask: &str) -> String {
@@ -193,4 +198,110 @@ pub(crate) fn signatures<S: AsRef<str>>(who: &[S]) -> ChapterPart {
         .text("date", |_| "")
         .text("signature", |_| "")
         .into()
+}
+
+/// Whether the cask file leaves this key of `[tolerance]` to its default.
+fn is_default(file: &CaskFile, key: &str) -> bool {
+    file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
+}
+
+/// The default that an input of the budget rests on, as a cask file states it, such as "[tolerance]
+/// `angle_deg` = 0.4"; `None` where it rests on none.
+pub(super) fn to_state(file: &CaskFile, input: &Contribution) -> Option<String> {
+    let key = input.tolerance?;
+    // Nobody knows a part of a friction that nobody states.
+    if key == "friction_percent" && file.contact == Contact::Unknown {
+        return Some("[contact] friction".to_owned());
+    }
+    let row = TOLERANCES.iter().find(|row| row.key == key && is_default(file, key))?;
+    Some(format!("[tolerance] {key} = {}", plain(row.in_file(file.tolerances, &file.cask), 3)))
+}
+
+/// The tolerances, and the corrections that are switched off; without what `said` says already.
+pub(super) fn of_cask_file(file: &CaskFile, said: &[Setting]) -> Vec<Setting> {
+    let tolerances = TOLERANCES.iter().map(|tolerance| {
+        let (value, unit) = tolerance.shown(file.tolerances);
+        Setting {
+            name: format!("tolerance of {}", tolerance.name),
+            value: format!("± {}{unit} (95 %)", plain(value, 3)),
+            origin: if is_default(file, tolerance.key) { "default" } else { "cask file" }.into(),
+        }
+    });
+    let mut made = file.corrections;
+    let off = made.by_key().into_iter().filter(|(_, made)| !**made).map(|(name, _)| Setting {
+        name: format!("correction {name}"),
+        value: "switched off".into(),
+        origin: "cask file".into(),
+    });
+    let mut settings: Vec<Setting> = tolerances.chain(off).collect();
+    settings.retain(|own| said.iter().all(|other| other.name != own.name));
+    settings
+}
+
+const CAPTION: &str = "As recorded, each in its unit: but for angular-rate sensors they take no part in the \
+                       motion, and findings on them change no number of it. Rest: the median before the \
+                       release, or before the first contact where the release is not seen; noise: RMS about \
+                       it; smallest and largest of the whole recording. The strongest line is that of the \
+                       curve's spectrum.";
+
+/// What each of them reads, and their curves; empty where there are none.
+pub(super) fn others(result: &DropResult) -> Chapter {
+    let chapter = Chapter::new("Other channels");
+    if result.other_channels.is_empty() {
+        return chapter;
+    }
+    let value = |extreme: Option<Extreme>| optional(extreme.map(|e| e.value), 4);
+    let at_ms = |extreme: Option<Extreme>| optional_fixed(extreme.map(|e| 1e3 * e.time_s), 2);
+    let line = |line: SpectralLine| format!("{} Hz", significant(line.frequency_hz, 3));
+    let codes = |other: &OtherSummary| -> Vec<String> { other.findings.iter().map(json_word).collect() };
+    let table = ReportTable::of(&result.other_channels)
+        .class("")
+        .caption(CAPTION)
+        .head(Words::or("Channel", "channel"), |c| &c.name[..])
+        .text(Words::or("Unit", "unit"), |c| &c.unit[..])
+        .code("Source", |c| &c.source[..])
+        .only(Medium::Page)
+        .number("Rate", |c| format!("{} Hz", plain(c.sample_rate_hz, 6)))
+        .only(Medium::Page)
+        .number(Words::or("Rest", "rest"), |c| optional(c.rest, 4))
+        .number(Words::or("Noise", "noise"), |c| optional(c.noise, 2))
+        .number(Words::or("Smallest", "smallest"), |c| value(c.smallest))
+        .number("at ms", |c| at_ms(c.smallest))
+        .number(Words::or("Largest", "largest"), |c| value(c.largest))
+        .number("at ms", |c| at_ms(c.largest))
+        .number("Strongest line", |c| c.strongest_line.map_or_else(|| MISSING.to_owned(), line))
+        .only(Medium::Page)
+        .text("Serial", |c| c.sensor.serial.clone().unwrap_or_else(|| MISSING.to_owned()))
+        .only(Medium::Page)
+        .code("Findings", |c| if c.findings.is_empty() { MISSING.to_owned() } else { codes(c).join(" ") })
+        .only(Medium::Page);
+    chapter.with(table).with(ChapterPart::picture("other_channels", ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn tolerances_have_their_unit_and_their_origin() {
+        let settings = of_cask_file(&sample::cask_file(), &[]);
+        let said = |name: &str| settings.iter().find(|s| s.name == name).expect(name);
+        assert_eq!(said("tolerance of drop angle").value, "± 0.4° (95 %)");
+        assert_eq!(said("tolerance of drop angle").origin, "cask file");
+        assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
+        assert_eq!(said("tolerance of inertia").origin, "default");
+        assert_eq!(settings.len(), TOLERANCES.len());
+    }
+
+    #[test]
+    fn only_a_correction_that_is_off_is_said_and_only_once() {
+        let mut file = sample::cask_file();
+        file.corrections.hum = false;
+        let settings = of_cask_file(&file, &[]);
+        let off: Vec<&str> =
+            settings.iter().map(|s| s.name.as_str()).filter(|n| n.starts_with("correction")).collect();
+        assert_eq!(off, ["correction hum"]);
+        assert_eq!(of_cask_file(&file, &settings), []);
+    }
 }
