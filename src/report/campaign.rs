@@ -8,7 +8,6 @@ mod page;
 mod pictures;
 mod series;
 mod summary;
-mod terminal;
 
 pub use columns::{CampaignColumn, campaign_columns};
 pub use drop_curves::drop_curves;

@@ -1,6 +1,6 @@
 //! One panel to its axes, areas, lines, points and marks.
 
-use super::decimate::runs;
+use super::live::runs;
 use super::legend::{self, LEFT, RIGHT, point, width_of};
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};

@@ -2,9 +2,9 @@
 
 use super::super::text::moment;
 use super::curves::TIME_LABEL;
-use super::decimate::thinned;
 use super::draw::{Picture, Plate};
 use super::live::EVERY_SAMPLE;
+use super::live::thinned;
 use super::panel::{COLOURS, Curve, Mark, Panel, PanelAxis};
 use crate::data::{Channel, ChannelLook, is_number};
 use crate::numerics::spectrum::magnitude;

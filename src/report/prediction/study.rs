@@ -9,7 +9,7 @@ use super::super::rounding::{MISSING, plain};
 use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
 use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
 use super::models::ladders;
-use super::plan::plan;
+use super::models::plan;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
 
