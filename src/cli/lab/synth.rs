@@ -5,8 +5,10 @@ use super::super::output::{Folder, print};
 use super::super::replace::parent_of;
 use crate::lab::data::{SyntheticRecording, Truth};
 use crate::lab::report::SyntheticFormat;
+use crate::report::rounding::optional_fixed;
 use crate::{lab, report};
 use clap::Args;
+use miette::{ensure, miette};
 use std::path::{Path, PathBuf};
 
 /// Behind the stem of the scene's name, so that its cask file is not taken for the scene.
@@ -29,17 +31,6 @@ pub struct Arguments {
 }
 
 const PROTOBUF: &str = "protobuf";
-
-/// Why FILE cannot be written as asked.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-enum Unwritable {
-    #[error("{path}: its ending names no format that synth writes")]
-    #[diagnostic(help("end the name of --out in .mcap, .h5, .hdf5 or .csv"))]
-    Ending { path: String },
-    #[error("--encoding is for MCAP, and {path} is none")]
-    #[diagnostic(help("leave --encoding out, or end the name of --out in .mcap"))]
-    Encoding { path: String },
-}
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (files, recording) = written(arguments)?;
@@ -74,27 +65,29 @@ fn default_out(scene: &Path) -> PathBuf {
     scene.with_file_name(name)
 }
 
-fn format(out: &Path, encoding: Option<&str>) -> Result<SyntheticFormat, Unwritable> {
-    let path = out.display().to_string();
+fn format(out: &Path, encoding: Option<&str>) -> miette::Result<SyntheticFormat> {
+    let path = out.display();
     let ending = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let format = match (ending.as_str(), encoding) {
         ("mcap", Some(PROTOBUF)) => return Ok(SyntheticFormat::McapProtobuf),
         ("mcap", _) => return Ok(SyntheticFormat::McapJson),
         ("h5" | "hdf5", _) => SyntheticFormat::Hdf5,
         ("csv", _) => SyntheticFormat::Csv,
-        _ => return Err(Unwritable::Ending { path }),
+        _ => {
+            let mend = "end the name of --out in .mcap, .h5, .hdf5 or .csv";
+            return Err(miette!(help = mend, "{path}: its ending names no format that synth writes"));
+        }
     };
-    if encoding.is_some() { Err(Unwritable::Encoding { path }) } else { Ok(format) }
+    let mend = "leave --encoding out, or end the name of --out in .mcap";
+    ensure!(encoding.is_none(), help = mend, "--encoding is for MCAP, and {path} is none");
+    Ok(format)
 }
 
 /// The truth that is asked for first; all of it is in its file.
 fn summary(recording: &SyntheticRecording) -> String {
     let Truth { k, speed, .. } = recording.truth;
-    let shown = |value: Option<f64>, digits: usize| {
-        value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
-    };
-    let seed = recording.seed;
-    format!("  seed {seed}, k {}, slap-down {} m/s; more in the last\n", shown(k, 4), shown(speed, 3))
+    let (seed, k, speed) = (recording.seed, optional_fixed(k, 4), optional_fixed(speed, 3));
+    format!("  seed {seed}, k {k}, slap-down {speed} m/s; more in the last\n")
 }
 
 #[cfg(test)]
@@ -107,9 +100,10 @@ mod tests {
         assert!(matches!(format_of("a.MCAP", None), Ok(SyntheticFormat::McapJson)));
         assert!(matches!(format_of("a.mcap", Some(PROTOBUF)), Ok(SyntheticFormat::McapProtobuf)));
         assert!(matches!(format_of("a.hdf5", None), Ok(SyntheticFormat::Hdf5)));
-        assert!(matches!(format_of("a.csv", Some("json")), Err(Unwritable::Encoding { .. })));
-        assert!(matches!(format_of("a.toml", None), Err(Unwritable::Ending { .. })));
-        assert!(matches!(format_of("", None), Err(Unwritable::Ending { .. })));
+        let refused = |name: &str, encoding| format_of(name, encoding).unwrap_err().to_string();
+        assert!(refused("a.csv", Some("json")).contains("--encoding is for MCAP"));
+        assert!(refused("a.toml", None).contains("names no format"));
+        assert!(refused("", None).contains("names no format"));
     }
 
     #[test]

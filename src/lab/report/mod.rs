@@ -3,5 +3,5 @@
 mod synthetic;
 mod trial;
 
-pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
+pub use synthetic::{SyntheticFormat, synthetic_files, synthetic_names};
 pub use trial::{TRIAL_NAMES, trial_files, trial_outcome};

@@ -1,63 +1,37 @@
 //! A synthetic recording to the bytes of its three files: the recording, the cask file, the truth.
 
 mod cask;
-mod csv;
-mod hdf5;
 mod mcap;
 mod place;
 
+pub use place::SyntheticFormat;
+
 use crate::lab::data::{SceneFile, SyntheticRecording, Truth};
+use crate::numerics::as_f64;
+use crate::report::curves_h5::{filled, text, through_a_file};
+use crate::report::records::records;
 use crate::report::{ReportError, json};
+use miette::miette;
+use place::SyntheticPlace;
 use serde::Serialize;
-
-/// How a synthetic recording is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SyntheticFormat {
-    /// MCAP with blocks in JSON.
-    McapJson,
-    /// MCAP with blocks in protobuf.
-    McapProtobuf,
-    /// HDF5, a dataset a channel.
-    Hdf5,
-    /// CSV, a column a channel.
-    Csv,
-}
-
-/// Why a synthetic recording could not be written.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum SyntheticError {
-    /// One table has one rate.
-    #[error("CSV holds channels of one sample rate, and this scene has {first_hz} and {other_hz} Hz")]
-    #[diagnostic(help("write .mcap or .h5, or give every [[channel]] the same sample_rate_hz"))]
-    OneRate {
-        /// The first channel's rate, Hz.
-        first_hz: f64,
-        /// Another channel's rate, Hz.
-        other_hz: f64,
-    },
-    /// A writer failed.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Writer(#[from] ReportError),
-}
 
 /// The files by name: `recording_name`, then the cask file and the truth beside it.
 ///
 /// # Errors
-/// [`SyntheticError`] where the format cannot hold the channels or a writer fails.
+/// Where the format cannot hold the channels or a writer fails.
 pub fn synthetic_files(
     scene_file: &SceneFile,
     recording: &SyntheticRecording,
     recording_name: &str,
     format: SyntheticFormat,
-) -> Result<Vec<(String, Vec<u8>)>, SyntheticError> {
+) -> miette::Result<Vec<(String, Vec<u8>)>> {
     let recording = &recording.mounted(&scene_file.stated);
     let places = place::places(recording, format);
     let bytes = match format {
         SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
         SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, false)?,
-        SyntheticFormat::Hdf5 => hdf5::bytes(recording, &places)?,
-        SyntheticFormat::Csv => csv::bytes(recording, &places, one_rate_hz(recording)?)?,
+        SyntheticFormat::Hdf5 => hdf5_bytes(recording, &places)?,
+        SyntheticFormat::Csv => csv_bytes(recording, &places)?,
     };
     let [_, cask_name, truth_name] = synthetic_names(recording_name);
     let cask_file = cask::text(&scene_file.stated, &places, recording_name).into_bytes();
@@ -84,14 +58,64 @@ struct TruthFile<'a> {
     truth: &'a Truth,
 }
 
-/// The sample rate of all channels, Hz.
-fn one_rate_hz(recording: &SyntheticRecording) -> Result<f64, SyntheticError> {
+/// The sample rate of all channels, Hz: one table has one rate.
+fn one_rate_hz(recording: &SyntheticRecording) -> miette::Result<f64> {
     let mut rates_hz = recording.channels.iter().map(|c| c.sample_rate_hz);
     let first_hz = rates_hz.next().unwrap_or(1.0);
-    match rates_hz.find(|hz| (hz - first_hz).abs() > 0.0) {
-        Some(other_hz) => Err(SyntheticError::OneRate { first_hz, other_hz }),
-        None => Ok(first_hz),
-    }
+    let mend = "write .mcap or .h5, or give every [[channel]] the same sample_rate_hz";
+    rates_hz.find(|hz| (hz - first_hz).abs() > 0.0).map_or(Ok(first_hz), |hz| {
+        let rates = format!("{first_hz} and {hz} Hz");
+        Err(miette!(help = mend, "CSV holds channels of one sample rate, and this scene has {rates}"))
+    })
+}
+
+/// A recording to CSV: comma, point, one header with units; a lost sample is an empty cell, a lost row is
+/// left out.
+fn csv_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> miette::Result<Vec<u8>> {
+    let (channels, rate_hz) = (&recording.channels, one_rate_hz(recording)?);
+    let mut times: Vec<(&str, f64)> = vec![("time_s", 0.0)];
+    let late = channels.iter().zip(places).filter(|(channel, _)| channel.start_s > 0.0);
+    times.extend(late.filter_map(|(channel, place)| Some((place.time.as_deref()?, channel.start_s))));
+    let header = times.iter().map(|(name, _)| (*name).to_owned());
+    let columns = channels.iter().zip(places).map(|(c, place)| format!("{} [{}]", place.name, c.unit));
+    let count = channels.iter().map(|c| c.samples.len()).min().unwrap_or(0);
+    let kept = (0..count).filter(|&row| channels.iter().any(|c| !c.samples[row].is_nan()));
+    let rows = kept.map(|row| {
+        let times = times.iter().map(|(_, start_s)| format!("{:.9}", start_s + as_f64(row) / rate_hz));
+        let samples = channels.iter().map(|channel| channel.samples[row]);
+        times.chain(samples.map(|x| if x.is_nan() { String::new() } else { x.to_string() })).collect()
+    });
+    Ok(records(std::iter::once(header.chain(columns).collect::<Vec<String>>()).chain(rows))?)
+}
+
+/// A recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the rest in
+/// `/time_s`.
+fn hdf5_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> Result<Vec<u8>, ReportError> {
+    through_a_file(|file| {
+        let group = file.create_group("daq")?;
+        for (channel, place) in recording.channels.iter().zip(places) {
+            let samples: Vec<f32> = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
+            let dataset = filled(&group, &place.name, &samples)?;
+            text(&dataset, "unit", &channel.unit)?;
+            for (name, value) in
+                [("sample_rate_hz", channel.sample_rate_hz), ("start_time_s", channel.start_s)]
+            {
+                dataset.new_attr::<f64>().create(name)?.write_scalar(&value)?;
+            }
+            if place.time.is_some() {
+                let times = if file.link_exists("time_s") {
+                    file.group("time_s")?
+                } else {
+                    file.create_group("time_s")?
+                };
+                let kept = channel.samples.iter().enumerate().filter(|(_, x)| !x.is_nan());
+                let times_s: Vec<f64> = kept.map(|(i, _)| channel.time_s(i)).collect();
+                let times = filled(&times, &place.name, &times_s)?;
+                text(&times, "unit", "s")?;
+            }
+        }
+        Ok(())
+    })
 }
 
 /// The names of the files of a recording: its own, the cask file's, the truth's.

@@ -1,7 +1,19 @@
 //! Channel names to places in a recording: topics, datasets, columns, and what a cask file calls them.
 
-use super::SyntheticFormat;
 use crate::lab::data::SyntheticRecording;
+
+/// How a synthetic recording is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SyntheticFormat {
+    /// MCAP with blocks in JSON.
+    McapJson,
+    /// MCAP with blocks in protobuf.
+    McapProtobuf,
+    /// HDF5, a dataset a channel.
+    Hdf5,
+    /// CSV, a column a channel.
+    Csv,
+}
 
 /// Where a channel stands.
 pub(super) struct SyntheticPlace {
