@@ -1,6 +1,6 @@
 //! What a recording holds to the sources that look like accelerations in the plane of the drop.
 
-use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2, is_rate_of_turn};
+use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2, is_rate_of_turn};
 
 /// Units of a sensor's output that the cask file knows.
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
@@ -10,16 +10,6 @@ const NO_QUANTITY: &str = "time stamp sec nsec nanosec seq covariance sample_rat
 
 /// Words in a source that make it another quantity than an acceleration.
 const OTHER_QUANTITIES: &str = "orientation angular gyro temp";
-
-/// A recording of which no form could ever be filled in.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("{recording}: {problem}")]
-#[diagnostic(help("{mend}"))]
-pub struct NoChannels {
-    recording: String,
-    problem: String,
-    mend: String,
-}
 
 /// The sources that look like accelerations and can be read: by unit or name where any does, else all that
 /// are numbers; none where those that do look so cannot be read.
@@ -58,7 +48,7 @@ pub(super) fn reason(listed: &ListedChannel) -> String {
 }
 
 /// What is there instead, and what makes it a recording that can be analysed.
-pub(super) fn none(listing: &Listing) -> NoChannels {
+pub(super) fn none(listing: &Listing) -> miette::Report {
     /// More than this many reasons no longer fit a terminal's few lines.
     const HANDFUL: usize = 4;
     let unreadable = unreadable(listing);
@@ -75,24 +65,16 @@ pub(super) fn none(listing: &Listing) -> NoChannels {
     } else {
         format!("no acceleration in it can be read: {}{more}", reasons.join("; "))
     };
-    let mend = match listing.format {
-        _ if reasons.is_empty() => {
-            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables \
-             by hand, each with its source"
-        }
-        RecordingFormat::Csv | RecordingFormat::Samples => {
-            "in a copy, make every cell of these columns a number with one decimal mark and no thousands \
-             separators, or empty it: an empty cell counts as missing"
-        }
-        RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
-        RecordingFormat::Mme => "correct these channel files in a copy, or export the test again",
-        RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",
+    let mend = if reasons.is_empty() {
+        "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables by \
+         hand, each with its source"
+    } else {
+        "in a copy, make each value of these a plain number with one decimal mark, or leave it empty; or \
+         export the recording again"
     };
-    NoChannels {
-        recording: listing.recording.clone(),
-        problem,
-        mend: format!("{mend}; `dropcheck inspect {}` lists all that is in it", listing.recording),
-    }
+    let name = &listing.recording;
+    let mend = format!("{mend}; `dropcheck inspect {name}` lists all that is in it");
+    miette::miette!(help = mend, "{name}: {problem}")
 }
 
 /// Sources that are not called something else.

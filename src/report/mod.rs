@@ -40,7 +40,6 @@ mod template;
 pub(crate) mod text;
 mod words;
 
-pub use acceleration_sources::NoChannels;
 pub use campaign::{
     Batch, BatchRow, CampaignColumn, CampaignFiles, PredictedCurve, campaign_columns, drop_curves,
     folder_name, impossible,
@@ -49,9 +48,9 @@ pub use check::{CHECK_NAMES, CheckedSetup, check_files, table as check_table};
 #[cfg(feature = "native")]
 pub(crate) use complaint::{in_lines, told};
 pub use complaint::{message, sentence};
-pub use grid::in_german;
 pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
 pub use first_screen::{first_screen, not_strict};
+pub use grid::in_german;
 pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;
 pub use pictures::setup_picture;

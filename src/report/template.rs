@@ -1,18 +1,17 @@
 //! What a recording holds to a commented cask file to fill in.
 
-use super::acceleration_sources::{self, NoChannels, VOLTAGES, has_word, is_time};
+use super::acceleration_sources::{self, VOLTAGES, has_word, is_time};
 use super::rounding::{plain, significant};
 use super::text::{is_hidden, lines, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, Source, acceleration_unit_m_s2};
-use std::fmt::Write;
 
 /// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value,
 /// forgotten, would pass for a known one.
 ///
 /// # Errors
-/// [`NoChannels`] where nothing that looks like an acceleration can be read.
-pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
+/// Where nothing that looks like an acceleration can be read.
+pub fn cask_file(listing: &Listing) -> miette::Result<String> {
     let mut taken = acceleration_sources::accelerations(listing);
     let beyond = taken.len().saturating_sub(MOST_CHANNELS);
     taken.truncate(MOST_CHANNELS);
@@ -210,19 +209,12 @@ fn source_value(source: &Source) -> String {
 
 /// A TOML basic string.
 fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            c if is_hidden(c) => {
-                let _ = write!(out, "\\u{:04X}", u32::from(c));
-            }
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
+    let escaped = text.chars().map(|c| match c {
+        '"' | '\\' => format!("\\{c}"),
+        c if is_hidden(c) => format!("\\u{:04X}", u32::from(c)),
+        c => c.to_string(),
+    });
+    format!("\"{}\"", escaped.collect::<String>())
 }
 
 #[cfg(test)]
@@ -363,7 +355,7 @@ mod tests {
         ] {
             let refusal = cask_file(&listing(channels)).unwrap_err();
             assert!(refusal.to_string().contains(expected), "{refusal}");
-            let mend = miette::Diagnostic::help(&refusal).unwrap().to_string();
+            let mend = refusal.help().unwrap().to_string();
             assert!(mend.contains("dropcheck inspect"), "{mend}");
         }
     }
