@@ -2,7 +2,6 @@
 
 use super::ReportError;
 use super::text::turns;
-use std::fmt::Write as _;
 
 /// A result, a listing or the like as a file: two spaces of indentation and a line feed at the end.
 ///
@@ -25,14 +24,8 @@ fn bare(text: String) -> String {
     if !text.contains(steers) {
         return text;
     }
-    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-        if steers(c) {
-            let _ = write!(out, "\\u{:04x}", u32::from(c));
-        } else {
-            out.push(c);
-        }
-        out
-    })
+    let escaped = |c: char| if steers(c) { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    text.chars().map(escaped).collect()
 }
 
 /// Whether JSON may hold it bare and a terminal would obey it: controls beyond ASCII, line ends and

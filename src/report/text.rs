@@ -25,7 +25,6 @@ pub(super) fn styled_lines(style: Style, text: &str) -> String {
     lines(text.lines().map(|line| styled(style, line)))
 }
 
-/// Columns of a terminal of which nothing is known.
 #[cfg(test)]
 pub(super) const WIDTH: usize = 80;
 
@@ -80,24 +79,16 @@ pub(super) fn turns(c: char) -> bool {
 /// whole, and so does what a no-break space joins.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
+    let text = printable(text);
     let mut broken: Vec<String> = Vec::new();
-    let mut line = String::new();
-    let mut used = 0;
-    for word in printable(text).split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|w| !w.is_empty())
-    {
-        let length = word.chars().count();
-        if used > 0 && used + 1 + length > room {
-            broken.push(std::mem::take(&mut line));
-            used = 0;
+    for word in text.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty()) {
+        let has_room = |line: &&mut String| line.chars().count() + 1 + word.chars().count() <= room;
+        match broken.last_mut().filter(has_room) {
+            Some(line) => line.extend([" ", word]),
+            None => broken.push(word.to_owned()),
         }
-        if used > 0 {
-            line.push(' ');
-            used += 1;
-        }
-        line.push_str(word);
-        used += length;
     }
-    broken.push(line);
+    broken.extend(broken.is_empty().then(String::new));
     let pad = " ".repeat(indent);
     lines(broken.into_iter().map(|line| format!("{pad}{}", line.replace('\u{a0}', " "))))
 }
@@ -201,16 +192,13 @@ pub(super) fn moment(time_s: f64) -> String {
 /// `text` with a true minus sign before each number that has a hyphen for one.
 pub(super) fn true_minus(text: &str) -> String {
     let mut before = ' ';
-    let mut letters = text.chars().peekable();
-    let mut out = String::with_capacity(text.len());
-    while let Some(letter) = letters.next() {
-        let is_sign = letter == '-'
-            && (before.is_whitespace() || before == '(')
-            && letters.peek().is_some_and(char::is_ascii_digit);
-        out.push(if is_sign { '−' } else { letter });
+    let behind = text.chars().skip(1).chain([' ']);
+    let letter = |(letter, next): (char, char)| {
+        let begins = before.is_whitespace() || before == '(';
         before = letter;
-    }
-    out
+        if letter == '-' && begins && next.is_ascii_digit() { '−' } else { letter }
+    };
+    text.chars().zip(behind).map(letter).collect()
 }
 
 /// A number as it stands alone, where a dash would say nothing.
