@@ -35,14 +35,15 @@ pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Sto
     let folder = &std::path::absolute(folder).map_err(at(folder))?;
     let parent = parent_of(folder);
     fs::create_dir_all(parent).map_err(at(parent))?;
-    let turn = Turn::take(parent);
-    turn.clear_stale(parent, files);
+    let turn = turn(parent);
+    let clear_stale = |place: &Path| turn.iter().for_each(|_| clear_stale(place, files));
+    clear_stale(parent);
     match fs::symlink_metadata(folder) {
         Err(_) => return appear(parent, folder, files),
         Ok(there) if !there.is_dir() => {
             return Err(at(folder)(io::Error::other("a link or a file has taken the folder's place")));
         }
-        Ok(_) => turn.clear_stale(folder, files),
+        Ok(_) => clear_stale(folder),
     }
     if exchange(parent, folder, files).map_err(at(folder))? {
         return Ok(());
@@ -58,31 +59,22 @@ pub fn parent_of(path: &Path) -> &Path {
     }
 }
 
-/// One run at a time writes below a folder, where its file system knows locks.
-struct Turn {
-    lock: Option<File>,
+/// One run at a time writes below a folder, where its file system knows locks: this one, as long as it holds
+/// the lock.
+fn turn(parent: &Path) -> Option<File> {
+    File::open(parent).ok().filter(|folder| folder.lock().is_ok())
 }
 
-impl Turn {
-    fn take(parent: &Path) -> Self {
-        let lock = File::open(parent).ok().filter(|folder| folder.lock().is_ok());
-        Self { lock }
-    }
-
-    /// Removes what a run that was killed left in `parent`: under the lock nobody is at work there.
-    fn clear_stale(&self, parent: &Path, files: &[(String, Vec<u8>)]) {
-        if self.lock.is_none() {
-            return;
-        }
-        for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
-            let name = entry.file_name();
-            let is_own = name.to_string_lossy().starts_with(OWN_PREFIX) && name != UNFINISHED;
-            if is_own && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-                clear(&entry.path(), files);
-            } else if is_own && entry.metadata().is_ok_and(|there| there.is_file() && there.len() == 0) {
-                // Made to see whether the folder can be written to.
-                let _ = fs::remove_file(entry.path());
-            }
+/// Removes what a run that was killed left in `parent`: while this one has its turn nobody is at work there.
+fn clear_stale(parent: &Path, files: &[(String, Vec<u8>)]) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_own = name.to_string_lossy().starts_with(OWN_PREFIX) && name != UNFINISHED;
+        if is_own && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            clear(&entry.path(), files);
+        } else if is_own && entry.metadata().is_ok_and(|there| there.is_file() && there.len() == 0) {
+            // Made to see whether the folder can be written to.
+            let _ = fs::remove_file(entry.path());
         }
     }
 }
@@ -261,7 +253,7 @@ fn exchange_names(_: &Path, _: &Path) -> io::Result<()> {
 /// Stages the files in `folder` itself and moves each to its place.
 fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
     // Two ways may lead to the folder, through one parent each.
-    let _turn = Turn::take(folder);
+    let _turn = turn(folder);
     let unfinished = folder.join(UNFINISHED);
     settle(folder, &unfinished, files)?;
     let staging = staging_in(folder).map_err(at(folder))?;

@@ -1,8 +1,8 @@
 //! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
 
 use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
-use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::record::to_state;
+use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
 use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
@@ -197,27 +197,21 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     chapter.with(ChapterPart::lead(lead)).with(table).with_all(untested)
 }
 
-/// A default that carries more than a tenth of the variance of the speed, or of k where there is no speed.
-pub(super) struct WeightyDefault {
-    /// The default as a cask file states it.
-    stated: String,
-    percent: f64,
-}
-
-/// The defaults that a formal report must not rest on, the largest share first.
-pub(super) fn weighty_defaults(result: &DropResult, file: &CaskFile) -> Vec<WeightyDefault> {
+/// The defaults that a formal report must not rest on, as a cask file states them, the largest share first:
+/// each carries more than a tenth of the variance of the speed, or of k where there is no speed, percent.
+pub(super) fn weighty_defaults(result: &DropResult, file: &CaskFile) -> Vec<(String, f64)> {
     const WEIGHS_PERCENT: f64 = 10.0;
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
-    let mut all: Vec<WeightyDefault> = Vec::new();
-    for VarianceShare { of, percent } in shares(&result.budget, change) {
-        let Some(stated) = to_state(file, of) else { continue };
-        match all.iter_mut().find(|known| known.stated == stated) {
-            Some(known) => known.percent += percent,
-            None => all.push(WeightyDefault { stated, percent }),
+    let mut all: Vec<(String, f64)> = Vec::new();
+    for (input, percent) in shares(&result.budget, change) {
+        let Some(stated) = to_state(file, input) else { continue };
+        match all.iter_mut().find(|known| known.0 == stated) {
+            Some(known) => known.1 += percent,
+            None => all.push((stated, percent)),
         }
     }
-    all.retain(|default| default.percent > WEIGHS_PERCENT);
-    all.sort_by(|a, b| b.percent.total_cmp(&a.percent));
+    all.retain(|(_, percent)| *percent > WEIGHS_PERCENT);
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all
 }
 
@@ -228,7 +222,7 @@ pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Optio
     let mut named = Vec::new();
     let mut before = "";
     let all = weighty_defaults(result, file);
-    for WeightyDefault { stated, percent } in &all {
+    for (stated, percent) in &all {
         // Keys of one table stand behind its name once.
         let (table, key) = stated.split_once(' ')?;
         let shown = if table == before { key } else { stated };
@@ -238,25 +232,20 @@ pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Optio
     (!named.is_empty()).then(|| format!("by default {}; enter yours", named.join(", ")))
 }
 
-/// An input, and how much of the variance of a quantity it carries.
-struct VarianceShare<'a> {
-    of: &'a Contribution,
-    percent: f64,
-}
-
-/// The inputs whose changes of a quantity are known; none where nothing changes it.
-fn shares(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Vec<VarianceShare<'_>> {
+/// The inputs whose changes of a quantity are known, with the percent of its variance that each carries; none
+/// where nothing changes it.
+fn shares(all: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Vec<(&Contribution, f64)> {
     let square = |c: &Contribution| change(c).map(|x| x * x);
-    let sum: f64 = budget.iter().filter_map(square).sum();
-    let known = budget.iter().filter(|_| sum > 0.0);
-    known.filter_map(|c| Some(VarianceShare { of: c, percent: 100.0 * square(c)? / sum })).collect()
+    let sum: f64 = all.iter().filter_map(square).sum();
+    let known = all.iter().filter(|_| sum > 0.0);
+    known.filter_map(|c| Some((c, 100.0 * square(c)? / sum))).collect()
 }
 
 /// Which input weighs most, in the speed and in k.
 pub(super) fn largest(budget: &[Contribution]) -> String {
     let words = |change: fn(&Contribution) -> Option<f64>| {
-        let largest = shares(budget, change).into_iter().max_by(|a, b| a.percent.total_cmp(&b.percent))?;
-        Some(format!("{} ({:.0} % of the variance)", largest.of.input, largest.percent))
+        let (largest, percent) = shares(budget, change).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(format!("{} ({percent:.0} % of the variance)", largest.input))
     };
     match (words(|c| c.speed_m_s), words(|c| c.k)) {
         (Some(speed), Some(k)) => format!("The largest for the speed is {speed}, for k {k}."),

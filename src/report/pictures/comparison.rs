@@ -11,7 +11,7 @@ const ROW: u32 = 52;
 
 /// One row: its words, speed, half-width and whether it is made with the measured k.
 struct ComparedRow {
-    label: String,
+    words: RowWords,
     speed_m_s: f64,
     u95_m_s: Option<f64>,
     own_k: bool,
@@ -40,8 +40,11 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
             .and_then(|c| c.u95)
             .filter(|u| u.is_finite());
         let k = if own_k { format!("{} (measured)", fixed(p.k, 3)) } else { plain(p.k, 3) };
-        let label = format!("{}, {}, k = {k}", p.model.as_str(), contact_words(p.contact));
-        Some(ComparedRow { label, speed_m_s, u95_m_s, own_k })
+        let left = format!("{}, {}, k = {k}", p.model.as_str(), contact_words(p.contact));
+        let value = |u95| pair(speed_m_s, u95, "m/s").replace(" m/s", "");
+        let right = u95_m_s.map_or_else(|| format!("{speed_m_s:.2}"), value);
+        let words = RowWords { left, right, is_heading: false };
+        Some(ComparedRow { words, speed_m_s, u95_m_s, own_k })
     };
     result.predictions.iter().filter_map(row).collect()
 }
@@ -50,12 +53,8 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
     if rows.is_empty() && measured.is_none() {
         return None;
     }
-    let words = |row: &ComparedRow| {
-        let value = |u95| pair(row.speed_m_s, u95, "m/s").replace(" m/s", "");
-        let right = row.u95_m_s.map_or_else(|| format!("{:.2}", row.speed_m_s), value);
-        RowWords { left: row.label.clone(), right, is_heading: false }
-    };
-    let mut panel = Panel::of_rows(rows.iter().map(words).collect(), ROW, (560, 230));
+    let words = rows.iter().map(|row| row.words.clone()).collect();
+    let mut panel = Panel::of_rows(words, ROW, (560, 230));
     panel.x = PanelAxis::new("slap-down speed, m/s");
     if let Some(speed) = measured {
         let u95 = if speed.u95.is_finite() { speed.u95 } else { 0.0 };

@@ -88,10 +88,10 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
         format!("Critical angle: median {}°, 95 % within {}°", degrees(median), bands_words(&[(low, high)]));
     let mut panel = angle_panel(&study.request, title, "share of the draws, %");
     panel.height = 260;
-    let top = bars.iter().map(|bar| bar.share).fold(f64::MIN_POSITIVE, f64::max) * 1.1;
+    let top = bars.iter().map(|(_, share)| *share).fold(f64::MIN_POSITIVE, f64::max) * 1.1;
     panel.y.range = Some((0.0, top));
-    let shown = bars.iter().filter(|bar| bar.share > 0.0);
-    let areas = shown.map(|bar| Fill::rectangle((bar.from, bar.to), (0.0, bar.share))).collect();
+    let shown = bars.into_iter().filter(|(_, share)| *share > 0.0);
+    let areas = shown.map(|(ends, share)| Fill::rectangle(ends, (0.0, share))).collect();
     panel.fills = vec![
         Fill::new(COLOURS[0], 0.14, vec![Fill::rectangle((low, high), (0.0, top))]),
         Fill::new(COLOURS[0], 0.75, areas),
@@ -102,23 +102,16 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
 /// Most bars of a histogram: finer ones cannot be told apart on paper.
 const MOST_BARS: usize = 100;
 
-/// A bar of a histogram.
-struct HistogramBar {
-    from: f64,
-    to: f64,
-    /// Percent.
-    share: f64,
-}
-
-/// The counts at the angles, drawn together so that there are at most [`MOST_BARS`].
-fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<HistogramBar> {
+/// From which to which angle a bar goes, and its height, percent: the counts at the angles, drawn together so
+/// that there are at most [`MOST_BARS`].
+fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<((f64, f64), f64)> {
     let together = angle_deg.len().div_ceil(MOST_BARS).max(1);
     let sum = |counts: &[u32]| counts.iter().map(|c| f64::from(*c)).sum::<f64>();
     let all = sum(counts).max(1.0);
     let borders = edges(angle_deg);
     let bar = |(i, held): (usize, &[u32])| {
         let from = i * together;
-        HistogramBar { from: borders[from], to: borders[from + held.len()], share: 100.0 * sum(held) / all }
+        ((borders[from], borders[from + held.len()]), 100.0 * sum(held) / all)
     };
     counts[..counts.len().min(angle_deg.len())].chunks(together).enumerate().map(bar).collect()
 }
@@ -137,8 +130,8 @@ mod tests {
         counts[180] = 100;
         let bars = bars(&angle_deg, &counts);
         // Shares of 1000 draws are whole tenths of a percent: their sum is exact but for round-off.
-        assert!((bars.iter().map(|b| b.share).sum::<f64>() - 100.0).abs() < 1e-9);
-        assert!(bars.len() <= MOST_BARS && bars.windows(2).all(|w| w[0].to.to_bits() == w[1].from.to_bits()));
-        assert_eq!(bars.iter().filter(|bar| bar.share > 0.0).count(), 3);
+        assert!((bars.iter().map(|(_, share)| share).sum::<f64>() - 100.0).abs() < 1e-9);
+        assert!(bars.len() <= MOST_BARS && bars.windows(2).all(|w| w[0].0.1.to_bits() == w[1].0.0.to_bits()));
+        assert_eq!(bars.iter().filter(|(_, share)| *share > 0.0).count(), 3);
     }
 }
