@@ -106,17 +106,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 
 /// Where the files are.
 fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
-    match &arguments.out {
-        Some(out) if plan.is_whole() => tell_page(out),
-        _ if !plan.is_whole() => Ok(print(&format!(
-            "\nShard {}/{}: {} of {} recordings; `dropcheck merge` makes the campaign of all shards.\n",
-            plan.shard.0,
-            plan.shard.1,
-            plan.own().len(),
-            plan.tests.len()
-        ))?),
-        _ => Ok(()),
+    if plan.is_whole() {
+        return arguments.out.as_deref().map_or(Ok(()), tell_page);
     }
+    let ((index, count), own, all) = (plan.shard, plan.own().len(), plan.tests.len());
+    let merge = "`dropcheck merge` makes the campaign of all shards";
+    Ok(print(&format!("\nShard {index}/{count}: {own} of {all} recordings; {merge}.\n"))?)
 }
 
 fn tell_page(out: &Path) -> miette::Result<()> {

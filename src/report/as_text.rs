@@ -73,15 +73,13 @@ fn fact(fact: &Fact, width: usize) -> String {
 fn table(table: &ReportTable, width: usize) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
+    let gap = if table.shape == TableShape::Fitting && !fits(&columns, rows, width) { 1 } else { 2 };
+    let apart = if table.shape == TableShape::ApartItems { "\n" } else { "" };
     let mut out = match &table.shape {
-        TableShape::Columns => lines(aligned(&columns, rows, 2, width).concat()),
-        TableShape::Fitting => {
-            lines(aligned(&columns, rows, if fits(&columns, rows, width) { 2 } else { 1 }, width).concat())
-        }
+        TableShape::Columns | TableShape::Fitting => lines(aligned(&columns, rows, gap, width).concat()),
         TableShape::Groups(names) => grouped(&columns, rows, names, width),
-        TableShape::Items => (0..rows).map(|row| item(&columns, row, width)).collect(),
-        TableShape::ApartItems => {
-            (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row, width)]).collect()
+        TableShape::Items | TableShape::ApartItems => {
+            (0..rows).map(|row| apart.to_owned() + &item(&columns, row, width)).collect()
         }
     };
     if let Some(sentence) = left_out {
