@@ -1,7 +1,7 @@
 //! One panel to its axes, areas, lines, points and marks.
 
-use super::live::runs;
 use super::legend::{self, LEFT, RIGHT, point, width_of};
+use super::live::runs;
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::numerics::{as_f64, nanoseconds};
@@ -252,20 +252,14 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
 /// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic; a date's day.
 fn tick(value: f64, axis: &PanelAxis) -> String {
     if axis.scale == AxisScale::Days {
-        return date_of_day(value).unwrap_or_default();
+        let date = jiff::Timestamp::from_nanosecond(nanoseconds(value * 86_400.0).into());
+        return date.map_or_else(|_| String::new(), |date| date.strftime("%F").to_string());
     }
     if axis.scale == AxisScale::Logarithmic && !(1e-2..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded }).replace('-', "−")
-}
-
-/// The date of a day since 1970.
-fn date_of_day(day: f64) -> Option<String> {
-    Some(
-        jiff::Timestamp::from_nanosecond(nanoseconds(day * 86_400.0).into()).ok()?.strftime("%F").to_string(),
-    )
 }
 
 #[cfg(test)]

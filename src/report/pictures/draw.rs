@@ -69,7 +69,7 @@ impl Plate {
 
     /// The picture of those panels that have something to show.
     pub(crate) fn picture(mut self, panels: &[Panel]) -> Picture {
-        let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
+        let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.drawn().next().is_some()).collect();
         if panels.is_empty() {
             let mut svg = Svg::default();
             svg.words(self.nothing.0, (WIDTH / 2.0, 80.0), Anchor::Middle, "font-size=\"27\"");

@@ -319,13 +319,8 @@ impl Panel {
         self
     }
 
-    /// Whether there is anything to draw.
-    pub(super) fn has_points(&self) -> bool {
-        self.drawn().next().is_some()
-    }
-
     /// Every point that can be drawn.
-    fn drawn(&self) -> impl Iterator<Item = &(f64, f64)> {
+    pub(super) fn drawn(&self) -> impl Iterator<Item = &(f64, f64)> {
         let lines = self.lines.iter().flat_map(|line| &line.points);
         let areas = self.fills.iter().flat_map(|fill| fill.areas.iter().flatten());
         let points = self.points.iter().flat_map(|points| &points.at);

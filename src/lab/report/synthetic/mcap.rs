@@ -46,7 +46,11 @@ pub(super) fn bytes(
     let mut messages = Vec::new();
     for (channel, place) in recording.channels.iter().zip(places) {
         let id = writer.add_channel(schema, &format!("/daq/{}", place.name), name, &BTreeMap::new())?;
-        messages.extend(blocks(channel).into_iter().map(|block| (block.end_ns(), id, block)));
+        // A block is handed on when it is whole.
+        let log_ns = |block: &SyntheticBlock| {
+            block.timestamp.ns() + nanoseconds(as_f64(block.samples.len()) / block.sample_rate_hz)
+        };
+        messages.extend(blocks(channel).into_iter().map(|block| (log_ns(&block), id, block)));
     }
     messages.sort_by_key(|(log_ns, id, _)| (*log_ns, *id));
     for (sequence, (log_ns, channel_id, block)) in messages.iter().enumerate() {
@@ -102,11 +106,6 @@ fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
 }
 
 impl SyntheticBlock<'_> {
-    /// When the block is whole.
-    fn end_ns(&self) -> i64 {
-        self.timestamp.ns() + nanoseconds(as_f64(self.samples.len()) / self.sample_rate_hz)
-    }
-
     /// The block message on the wire, its fields numbered as in docs/formats.md.
     fn protobuf(&self) -> Vec<u8> {
         let BlockStamp { sec, nsec } = self.timestamp;

@@ -24,11 +24,6 @@ fn drawn(point: &TrialPoint, error: f64) -> f64 {
     error.clamp(point.matters / SPAN, point.matters * SPAN)
 }
 
-fn errors_of(point: &TrialPoint) -> PanelAxis {
-    let range = (0.8 * point.matters / SPAN, 1.25 * point.matters * SPAN);
-    PanelAxis::new(format!("error, 95th percentile, {}", unit(point))).logarithmic().over(Some(range))
-}
-
 /// What an axis has room for: "%" of "% of the slap-down speed".
 fn unit(point: &TrialPoint) -> &str {
     if point.error_unit.starts_with('%') { "%" } else { "as it is" }
@@ -87,6 +82,10 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let seconds = |p: &TrialPoint| 1e-9 * p.time_ns;
     let at = |p: &TrialPoint| (seconds(p), drawn(p, p.p95_error));
     let ends = decades(ways.iter().copied().chain(reading).map(seconds));
+    let times = PanelAxis::new("seconds").logarithmic().over(Some(ends));
+    let range = (0.8 * first.matters / SPAN, 1.25 * first.matters * SPAN);
+    let errors = PanelAxis::new(format!("error, 95th percentile, {}", unit(first)));
+    let errors = errors.logarithmic().over(Some(range));
     let bar = |(index, way): (usize, &&TrialPoint)| {
         let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
         let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
@@ -103,12 +102,7 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
         lines: lines.chain(levels(ways, ends)).collect(),
         points: ways.iter().enumerate().map(mark).chain([ring]).collect(),
         marks: reading.map(|p| Mark { at: seconds(p), label: READING.to_owned() }).into_iter().collect(),
-        ..Panel::new(
-            &first.family,
-            PanelAxis::new("seconds").logarithmic().over(Some(ends)),
-            errors_of(first),
-            PANEL,
-        )
+        ..Panel::new(&first.family, times, errors, PANEL)
     })
 }
 
