@@ -1,6 +1,6 @@
 //! A page to a PDF, by a browser that is installed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -31,9 +31,15 @@ pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {
     let folder = tempfile::Builder::new().prefix("dropcheck-pdf-").tempdir().map_err(|e| failed(&e))?;
     let [html, pdf] = ["report.html", NAME].map(|name| folder.path().join(name));
     std::fs::write(&html, page).map_err(|e| failed(&e))?;
-    let child = Command::new(&browser)
+    let mut command = Command::new(&browser);
+    // Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no
+    // script.
+    #[cfg(unix)]
+    if rustix::process::geteuid().is_root() {
+        command.arg("--no-sandbox");
+    }
+    let child = command
         .args(["--headless", "--disable-gpu", "--no-first-run", "--no-pdf-header-footer"])
-        .args(without_sandbox(folder.path()))
         .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
         .arg(format!("--print-to-pdf={}", pdf.display()))
         .arg(&html)
@@ -52,19 +58,6 @@ fn browser() -> Option<PathBuf> {
         BROWSERS.split(' ').map(move |name| folder.join(name).with_extension(std::env::consts::EXE_EXTENSION))
     });
     on_path.chain(PLACES.map(PathBuf::from)).find(|browser| browser.is_file())
-}
-
-/// Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no
-/// script.
-#[cfg(unix)]
-fn without_sandbox(own: &Path) -> Option<&'static str> {
-    use std::os::unix::fs::MetadataExt;
-    std::fs::metadata(own).is_ok_and(|folder| folder.uid() == 0).then_some("--no-sandbox")
-}
-
-#[cfg(not(unix))]
-fn without_sandbox(_: &Path) -> Option<&'static str> {
-    None
 }
 
 fn ended(mut child: Child) -> std::io::Result<()> {

@@ -12,6 +12,7 @@ pub const OWN_PREFIX: &str = ".dropcheck-";
 /// Complete files that were on their way to their places when the run was stopped.
 const UNFINISHED: &str = ".dropcheck-unfinished";
 /// A folder with more entries is no report's but a person's, and is not exchanged as a whole.
+#[cfg(target_os = "linux")]
 const MOST_ENTRIES: usize = 256;
 
 /// Where a write stopped, and why.
@@ -172,10 +173,9 @@ fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(
 
 /// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false`
 /// where nothing was changed and another way must be found.
+#[cfg(target_os = "linux")]
 fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<bool> {
-    if cfg!(not(target_os = "linux")) {
-        return Ok(false);
-    }
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
     let Some(others) = others(folder, files)? else { return Ok(false) };
     let Ok(staging) = staging_in(parent) else { return Ok(false) };
     if !take_over_rights(folder, staging.path()) {
@@ -188,7 +188,7 @@ fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Re
         }
     }
     sync_folder(staging.path())?;
-    if exchange_names(staging.path(), folder).is_err() {
+    if renameat_with(CWD, staging.path(), CWD, folder, RenameFlags::EXCHANGE).is_err() {
         return Ok(false);
     }
     sync_folder(parent)?;
@@ -207,6 +207,7 @@ fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Re
 }
 
 /// Names in `folder` that are not among `files`; `None` where it is no plain folder of a report.
+#[cfg(target_os = "linux")]
 fn others(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<std::ffi::OsString>>> {
     // Whoever stands in the folder would find himself in one that is gone.
     let is_here = fs::canonicalize(folder).ok() == fs::canonicalize(".").ok();
@@ -226,7 +227,7 @@ fn others(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<s
 }
 
 /// Gives `staging` the owner and permissions of `folder`; `false` where that cannot be.
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 fn take_over_rights(folder: &Path, staging: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let (Ok(old), Ok(new)) = (fs::metadata(folder), fs::metadata(staging)) else { return false };
@@ -234,20 +235,11 @@ fn take_over_rights(folder: &Path, staging: &Path) -> bool {
         && fs::set_permissions(staging, old.permissions()).is_ok()
 }
 
-#[cfg(not(unix))]
-fn take_over_rights(_: &Path, _: &Path) -> bool {
-    true
-}
-
-#[cfg(target_os = "linux")]
-fn exchange_names(one: &Path, other: &Path) -> io::Result<()> {
-    use rustix::fs::{CWD, RenameFlags, renameat_with};
-    Ok(renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE)?)
-}
-
+/// Elsewhere no step exchanges two folders.
 #[cfg(not(target_os = "linux"))]
-fn exchange_names(_: &Path, _: &Path) -> io::Result<()> {
-    Err(io::Error::from(io::ErrorKind::Unsupported))
+#[allow(clippy::unnecessary_wraps, reason = "as where it may fail")]
+fn exchange(_: &Path, _: &Path, _: &[(String, Vec<u8>)]) -> io::Result<bool> {
+    Ok(false)
 }
 
 /// Stages the files in `folder` itself and moves each to its place.
