@@ -58,7 +58,7 @@ pub fn merged(
             };
             if let Some(problem) = problem(&line) {
                 let mend = "run it again: the line was changed, or its disk is damaged";
-                return Err(refused(mend, &format!("{}, line {count}: {problem}", path.display())));
+                return Err(miette!(help = mend, "{}, line {count}: {problem}", path.display()));
             }
             let first = first.get_or_insert_with(|| {
                 all = whole(&own["count"]).unwrap_or(0);
@@ -67,9 +67,9 @@ pub fn merged(
             for (key, words) in COMMON {
                 if own[key] != first[key] {
                     let (path, other) = (path.display(), shards[0].display());
-                    let problem =
-                        format!("{path} {words} than {other} ({key} {}, there {})", own[key], first[key]);
-                    return Err(refused("merge shards of one manifest and one version only", &problem));
+                    let mend = "merge shards of one manifest and one version only";
+                    let values = format!("{key} {}, there {}", own[key], first[key]);
+                    return Err(miette!(help = mend, "{path} {words} than {other} ({values})"));
                 }
             }
             match before.home(number) {
@@ -104,31 +104,22 @@ fn complete(shards: &[PathBuf], all: usize, lines: &LineFiles) -> miette::Result
             shards[file].display()
         ),
     };
-    let first = missing + 1;
-    Err(refused(
-        "run that shard again, with --resume what is done is not done again; then name all shards",
-        &format!(
-            "{what}; {count} of {all} lines are in no shard, the first is number {first} of the campaign"
-        ),
-    ))
-}
-
-fn refused(mend: &'static str, problem: &str) -> miette::Report {
-    miette!(help = mend, "{problem}")
+    let (lost, first) = (format!("{count} of {all} lines are in no shard"), missing + 1);
+    let mend = "run that shard again, with --resume what is done is not done again; then name all shards";
+    Err(miette!(help = mend, "{what}; {lost}, the first is number {first} of the campaign"))
 }
 
 fn cut(path: &Path, line: usize) -> miette::Report {
     let mend = "the run was stopped, or the file was not copied whole: run that shard again with --resume";
-    refused(mend, &format!("{}, line {line}: no whole line of a shard", path.display()))
+    miette!(help = mend, "{}, line {line}: no whole line of a shard", path.display())
 }
 
 fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
     let id = ["id", "scene"].iter().find_map(|key| line[key].as_str()).unwrap_or_default();
     let shard = &line["campaign"]["shard"];
-    let (path, other) = (path.display(), other.display());
-    let problem =
-        format!("{path} repeats {id} of shard {}/{}, which is in {other} already", shard[0], shard[1]);
-    refused("name each shard once", &problem)
+    let (path, other, shard) = (path.display(), other.display(), format!("{}/{}", shard[0], shard[1]));
+    let mend = "name each shard once";
+    miette!(help = mend, "{path} repeats {id} of shard {shard}, which is in {other} already")
 }
 
 /// `campaign.schema` of the first line.
@@ -145,7 +136,7 @@ pub fn no_shard(path: &Path) -> miette::Report {
     let mend = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was \
                 stopped goes on with --resume";
     let path = path.display();
-    refused(mend, &format!("{path} is no shard of a campaign: its first line does not say of which"))
+    miette!(help = mend, "{path} is no shard of a campaign: its first line does not say of which")
 }
 
 /// "I/N": part I, from 0, of N.
