@@ -23,6 +23,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::lines::Text;
+use super::time_base::TimeBaseError;
 use super::{RawChannel, RawRecording, ReadRequest};
 use crate::data::{CaskFile, ChannelSpec, Finding};
 use columns::{HeldColumn, Keep};
@@ -38,7 +39,7 @@ use wanted::Wanted;
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
     let ReadRequest { file, limits, .. } = request;
     let (path, text) = (file.path, Text::open(file, limits)?);
-    let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path, &text))?;
+    let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path))?;
     let plan = |spec: &ChannelSpec| {
         let plan = ColumnPlan::of(path, spec, cask_file.time_of(spec), &layout);
         plan.map_err(|refusal| error::of_channel(path, &spec.name, refusal))
@@ -55,7 +56,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     let Keep { columns, stamps, .. } = keep;
     let mut table = Table { layout: &layout, plans: &plans, wanted: &wanted, columns, stamps };
-    table.drop_blank().map_err(|refusal| complaint::of_rows(path, refusal))?;
+    table.drop_blank().map_err(|refusal| error::of_file(path, refusal.at("the rows")))?;
     let name = |plan: usize| cask_file.channels[plan].name.as_str();
     let refused = |refused: Refused| error::of_channel(path, name(refused.plan), refused.refusal);
     issues.extend(table.settle_times().map_err(refused)?);

@@ -225,7 +225,7 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
         ("[test]\nphotos = [\"none.jpg\"]\n", "none.jpg cannot be read"),
         ("[test]\nphotos = [\"words.png\"]\n", "words.png is no PNG or JPEG"),
         ("[test]\nphotos = [\".\"]\n", ". is not the name of a file"),
-        ("[test]\ndate = \"2026-11-22\"\n", "write year, month and day without quotes"),
+        ("[test]\ndate = \"2026-11-22\"\n", "not a date without quotes"),
         ("[test]\nsignatures = \"Reviewer\"\n", "a list of texts"),
         ("[test.more]\nHook = true\n", "a text or a number"),
         ("[observed]\nk = 0.5\n", "write it as in k = { value = 0.55, u95 = 0.05 }"),

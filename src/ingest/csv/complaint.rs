@@ -1,8 +1,6 @@
 //! What is wrong with a table's rows, columns or times, in words.
 
 use super::super::error::{self, IngestError};
-use super::super::lines::{Line, Text};
-use super::super::number;
 use super::super::refusal::Refusal;
 use super::super::{ReadRequest, RecordingFile};
 use super::layout::Layout;
@@ -16,21 +14,10 @@ pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
 }
 
 /// No table at all.
-pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
-    let lines = text.lines();
-    let inside = |line: &str| Some(line.trim().strip_prefix('"')?.strip_suffix('"')?.to_owned());
-    let is_quoted = |line: &&Line| {
-        inside(&line.text).is_some_and(|line| !line.contains('"') && line.contains([';', ',', '\t']))
-    };
-    let (problem, mend) = if 2 * lines.iter().filter(is_quoted).count() > lines.len() {
-        ("each line stands in quotes as a whole, so that it is one cell", "take the quotes out in a copy")
-    } else {
-        (
-            "no rows of numbers were found",
-            "export one row a sample with comma, semicolon or tab between the columns",
-        )
-    };
-    error::of_file(path, Refusal::new(problem, mend).at("the first 64 KiB"))
+pub(super) fn no_table(path: &Path) -> IngestError {
+    let mend = "export one row a sample with comma, semicolon or tab between the columns, and no quotes \
+                around a whole row";
+    error::of_file(path, Refusal::new("no rows of numbers were found", mend).at("the first 64 KiB"))
 }
 
 /// A row that cannot be read.
@@ -39,13 +26,8 @@ pub(super) fn row_error(
     (layout, wanted): (&Layout, &Wanted),
     error: RowError,
 ) -> IngestError {
-    let headed = |slot: usize| {
-        wanted
-            .columns
-            .get(slot)
-            .and_then(|&c| layout.columns.get(c))
-            .map_or("", |column| column.header.as_str())
-    };
+    let column = |slot: usize| wanted.columns.get(slot).and_then(|&column| layout.columns.get(column));
+    let headed = |slot| format!("column {:?}", column(slot).map_or("", |column| &column.header));
     let (line, problem, mend) = match error {
         RowError::Io(source) => return error::io(path, &source),
         RowError::TooMany => {
@@ -56,29 +38,23 @@ pub(super) fn row_error(
         }
         RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
             line,
-            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones \
-                     before", headed(slot)),
+            format!("{} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),
             "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock \
              times (12:34:56.789); correct the cell in a copy, or name another column of times"
                 .to_owned(),
         ),
-        RowError::Word { line, slot, cell } if number::is_grouped(&cell, Some(layout.dialect.decimal)) => (
-            line,
-            format!("column {:?} holds {cell:?}, a number whose thousands are marked too", headed(slot)),
-            "only a decimal mark is read: export the table again without thousands separators".to_owned(),
-        ),
         RowError::Word { line, slot, cell } => (
             line,
-            format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
+            format!("{} holds {cell:?}, which is no number", headed(slot)),
             format!(
-                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an \
-                 empty cell counts as missing",
+                "the decimal mark of this file is taken as {:?}, without thousands separators; correct the \
+                 cell in a copy, or empty it: an empty cell counts as missing",
                 char::from(layout.dialect.decimal)
             ),
         ),
         RowError::NoTime { line, slot } => (
             line,
-            format!("column {:?} holds no time for this row", headed(slot)),
+            format!("{} holds no time for this row", headed(slot)),
             "fill the time in, or empty the cells of the channels that it times in that row of a copy; or \
              name another column of times"
                 .to_owned(),

@@ -127,7 +127,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let ReadRequest { file, limits, .. } = request;
     let (path, text) = (file.path, Text::open(file, limits)?);
     let (bytes, encoding) = (text.bytes, text.encoding);
-    let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
+    let layout = Layout::of(&text).ok_or_else(|| no_table(path))?;
     let time_column = layout.times.taken;
     // Other columns of times are none's: a pair of columns may end before others.
     let is_timed = |column: usize| !layout.holds_times(column);

@@ -361,7 +361,7 @@ fn remarks_and_sums_are_no_rows() {
 #[test]
 fn tables_that_cannot_be_read_say_why() {
     for (text, parts) in [
-        ("\"t;A1\"\n\"0;1,5\"\n\"1;2,5\"\n", &["stands in quotes as a whole"][..]),
+        ("\"t;A1\"\n\"0;1,5\"\n\"1;2,5\"\n", &["no quotes around a whole row"][..]),
         (
             "t,A1\n0,00,1,25\n0,01,1,75\n0,02,1,50\n",
             &["line 1 has 2 cells, the rows 4", "comma is the decimal mark too"],
