@@ -16,7 +16,7 @@ use crate::data::{
     CaskFile, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2,
     is_number,
 };
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, extent};
 use channel::ChannelFile;
 use index::IndexedChannel;
 use std::collections::BTreeMap;
@@ -103,7 +103,7 @@ fn one_listed(
     issues: &mut Vec<Finding>,
 ) -> ListedChannel {
     let numbers = read.values.iter().copied().filter(|value| is_number(*value));
-    let range = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let range = extent(numbers);
     let said =
         [Some(read.text.encoding.to_owned()), code::meaning(&channel.code), Some(channel.words.clone())];
     let said: Vec<String> = said.into_iter().flatten().filter(|words| !words.is_empty()).collect();

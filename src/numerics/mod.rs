@@ -27,6 +27,12 @@ pub fn as_count(number: f64) -> usize {
     number as usize
 }
 
+/// The least and the largest of some numbers; from infinity down to its negative where there is none.
+#[must_use]
+pub fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
+    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)))
+}
+
 /// A time in whole nanoseconds, as files stamp it.
 #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
 pub fn nanoseconds(time_s: f64) -> i64 {

@@ -18,7 +18,7 @@ use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
 use crate::ingest::ReadRequest;
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, extent};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -225,10 +225,7 @@ impl ListedClock {
         let own_rows = table.own_rows().map_err(|refused| refused.refusal)?;
         let slot = |column: usize| table.wanted.slot(column);
         let times = plan.time_column.map(|time| table.columns[slot(time)].values().into_owned());
-        let (first_s, last_s) = times
-            .iter()
-            .flatten()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+        let (first_s, last_s) = extent(times.iter().flatten().copied());
         if plan.time_column != Some(plan.column) {
             // A value that is missing is no gap of the times.
             let column = &mut table.columns[table.wanted.slot(plan.column)];

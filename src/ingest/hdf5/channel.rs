@@ -11,6 +11,7 @@ use crate::data::{RowsOf, Samples};
 use crate::ingest::clock::Claims;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
+use crate::numerics::extent;
 
 /// A channel before its samples are read.
 pub(super) struct DatasetChannel {
@@ -141,7 +142,7 @@ impl DatasetChannel {
                 let told = clocks::witness((time, &times_s), other, is_decided);
                 uniform.issues.extend(told.map_err(at)?);
             }
-            return Ok(Based { uniform, span_s: Some(clocks::span_s(&times_s)), start });
+            return Ok(Based { uniform, span_s: Some(extent(times_s.iter().copied())), start });
         }
         self.by_rate(samples, unfit)
     }

@@ -8,6 +8,7 @@ use crate::data::{Finding, Samples};
 use crate::ingest::clock::Clock;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::times::{Carrier, Counted, Scale, seconds_a_unit};
+use crate::numerics::extent;
 
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
@@ -135,15 +136,10 @@ pub(super) fn witness(
     is_decided: bool,
 ) -> Result<Option<Finding>, Refusal> {
     let Ok((others, scale)) = counted(other) else { return Ok(None) };
-    let (first_s, last_s) = span_s(taken.1);
+    let (first_s, last_s) = extent(taken.1.iter().copied());
     let Some(unit_s) = scale.beside(last_s - first_s, &others) else { return Ok(None) };
     let others: Vec<f64> = others.into_iter().map(|time| time * unit_s).collect();
     let [one, two] = [taken.0, other].map(|column| format!("{:?}", column.source));
     let clock = Clock { name: &one, times_s: taken.1 };
     clock.borne_out_by(&Clock { name: &two, times_s: &others }, false, is_decided)
-}
-
-/// The least and the largest time, s.
-pub(super) fn span_s(times_s: &[f64]) -> (f64, f64) {
-    times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)))
 }

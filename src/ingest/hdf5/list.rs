@@ -15,7 +15,7 @@ use crate::data::{
 };
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, extent};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -222,10 +222,6 @@ fn why_unreadable(Refusal { problem, remedy, .. }: Refusal) -> String {
 }
 
 fn range(samples: &Samples) -> Option<(f64, f64)> {
-    let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in (0..samples.len()).map(|i| samples.get(i)).filter(|value| is_number(*value)) {
-        smallest = smallest.min(value);
-        largest = largest.max(value);
-    }
-    (smallest <= largest).then_some((smallest, largest))
+    let range = extent((0..samples.len()).map(|i| samples.get(i)).filter(|value| is_number(*value)));
+    (range.0 <= range.1).then_some(range)
 }
