@@ -176,14 +176,22 @@ fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusa
     };
     match acceleration_unit_m_s2(text) {
         Some(m_s2) => Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
+        None if matches!(&text.trim().to_lowercase()[..], "v" | "mv" | "volt" | "volts") => {
+            Err(Refusal::new(
+                format!("the recording gives {} in {text:?}, a voltage", spec.source),
+                format!(
+                    "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in \
+                     this channel of the cask file"
+                ),
+            ))
+        }
         None => Err(Refusal::new(
             format!(
                 "the recording gives {} in {text:?}, which is no unit of acceleration known here",
                 spec.source
             ),
             "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel \
-             of the cask file, or of a voltage `unit = \"V\"` or \"mV\" and `sensitivity` (mV per g, from \
-             the calibration sheet)",
+             of the cask file",
         )),
     }
 }

@@ -116,7 +116,7 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
         return Err(no_cask_file(path, &problem, mend));
     }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    std::str::from_utf8(bytes).map_err(|error| {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = wording::line_of(bytes, error.valid_up_to());
         no_cask_file(
             path,
@@ -124,7 +124,13 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
             "save it as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its \
              accent",
         )
-    })
+    })?;
+    if text.trim().is_empty() {
+        let mend = "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg; `dropcheck \
+                    init RECORDING` writes a cask file to fill in";
+        return Err(no_cask_file(path, &format!("{} is empty", kind.name), mend));
+    }
+    Ok(text)
 }
 
 /// The checked file of this text; its photographs are looked for in the folder `photos`, if any.

@@ -23,7 +23,6 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::lines::Text;
-use super::time_base::TimeBaseError;
 use super::{RawChannel, RawRecording, ReadRequest};
 use crate::data::{CaskFile, ChannelSpec, Finding};
 use columns::{HeldColumn, Keep};

@@ -4,14 +4,15 @@ use super::error::{self, IngestError};
 use super::mme::MmeFiles;
 use super::recording_file::{OpenFile, RecordingFile};
 use super::refusal::Refusal;
-use super::{lines, strangers};
+use super::{lines, number, strangers};
 use crate::data::RecordingFormat;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// How much of a file is looked at: beyond any preamble seen in loggers' exports.
+/// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
 const HEAD_BYTES: u64 = 1 << 16;
+const FORMATS: &str = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME";
 
 /// The format of a recording.
 ///
@@ -44,17 +45,11 @@ pub fn format<'a>(recording: impl Into<RecordingFile<'a>>) -> Result<RecordingFo
     if let Some((what, mend)) = strangers::named(&head) {
         return Err(unknown(path, &format!("it is {what}"), mend));
     }
-    if memchr::memmem::find(&head, b"[[channel]]").is_some() {
-        let mend = "name the recording here; the cask file stands after `--cask`";
-        return Err(unknown(path, "it is a cask file", mend));
-    }
-    if lines::wide_text(&head).is_some() || is_text(&head) {
+    // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
+    if lines::wide_text(&head).is_some() || looks_like_rows(&head) {
         return Ok(RecordingFormat::Csv);
     }
-    let hex: Vec<String> = head.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-    let mend = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME, told by content, not by name; \
-                export the recording as one of these";
-    Err(unknown(path, &format!("its first bytes are {}", hex.join(" ")), mend))
+    Err(stranger(path, &head))
 }
 
 /// ISO-MME, where the folder or zip holds a test in it.
@@ -78,13 +73,83 @@ fn has_hdf5_signature(file: &mut OpenFile, length: u64) -> std::io::Result<bool>
     Ok(false)
 }
 
-/// Whether a file begins with a line of text: a table of rows or none, which its reader finds out. One that
-/// its logger reserved ahead ends in zero bytes.
-fn is_text(head: &[u8]) -> bool {
-    let text = head.split(|&byte| byte == 0).next().unwrap_or_default();
-    // A form feed, and what closes files of DOS.
-    let is_odd = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a);
-    text.iter().any(|byte| matches!(byte, b'\n' | b'\r')) && !text.iter().any(is_odd)
+/// Whether two lines one after the other have as many cells each and numbers in them.
+fn looks_like_rows(head: &[u8]) -> bool {
+    // A file that its logger reserved ahead ends in zero bytes.
+    let head = head.split(|&byte| byte == 0).next().unwrap_or_default();
+    let text = String::from_utf8_lossy(head);
+    let mut lines = text.split(['\n', '\r']).map(str::trim_end).filter(|line| !line.trim().is_empty());
+    let cells_of = |line: &str| [';', '\t', ',', '|', ' '].map(|delimiter| numeric_row(line, delimiter));
+    let Some(first) = lines.next() else { return false };
+    let (mut before, mut count) = (cells_of(first), 1);
+    for line in lines {
+        let cells = cells_of(line);
+        if before.iter().zip(&cells).any(|(before, cells)| before.is_some() && before == cells) {
+            return true;
+        }
+        (before, count) = (cells, count + 1);
+    }
+    // The last line may be cut off, a single one may be all there is after a header.
+    (2..=3).contains(&count) && before.iter().any(Option::is_some)
+}
+
+/// Number of cells of a line that holds numbers, `None` where it holds none, or words alone.
+fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
+    let cells: Vec<&str> = if delimiter == ' ' {
+        line.split_whitespace().collect()
+    } else {
+        line.split(delimiter).map(|cell| cell.trim().trim_matches('"')).collect()
+    };
+    let is_number = |cell: &str| {
+        let cell = cell.replace(',', ".");
+        number::of_cell(cell.as_bytes(), b'.').is_some() || cell.parse::<f64>().is_ok()
+    };
+    let numbers = cells.iter().filter(|cell| is_number(cell)).count();
+    let all_numbers = numbers > 0 && cells.iter().all(|cell| cell.is_empty() || is_number(cell));
+    // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in
+    // clear columns.
+    if all_numbers || (numbers > 0 && cells.len() >= 2 && delimiter != ' ') {
+        Some(cells.len())
+    } else {
+        None
+    }
+}
+
+/// The error for content of no format that is read: its name where it is known, else its first bytes.
+fn stranger(path: &Path, head: &[u8]) -> IngestError {
+    if head.windows(11).any(|window| window == b"[[channel]]") {
+        return unknown(
+            path,
+            "it is a cask file",
+            "name the recording here; the cask file stands after `--cask`",
+        );
+    }
+    if head.starts_with(b"\x89MCAP") {
+        let what = if head.len() < mcap::MAGIC.len() {
+            format!("it begins as MCAP and ends after {} bytes", head.len())
+        } else {
+            "it begins as MCAP of an unknown version".to_owned()
+        };
+        return unknown(path, &what, "take the original from the logger again; MCAP version 0 is read");
+    }
+    let shown = &head[..head.len().min(24)];
+    let is_text = !head.contains(&0)
+        && std::str::from_utf8(shown)
+            .is_ok_and(|text| !text.contains(|c: char| c.is_control() && !c.is_whitespace()));
+    if is_text {
+        let text = String::from_utf8_lossy(shown);
+        return unknown(
+            path,
+            &format!("it is text without rows of numbers and begins {text:?}"),
+            &format!("{FORMATS}, whatever the name; text needs one row a sample, in columns"),
+        );
+    }
+    let hex: Vec<String> = shown.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    unknown(
+        path,
+        &format!("its first bytes are {}", hex.join(" ")),
+        &format!("{FORMATS}, told by content, not by name; export the recording as one of these"),
+    )
 }
 
 fn unknown(path: &Path, found: &str, mend: &str) -> IngestError {
@@ -112,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn text_is_csv_with_any_delimiter_header_or_preamble() {
+    fn rows_of_numbers_are_csv_with_any_delimiter_header_or_preamble() {
         for text in [
             "time_s,a1\n0,1.5\n1,2\n",
             "Logger 7\nDate;1.2.2026\n\nt;a\n0,1;2,5\n0,2;2,6\n",
@@ -124,7 +189,6 @@ mod tests {
             "t;a\r0;1\r1;2\r",
             "t;a\n0;−1,5\n1;−2,5\n",
             "t;a\n0;1\n1;2\n\0\0\0\0",
-            "Dear colleague,\nthe test is done.\n",
         ] {
             assert_eq!(of(text.as_bytes()), Ok(RecordingFormat::Csv), "{text:?}");
             for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
@@ -139,11 +203,14 @@ mod tests {
     fn what_is_no_recording_is_said_to_be_what_it_is() {
         for (content, part) in [
             (&b""[..], "empty"),
+            (
+                b"Dear colleague,\nthe test is done.\nAll went well, we think, and so on.\n",
+                "text without rows",
+            ),
             (b"#ROSBAG V2.0\n", "ROS 1"),
             (b"[cask]\nname = \"x\"\n\n[[channel]]\n", "cask file"),
             (b"\x89MCA", "89 4d 43 41"),
-            (b"\x89MCAP", "ends within its first bytes"),
-            (b"\x89MCAP1\r\n", "unknown version"),
+            (b"\x89MCAP", "ends after 5 bytes"),
             (b"\x00\x01\x02\x03", "00 01 02 03"),
         ] {
             let message = of(content).expect_err(part);

@@ -25,7 +25,7 @@ const UNPACK: &str = "unpack it first, and name the file that was in it";
 
 /// Where a mark stands, its bytes, what the file is, and what to do with it.
 #[rustfmt::skip]
-const MARKS: [(usize, &[u8], &str, &str); 33] = [
+const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
     (0, b"SQLite format 3", "a SQLite file, perhaps a ROS 2 bag",
      "convert it to MCAP: `ros2 bag convert` or `mcap convert`"),
@@ -58,8 +58,6 @@ const MARKS: [(usize, &[u8], &str, &str); 33] = [
     (0, b"DIAEXTENDED HEADER", "the header of a DIAdem file", EXPORT),
     (0, b"\x89MCAP0\n", "an MCAP file that lost bytes in a copy made in text mode",
      "copy it from the logger again, in binary mode"),
-    (0, b"\x89MCAP", "an MCAP file that ends within its first bytes, or of an unknown version",
-     "take the original from the logger again; MCAP version 0 is read"),
     (0, b"\x89PNG", "a picture", EXPORT),
     (0, b"\xFF\xD8\xFF", "a picture", EXPORT),
     (0, b"{\\rtf", "a text document (RTF)", EXPORT),

@@ -8,6 +8,7 @@ use super::refusal::Refusal;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
+use std::fs::Metadata;
 use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -42,7 +43,7 @@ pub(super) fn hashed<T>(
     });
     let sha256 = sha256.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     // A file that is rewritten may well make no sense: that it is comes first.
-    if look(path)? != before {
+    if look(path)?.identities != before {
         return Err(changed(path));
     }
     Ok((read?, sha256?))
@@ -56,24 +57,53 @@ fn changed(path: &Path) -> IngestError {
     error::of_file(path, refusal.at("the whole recording"))
 }
 
-/// What tells a file from itself at another time, and from one that took its place.
-#[derive(PartialEq)]
-struct FileState {
-    bytes: u64,
-    modified: Option<SystemTime>,
-    created: Option<SystemTime>,
+/// What tells a file from itself at another time.
+#[cfg(unix)]
+type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
+#[cfg(not(unix))]
+type Identity = (u64, Option<SystemTime>);
+
+/// Device, number, length, and the times of the last change of content and of anything; with the later of the
+/// two times.
+#[cfg(unix)]
+fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
+    use std::os::unix::fs::MetadataExt;
+    let [content, anything] = [(file.mtime(), file.mtime_nsec()), (file.ctime(), file.ctime_nsec())];
+    let (seconds, nanoseconds) = content.max(anything);
+    let since = |(seconds, nanoseconds): (i64, i64)| {
+        Some(Duration::new(u64::try_from(seconds).ok()?, u32::try_from(nanoseconds).ok()?))
+    };
+    let latest = since((seconds, nanoseconds)).and_then(|since| SystemTime::UNIX_EPOCH.checked_add(since));
+    ((file.dev(), file.ino(), file.len(), content, anything), latest)
 }
 
-/// The states of a recording's files.
-fn look(path: &Path) -> Result<Vec<FileState>, IngestError> {
-    let state = |place: &Path| {
-        let file = std::fs::metadata(place).map_err(|source| error::io(place, &source))?;
-        Ok(FileState { bytes: file.len(), modified: file.modified().ok(), created: file.created().ok() })
-    };
-    match names(path)? {
-        Some(names) => names.iter().map(|name| state(&path.join(name))).collect(),
-        None => Ok(vec![state(path)?]),
+/// Length and the time of the last change.
+#[cfg(not(unix))]
+fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
+    let modified = file.modified().ok();
+    ((file.len(), modified), modified)
+}
+
+/// A recording's files at one moment.
+struct FilesState {
+    /// Of each.
+    identities: Vec<Identity>,
+    /// When the last of them was changed.
+    latest: Option<SystemTime>,
+}
+
+fn look(path: &Path) -> Result<FilesState, IngestError> {
+    let mut look = FilesState { identities: Vec::new(), latest: None };
+    let names = names(path)?;
+    for place in names
+        .map_or_else(|| vec![path.to_owned()], |names| names.iter().map(|name| path.join(name)).collect())
+    {
+        let file = std::fs::metadata(&place).map_err(|source| error::io(&place, &source))?;
+        let (identity, latest) = identity(&file);
+        look.identities.push(identity);
+        look.latest = look.latest.max(latest);
     }
+    Ok(look)
 }
 
 /// The names of the files of a recording that is a folder; `None` where it is a file itself.
@@ -82,15 +112,14 @@ fn names(path: &Path) -> Result<Option<Vec<String>>, IngestError> {
     Ok(found.map(|found| found.names().cloned().collect()))
 }
 
-/// The states of a recording's files, looked at when a later change must show.
-fn at_rest(path: &Path) -> Result<Vec<FileState>, IngestError> {
+/// The identities of a recording's files, looked at when a later change must show.
+fn at_rest(path: &Path) -> Result<Vec<Identity>, IngestError> {
     for _ in 0..MOST_LOOKS {
-        let files = look(path)?;
-        let latest = files.iter().filter_map(|file| file.modified).max();
+        let FilesState { identities, latest } = look(path)?;
         // A time to come is another clock's, and no tick of this one's.
         match latest.and_then(|latest| latest.elapsed().ok()).and_then(|age| TICKS.checked_sub(age)) {
             Some(wait) if !wait.is_zero() => std::thread::sleep(wait),
-            _ => return Ok(files),
+            _ => return Ok(identities),
         }
     }
     Err(changed(path))

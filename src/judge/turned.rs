@@ -24,7 +24,13 @@ pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFi
         let is_told = order > 0 && there.abs() > 0.5;
         if is_told { -0.5 * slope * here / (there * there) * (a * a + b * b) * mean } else { 0.0 }
     };
-    flight.modes.iter().zip(flight.bending_orders(signals, length_m)).zip(&plateau.ringing_m_s).map(of_mode).sum()
+    flight
+        .modes
+        .iter()
+        .zip(flight.bending_orders(signals, length_m))
+        .zip(&plateau.ringing_m_s)
+        .map(of_mode)
+        .sum()
 }
 
 #[cfg(test)]

@@ -55,8 +55,7 @@ pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cas
     let signals = &integrated.signals;
     let nearest = struck_first(signals).filter(|_| cask.is_body)?;
     let to_s = window.to_s - CLEAR_S;
-    let begin_s =
-        |sought_s: f64| touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s));
+    let begin_s = |sought_s: f64| touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s));
     let mut begins_s: Vec<f64> = SOUGHT_S.into_iter().filter_map(begin_s).collect();
     begins_s.dedup();
     let read = |from_s: f64| {

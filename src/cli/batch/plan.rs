@@ -1,10 +1,10 @@
 //! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in
 //! which the campaign has them.
 
+use super::super::lines;
 use super::manifest;
 use super::paths::{recordings, stem};
 use super::planned::{PlannedTest, cask_of};
-use super::super::lines;
 use crate::ingest::{bytes_of, hexadecimal};
 use crate::report::folder_name;
 use miette::miette;
@@ -83,7 +83,8 @@ impl CampaignPlan {
         let test = &self.tests[number];
         let object = |pairs: &[(String, String)]| pairs.iter().cloned().collect::<BTreeMap<String, String>>();
         let place = json!({
-            "of": self.of, "source": self.source, "number": number, "count": self.tests.len(), "shard": [self.shard.0, self.shard.1],
+            "of": self.of, "source": self.source, "number": number, "count": self.tests.len(),
+            "shard": [self.shard.0, self.shard.1],
             "recording": test.shown, "cask": test.cask_shown, "report": test.folder,
             "stated": object(&test.stated), "carried": object(&test.carried),
         });

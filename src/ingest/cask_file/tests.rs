@@ -290,7 +290,7 @@ fn files_that_are_none_are_told_apart() {
         parse(&path).map_err(|error| told(&error))
     };
     for (content, part) in [
-        (&b""[..], "the cask file has no [cask]"),
+        (&b""[..], "is empty"),
         (b"[cask]\nname = \"Beh\xE4lter\"\n", "line 2 is not UTF-8"),
         (b"\x89HDF\r\n\x1a\n", "this is a recording"),
         (b"t;a\n0;1\n", "box.toml, line 1"),

@@ -36,6 +36,7 @@ impl Section<'_> {
             Some((number, unit)) => unit_mend(number, unit),
             None if plain.parse::<f64>().is_ok() => format!("write it without quotes: {key} = {plain}"),
             None if is_nan => "write what it is: `dropcheck init` leaves nan where only you know it".into(),
+            None if matches!(value, DeValue::Float(_)) => "write a finite number".into(),
             None => self.form(key),
         }
     }

@@ -8,11 +8,6 @@ use super::rows::RowError;
 use super::wanted::Wanted;
 use std::path::Path;
 
-/// Rows that are refused as a whole.
-pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
-    error::of_file(path, refusal.at("the rows"))
-}
-
 /// No table at all.
 pub(super) fn no_table(path: &Path) -> IngestError {
     let mend = "export one row a sample with comma, semicolon or tab between the columns, and no quotes \

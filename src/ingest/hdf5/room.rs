@@ -23,7 +23,7 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::rc::Rc;
 use std::sync::{Arc, OnceLock};
 
@@ -191,7 +191,7 @@ impl File {
     }
 
     fn lose(&self) -> &Refusal {
-        self.lost.get_or_init(|| self.link.borrow_mut().end(true))
+        self.lost.get_or_init(|| self.link.borrow_mut().end())
     }
 }
 
@@ -228,7 +228,7 @@ impl Link {
                 Ok((link, Opened { user_block, library, is_walled }))
             }
             Ok((Reply::Refused(words), _)) => Err(fault::of_words(&words)),
-            _ => Err(link.end(false)),
+            _ => Err(link.end_before_answer()),
         }
     }
 
@@ -255,16 +255,26 @@ impl Link {
         }
     }
 
-    /// Ends the process and says why it could not go on. Before it has opened the file it ends with a status
-    /// of its own where the program is none for it.
-    fn end(&mut self, has_opened: bool) -> Refusal {
-        let problem = match self.process.take().map(Watched::end) {
-            Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
-            Some(ProcessEnd::With(status)) if !has_opened && status.code().is_some_and(|code| code != 0) => {
-                return unstarted(&io::Error::other(status.to_string()));
+    /// As [`Self::end`] where there was no answer at all: the library breaks off by a signal, a program that
+    /// is none for it by a status.
+    fn end_before_answer(&mut self) -> Refusal {
+        match self.process.take().map(Watched::end) {
+            Some(ProcessEnd::With(status)) if status.code().is_some_and(|code| code != 0) => {
+                unstarted(&io::Error::other(format!("{status}")))
             }
-            // By a signal where it broke off, or took more processor time or memory than reading can need.
-            Some(ProcessEnd::With(status)) => format!("ended before it had answered ({status})"),
+            ended => Self::fault(ended.as_ref()),
+        }
+    }
+
+    /// Ends the process and says why it could not go on.
+    fn end(&mut self) -> Refusal {
+        Self::fault(self.process.take().map(Watched::end).as_ref())
+    }
+
+    fn fault(ended: Option<&ProcessEnd>) -> Refusal {
+        let problem = match ended {
+            Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
+            Some(ProcessEnd::With(status)) => ending(*status),
             Some(ProcessEnd::ByReader) | None => "gave no answer that can be read".into(),
         };
         Refusal::new(
@@ -323,4 +333,22 @@ fn unstarted(refusal: &io::Error) -> Refusal {
         "a program that uses this library names it: dropcheck::read_hdf5_with(program), in Python \
          dropcheck.read_hdf5_with(python)",
     )
+}
+
+/// How the process ended, after "the HDF5 library".
+fn ending(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        use rustix::process::Signal;
+        let took_too_long = [Signal::XCPU.as_raw(), Signal::KILL.as_raw()].contains(&signal);
+        return if took_too_long {
+            "took more processor time or memory than reading it can need and was stopped".into()
+        } else {
+            format!("broke off in it (signal {signal})")
+        };
+    }
+    match status.code() {
+        Some(0) | None => "ended before it had answered".into(),
+        Some(code) => format!("broke off in it (status {code})"),
+    }
 }

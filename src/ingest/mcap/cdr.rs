@@ -186,7 +186,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     /// The bytes of a number.
     fn stored(&mut self, number: NumberType) -> Result<&'a [u8], re_cdr::Error> {
         self.reader.align(number.bytes())?;
-        Ok(self.reader.read_bytes(number.bytes())?)
+        self.reader.read_bytes(number.bytes())
     }
 
     /// A string's bytes without the closing zero.

@@ -45,26 +45,35 @@ pub(super) fn several(
 ) -> Refusal {
     /// More no longer fit a terminal's few lines.
     const HANDFUL: usize = 8;
+    let listed = |words: Vec<String>| {
+        let more = if words.len() > HANDFUL { " …" } else { "" };
+        words.into_iter().take(HANDFUL).collect::<Vec<_>>().join(", ") + more
+    };
     let source = &spec.source;
     let field = path::field_in(source, topic).unwrap_or_default();
-    let mut asked = match (source, &spec.rows) {
+    let asked = match (source, &spec.rows) {
         (_, Some(rows)) => format!("{source} has no messages {rows} alone"),
         (Source::TopicField { channel: Some(_), .. }, _) => format!("there are no samples of {source} alone"),
         _ => format!("{source} holds the samples of several sensors, which are never one signal"),
     };
-    let (mend, names): (_, Vec<String>) = if numbers.len() > 1 {
-        asked += &format!(": {} MCAP channels write on the topic {topic}", numbers.len());
-        let mend = format!("source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of");
-        (mend, numbers.iter().map(|number| format!("channel = {number}")).collect())
-    } else {
-        ("one in this [[channel]]:".to_owned(), rows.iter().map(ToString::to_string).collect())
-    };
-    if names.is_empty() {
-        return Refusal::new(asked, "its messages name no sensor: take `where` or `channel` out");
+    let channels = listed(numbers.iter().map(|number| format!("channel = {number}")).collect());
+    if numbers.len() > 1 {
+        return Refusal::new(
+            format!("{asked}: {} MCAP channels write on the topic {topic}", numbers.len()),
+            format!(
+                "name one: source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of \
+                 {channels}"
+            ),
+        );
     }
-    let more = if names.len() > HANDFUL { " …" } else { "" };
-    let named = names.into_iter().take(HANDFUL).collect::<Vec<_>>().join(", ");
-    Refusal::new(asked, format!("name {mend} {named}{more}"))
+    let mend = match rows[..] {
+        [] => format!("its messages name no sensor: take `where` out, or name one of {channels}"),
+        _ => format!(
+            "name one in this [[channel]]: {}",
+            listed(rows.iter().map(ToString::to_string).collect())
+        ),
+    };
+    Refusal::new(asked, mend)
 }
 
 /// The field that is named as the time is in no message.

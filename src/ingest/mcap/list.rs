@@ -4,7 +4,7 @@ use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::numbers::Extent;
 use super::plan::AskedField;
 use super::scanned::Scanned;
-use super::topic::{Series, TopicChannel};
+use super::topic::{TopicChannel, TopicSeries};
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::ReadRequest;
@@ -25,7 +25,7 @@ pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     let (scanned, mut series) = walked.finish();
     let mut issues = scanned.findings(None);
     let mut writers: HashMap<String, usize> = HashMap::new();
-    for of_channel in series.chunk_by(Series::is_beside) {
+    for of_channel in series.chunk_by(TopicSeries::is_beside) {
         let name = &of_channel[0].topic().name;
         issues.extend(of_channel[0].channel.gathered.undecoded(Some(name)).map(Finding::from));
         *writers.entry(name.clone()).or_default() += 1;
@@ -49,7 +49,7 @@ pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
         channels: Vec::new(),
         issues,
     };
-    for of_channel in series.chunk_by_mut(Series::is_beside) {
+    for of_channel in series.chunk_by_mut(TopicSeries::is_beside) {
         let is_alone = writers[&of_channel[0].topic().name] == 1;
         add(&mut listing, of_channel, is_alone, zero_ns);
     }
@@ -74,7 +74,7 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
 
 /// Adds a line for each field of a channel and each sensor, or one that says why there is none, and what
 /// reading would refuse; `is_alone` where no other writes on its topic.
-fn add(listing: &mut Listing, of_channel: &mut [Series], is_alone: bool, zero_ns: Option<i64>) {
+fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, zero_ns: Option<i64>) {
     let channel = of_channel[0].channel.clone();
     let TopicChannel { topic, number, has_sensors, gathered } = &*channel;
     let (messages, issues) = (gathered.messages, &mut listing.issues);

@@ -6,6 +6,9 @@ use crate::ingest::hdf5::names::{AttributeRole, role};
 use crate::ingest::times::Scale;
 use crate::ingest::vocabulary::{self, Meaning};
 
+/// So many fields are heeded for one signal besides stamps, units and rates: no message says more of its
+/// samples.
+const MOST_BESIDE: usize = 32;
 /// So many fields of a message type are heeded: no sensor's message says more of its samples.
 const MOST_TELLING: usize = 64;
 
@@ -25,7 +28,7 @@ impl Plan {
                 plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
             }
             let mut field = Field { asked: asked.clone(), value, beside: Vec::new() };
-            asked.sensor.iter().for_each(|path| field.sensor(&mut plan, path));
+            field.sensor(&mut plan, asked.sensor.as_ref());
             for path in asked.times.iter().flatten() {
                 field.time(&mut plan, path);
             }
@@ -54,14 +57,12 @@ impl Field {
     fn say(&mut self, plan: &mut Plan, path: &FieldPath, (want, says): (Want, Says)) {
         let slot = plan.slot(path, want);
         let is_new = self.beside.iter().all(|known| (known.slot, known.says) != (slot, says));
-        if is_new {
-            // The paths of others are said in refusals.
-            let field = match says {
-                Says::Stamp | Says::Unit | Says::Rate { .. } => {
-                    path.last_name().unwrap_or_default().to_owned()
-                }
-                _ => path.to_string(),
-            };
+        // The paths of others are said in refusals.
+        let has_path = |says: Says| !matches!(says, Says::Stamp | Says::Unit | Says::Rate { .. });
+        let with_path = self.beside.iter().filter(|known| has_path(known.says)).count();
+        if is_new && (!has_path(says) || with_path < MOST_BESIDE) {
+            let name = || path.last_name().unwrap_or_default().to_owned();
+            let field = if has_path(says) { path.to_string() } else { name() };
             self.beside.push(Beside { slot, says, field });
         }
     }
@@ -74,9 +75,12 @@ impl Field {
     }
 
     /// Takes the field at `path` for the name or number of their sensor.
-    pub(super) fn sensor(&mut self, plan: &mut Plan, path: &FieldPath) {
-        self.say(plan, path, (Want::Text, Says::Sensor));
-        self.say(plan, path, (Want::Numbers, Says::Sensor));
+    pub(super) fn sensor(&mut self, plan: &mut Plan, path: Option<&FieldPath>) {
+        for (path, want) in
+            path.into_iter().flat_map(|path| [Want::Text, Want::Numbers].map(|want| (path, want)))
+        {
+            self.say(plan, path, (want, Says::Sensor));
+        }
     }
 
     /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it:
@@ -110,7 +114,7 @@ impl Field {
         let is_beside = |t: &&Telling| t.message == *message && t.path != self.asked.path;
         for Telling { path, says, .. } in telling.iter().filter(is_beside).collect::<Vec<_>>() {
             match says {
-                Says::Sensor if self.asked.may_be_sensor(path) => self.sensor(plan, path),
+                Says::Sensor if self.asked.may_be_sensor(path) => self.sensor(plan, Some(path)),
                 Says::Time(_) if self.asked.times.is_none() => self.time(plan, path),
                 Says::Rate { meaning, .. } => self.rate(plan, path, (*meaning, level), telling),
                 Says::Sensor | Says::Time(_) | Says::Unit => {}

@@ -4,7 +4,7 @@ use super::column::{CLOCK_IS_SET_NS, seconds_from};
 use super::complaint;
 use super::path;
 use super::scanned::Scanned;
-use super::topic::Series;
+use super::topic::TopicSeries;
 use super::topics::LOG_TIME;
 use super::walk::walk;
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
@@ -61,10 +61,15 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
 }
 
 /// The place of the samples that a channel means: of the longest topic that gave some.
-fn chosen(path: &Path, spec: &ChannelSpec, series: &[Series], scanned: &Scanned) -> Result<usize, Refusal> {
+fn chosen(
+    path: &Path,
+    spec: &ChannelSpec,
+    series: &[TopicSeries],
+    scanned: &Scanned,
+) -> Result<usize, Refusal> {
     let name_bytes = |at: &usize| series[*at].topic().name.len();
     // A topic that cannot be read has no field to differ.
-    let fits = |one: &Series| {
+    let fits = |one: &TopicSeries| {
         let path = path::field_in(&spec.source, &one.topic().name);
         path.is_some_and(|path| one.field.as_ref().is_none_or(|field| field.asked.path == path))
     };
@@ -94,7 +99,7 @@ fn chosen(path: &Path, spec: &ChannelSpec, series: &[Series], scanned: &Scanned)
 }
 
 /// Whether a channel may mean these samples by the number of an MCAP channel and the sensor that it states.
-fn is_picked(spec: &ChannelSpec, series: &Series) -> bool {
+fn is_picked(spec: &ChannelSpec, series: &TopicSeries) -> bool {
     let is_channel = match &spec.source {
         Source::TopicField { channel: Some(channel), .. } => *channel == series.channel.number,
         _ => true,
@@ -104,7 +109,7 @@ fn is_picked(spec: &ChannelSpec, series: &Series) -> bool {
 }
 
 /// What was wrong with single messages of a channel.
-fn message_issues(spec: &ChannelSpec, Series { channel, column, .. }: &Series) -> Vec<Finding> {
+fn message_issues(spec: &ChannelSpec, TopicSeries { channel, column, .. }: &TopicSeries) -> Vec<Finding> {
     let (messages, good, bad) = (channel.gathered.messages, column.good_stamps, column.bad_stamps);
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
     let found = log_time.into_iter().chain(channel.gathered.undecoded(None)).map(Finding::from);

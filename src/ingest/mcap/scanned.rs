@@ -26,8 +26,9 @@ pub(super) struct Losses {
     first: Vec<McapFinding>,
     /// Those that no longer fit in `first`.
     more: u64,
-    /// How many records are bad, and of what kind and where the first of them is.
-    bad_records: Option<McapFinding>,
+    bad_records: u64,
+    /// The first of them; its count is not yet that of all.
+    first_bad_record: Option<McapFinding>,
 }
 
 impl Losses {
@@ -43,16 +44,14 @@ impl Losses {
 
     /// Whether nothing was lost so far.
     pub(super) fn is_empty(&self) -> bool {
-        self.first.is_empty() && self.bad_records.is_none()
+        self.first.is_empty() && self.bad_records == 0
     }
 
     /// Takes `count` records whose body does not parse, or messages that belong to no channel.
     pub(super) fn push_records(&mut self, opcode: u8, at: u64, count: u64, why: &'static str) {
-        if let Some(McapFinding::BadRecords { count: all, .. }) = &mut self.bad_records {
-            *all += count;
-        } else {
-            self.bad_records = Some(McapFinding::BadRecords { count, kind: record_name(opcode), at, why });
-        }
+        self.bad_records += count;
+        let kind = record_name(opcode);
+        self.first_bad_record.get_or_insert(McapFinding::BadRecords { count, kind, at, why });
     }
 
     /// Takes that the file ends before its time.
@@ -65,10 +64,12 @@ impl Scanned {
     /// What was lost, bad records and what is too much to tell summed up; the last message kept begins at
     /// `last_kept_s`.
     pub(super) fn findings(&self, last_kept_s: Option<f64>) -> Vec<Finding> {
-        let Losses { first, more, bad_records } = &self.losses;
+        let Losses { first, more, bad_records, first_bad_record } = &self.losses;
         let mut found = first.clone();
         found.extend((*more > 0).then_some(McapFinding::MoreDamage { places: *more }));
-        found.extend(bad_records.clone());
+        if let Some(McapFinding::BadRecords { kind, at, why, .. }) = *first_bad_record {
+            found.push(McapFinding::BadRecords { count: *bad_records, kind, at, why });
+        }
         let messages = self.counts.messages();
         if let (true, Some(claimed)) = (found.is_empty(), self.claimed_messages.filter(|&n| n != messages)) {
             found.push(McapFinding::OtherCount { claimed, found: messages });

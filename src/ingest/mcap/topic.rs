@@ -77,7 +77,7 @@ pub(super) struct TopicChannel {
 }
 
 /// What a channel gave for one field, of one sensor where its messages name such.
-pub(super) struct Series {
+pub(super) struct TopicSeries {
     pub(super) channel: Rc<TopicChannel>,
     /// `None` where its topic has none.
     pub(super) field: Option<Field>,
@@ -85,7 +85,7 @@ pub(super) struct Series {
     pub(super) column: Column,
 }
 
-impl Series {
+impl TopicSeries {
     pub(super) fn topic(&self) -> &Topic {
         &self.channel.topic
     }
@@ -167,7 +167,7 @@ impl Gathered {
         }
         self.has_further |= other.has_further;
         for more in &mut other.sensors {
-            let at = self.sensor(more.rows.as_ref().map(|rows| &*rows.is), || more.rows.clone());
+            let at = self.sensor(|own| *own == more.rows, || more.rows.clone());
             let own = &mut self.sensors[at];
             let known = own.columns.len().min(more.columns.len());
             own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
@@ -175,10 +175,13 @@ impl Gathered {
         }
     }
 
-    /// The place of the sensor `is`, which is added where it is not there yet.
-    fn sensor(&mut self, is: Option<&str>, rows: impl FnOnce() -> Option<RowsOf>) -> usize {
-        let is_it = |sensor: &Sensor| sensor.rows.as_ref().map(|rows| &*rows.is) == is;
-        if let Some(at) = self.sensors.iter().position(is_it) {
+    /// The place of the sensor that `is_it`, which is added where it is not there yet.
+    fn sensor(
+        &mut self,
+        is_it: impl Fn(&Option<RowsOf>) -> bool,
+        rows: impl FnOnce() -> Option<RowsOf>,
+    ) -> usize {
+        if let Some(at) = self.sensors.iter().position(|sensor| is_it(&sensor.rows)) {
             return at;
         }
         if self.sensors.len() < MOST_SENSORS {
@@ -196,9 +199,10 @@ impl Gathered {
         field: usize,
         is_listed: bool,
     ) -> &mut Column {
+        let is_it = |rows: &Option<RowsOf>| rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
         let rows =
             |(is, beside): &(Cow<str>, &Beside)| RowsOf { column: beside.field.clone(), is: is.to_string() };
-        let at = self.sensor(named.map(|(is, _)| &**is), || named.map(rows));
+        let at = self.sensor(is_it, || named.map(rows));
         let columns = &mut self.sensors[at].columns;
         if columns.len() <= field {
             columns.resize_with(field + 1, || Column::new(is_listed));
@@ -208,7 +212,7 @@ impl Gathered {
 
     /// A series for each sensor and field of the channel `number`, after its last message; one without a
     /// field where its topic has none.
-    pub(super) fn series(mut self, topic: Rc<Topic>, number: u16, is_listed: bool) -> Vec<Series> {
+    pub(super) fn series(mut self, topic: Rc<Topic>, number: u16, is_listed: bool) -> Vec<TopicSeries> {
         let mut sensors = std::mem::take(&mut self.sensors);
         if sensors.is_empty() {
             sensors.push(Sensor { rows: None, columns: Vec::new() });
@@ -230,7 +234,7 @@ impl Gathered {
                         "have the recorder write a channel for each sensor",
                     ));
                 }
-                all.push(Series { channel: channel.clone(), field, rows: rows.clone(), column });
+                all.push(TopicSeries { channel: channel.clone(), field, rows: rows.clone(), column });
             }
         }
         all

@@ -7,7 +7,7 @@ use super::message_type::{MessageType, MessageTypes};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
-use super::topic::{Gathered, Message, Part, Series, Topic};
+use super::topic::{Gathered, Message, Part, Topic, TopicSeries};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
 use mcap::Schema;
@@ -264,7 +264,7 @@ impl<'a> Topics<'a> {
 
     /// What each channel with messages gave for each field, by topics in the order of the file; of types
     /// without a message one that no other has on its topic.
-    pub(super) fn finish(self, taken: Part) -> Vec<Series> {
+    pub(super) fn finish(self, taken: Part) -> Vec<TopicSeries> {
         let is_listed = self.asked.is_none();
         let mut channels: Vec<Vec<(u16, Gathered)>> = self.all.iter().map(|_| Vec::new()).collect();
         for ((topic, number), gathered) in self.channels.into_iter().zip(taken.gathered) {

@@ -5,7 +5,7 @@ use super::chunk::{Chunk, ChunkFault};
 use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary, Summed};
-use super::topic::{Part, Series};
+use super::topic::{Part, TopicSeries};
 use super::topics::Topics;
 use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::ReadRequest;
@@ -32,7 +32,7 @@ pub(super) struct Walked<'a> {
 
 impl Walked<'_> {
     /// What each channel gave for each field, by topics in the order of the file.
-    pub(super) fn finish(self) -> (Scanned, Vec<Series>) {
+    pub(super) fn finish(self) -> (Scanned, Vec<TopicSeries>) {
         (self.scanned, self.topics.finish(self.taken))
     }
 }

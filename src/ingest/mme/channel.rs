@@ -137,15 +137,22 @@ impl<'a> ChannelFile<'a> {
     /// # Errors
     /// None of both states one, or too few samples are there.
     pub(super) fn placed(&mut self, cask_hz: Option<f64>) -> Result<Uniform, Refusal> {
-        // Explicit times stand in another channel, which is not read.
-        let is_explicit = |line: &HeaderLine| line.value.eq_ignore_ascii_case("explicit");
-        let is_explicit = cask_hz.is_none() && self.text.line(REFERENCE).is_some_and(is_explicit);
-        let line = self.text.line(INTERVAL).filter(|_| !is_explicit);
+        let line = self.text.line(INTERVAL);
         let stated = line.and_then(|line| Statement::of(INTERVAL, &line.value, Meaning::Interval(1.0)));
+        let is_explicit = |line: &HeaderLine| line.value.eq_ignore_ascii_case("explicit");
+        let is_explicit = self.text.line(REFERENCE).is_some_and(is_explicit);
+        if cask_hz.is_none() && (stated.is_none() || is_explicit) {
+            let said = line.map_or("not stated", |line| line.value.as_str());
+            let said = format!("{INTERVAL} is {said}");
+            let problem =
+                if is_explicit { "its times stand in another channel, which is not read" } else { &said };
+            let problem = format!("{}: {problem}", self.text.name);
+            return Err(Refusal::new(problem, "give sample_rate_hz in this channel of the cask file"));
+        }
         let claims = Claims { cask_hz, are_times_named: false, stated: stated.into_iter().collect() };
         let samples = Samples::F64(std::mem::take(&mut self.values));
         let placed = time_base::from_claims(self.start_s.unwrap_or_default(), &claims, samples);
-        let mut uniform = placed?;
+        let mut uniform = placed.map_err(|refusal| refusal.at(self.text.name))?;
         uniform.issues.append(&mut self.issues);
         Ok(uniform)
     }
