@@ -189,7 +189,7 @@ impl FlightFit {
     }
 
     /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
-    /// body does not bend so: slower than any cask; both ends go apart, or together in a second mode, near the
+    /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
     /// slowest in which they go together; or as far as one another where bending would let them differ.
     #[must_use]
     pub fn swinging(&self, signals: &[Signal], length_m: f64) -> usize {
@@ -202,13 +202,14 @@ impl FlightFit {
         let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ALONE);
         let mut apart = shown.iter().filter(|(_, along)| (-ALONE..-1.0 / ALONE).contains(along));
         let (slowest, next, apart) = (together.next(), together.next(), apart.next());
+        let length_s = self.to_s - self.from_s;
         let is_near = |hz: f64, than_hz: f64| hz < SECOND_MODE * than_hz;
         let apart_hz = apart.map(|apart| apart.0).filter(|apart_hz| {
             slowest.map_or(*apart_hz < FASTEST_SWING_HZ, |slowest| is_near(*apart_hz, slowest.0))
         });
         let swings = |(hz, along): &&(f64, f64)| {
             (*hz < FASTEST_SWING_HZ && goes_straight(*along, signals, length_m))
-                || next.is_some_and(|next| is_near(next.0, *hz))
+                || next.is_some_and(|next| is_near(next.0, *hz) && (next.0 - hz) * length_s > RESOLVED)
                 || apart_hz.is_some_and(|apart_hz| is_near(*hz, apart_hz))
         };
         let together_hz = slowest.filter(swings).map(|(hz, _)| *hz);
@@ -270,8 +271,7 @@ impl FlightFit {
     }
 }
 
-/// Whether the first end goes along with the second by nearly as much as in a straight motion, where the first
-/// bending mode would let them differ.
+/// Whether both ends go nearly as far as one another, where the first bending mode would let them differ.
 fn goes_straight(along: f64, signals: &[Signal], length_m: f64) -> bool {
     let across = || signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.position_m / length_m);
     let (first, last) = (across().fold(f64::INFINITY, f64::min), across().fold(0.0, f64::max));
@@ -323,7 +323,12 @@ mod tests {
         assert_eq!(swinging(&[(40.0, -2.0), (120.0, 1.0)]), 1);
         assert_eq!(swinging(&[(60.0, -0.05), (90.0, 1.0)]), 0, "the first end stands on a node");
         assert_eq!(swinging(&[(65.0, 1.0), (108.0, -1.1)]), 2, "contents of half the mass");
-        assert_eq!(swinging(&[(86.0, 0.9), (106.0, 0.7)]), 1, "a beam goes together in one of two such modes");
+        assert_eq!(
+            swinging(&[(86.0, 0.9), (106.0, 0.7)]),
+            1,
+            "a beam goes together in one of two such modes"
+        );
+        assert_eq!(swinging(&[(86.0, 0.9), (87.0, 0.7)]), 0, "one mode that is fitted as two");
         // At 0.06 and 0.86 of its length a beam that bends goes twice as far at the first place.
         assert_eq!(of_modes(&[(45.0, 1.9), (150.0, 1.9)], 4.3), 0);
         assert_eq!(of_modes(&[(45.0, 1.0), (150.0, 1.9)], 4.3), 1, "ends that go as far as one another");
