@@ -5,7 +5,7 @@ use super::impact::Impact;
 use super::impacts::{self, Tabulated};
 use super::rotation;
 use super::second_impact::SecondImpact;
-use super::setup::{by_law, inward, sticking};
+use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
     Events, Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
@@ -115,10 +115,7 @@ fn moved(
     events: &Events,
 ) -> Option<Flown> {
     let signals = &impact.signals;
-    let (edge, friction) = contact(file, integrated, &flight, events);
-    // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
-    let stated = motion::outcome(integrated, &flight, events, &edge)?;
-    let setup = Setup { inward: inward(&edge, stated.crush_m), ..edge };
+    let (setup, friction) = contact(file, integrated, &flight, events);
     let window = motion::Window {
         from_s: flight.from_s,
         to_s: flight.to_s,
@@ -144,6 +141,8 @@ fn moved(
         second: None,
     };
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
+    // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
+    let stated = motion::outcome(integrated, &flight, events, &setup)?;
     // What rings behind a touch is not what rang before it: neither the second impact nor the corner is told.
     let is_whole = flight.landing.is_none();
     let second =

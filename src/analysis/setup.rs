@@ -8,12 +8,6 @@ use crate::data::{AssumedFriction, AxialClosure, CONTACT_STEPS, CaskFile, Contac
 const MIDDLE: f64 = 0.6;
 const U_UNKNOWN: f64 = 0.33;
 
-/// A corner that crushes by less than this share of the length is an edge, one that crushes by more than the
-/// other is a limiter's: contacts of 9 and 13 ms after a fall of 9 m. Of 24 simulated drops whose stated length
-/// was 3 or 5 % off 21 are told so with these limits, and 18 with an edge of 0.004.
-const EDGE: f64 = 0.01;
-const LIMITER: f64 = 0.015;
-
 /// How the axial velocity of a contact is had without an axial channel: by its law, of which the friction is
 /// known to `share_u`, where sticking needs a friction of `needed`, more than which does nothing.
 pub(super) fn by_law(contact: Contact, needed: f64, share_u: f64) -> (AxialClosure, AssumedFriction) {
@@ -32,14 +26,6 @@ pub(super) fn by_law(contact: Contact, needed: f64, share_u: f64) -> (AxialClosu
         Contact::Unknown => (sliding(MIDDLE * needed), MIDDLE * needed, U_UNKNOWN * needed),
     };
     (axial, AssumedFriction { ratio, u: u.abs() })
-}
-
-/// How far inward of a corner the force moves for what that crushes, m for each: of what may be, the middle.
-///
-/// The edge of a bare cask takes the force itself, a limiter with all that the target cuts off, at most.
-pub(super) fn inward(setup: &Setup, crush_m: f64) -> f64 {
-    let limited = ((crush_m / setup.length_m - EDGE) / (LIMITER - EDGE)).clamp(0.0, 1.0);
-    limited * 0.25 / setup.angle_rad.tan()
 }
 
 /// Geometry and initial motion of a cask file, L sticking to the target.

@@ -67,7 +67,8 @@ fn a_force_may_move_inward_as_a_corner_crushes() {
         let text = fs::read_to_string(&cask).expect("the cask file");
         fs::write(&cask, text.replace("friction = 0.4", "friction = \"unknown\"")).expect("a temporary file");
         let result = analyze(&out, &cask).json();
-        let value = |of: &str| number(&result, &format!("/slap_down/horizontal_velocity/{of}")).expect("stated");
+        let value =
+            |of: &str| number(&result, &format!("/slap_down/horizontal_velocity/{of}")).expect("stated");
         let truth = number(&read_json(&out.with_extension("truth.json")), "/vx").expect("a truth");
         let off = (value("value") - truth) / value("u95");
         // By the corner alone it is 0.7 of the half-width off where the force moves.
