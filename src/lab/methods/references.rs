@@ -40,7 +40,7 @@ pub(super) const OWN: Files = fixtures![
 /// Drops of elastic bars by finite elements, and their truth.
 pub(super) const FINITE_ELEMENTS: Files = fixtures![
     "reference/fe", "bare-5" ".h5", "pads-8" ".h5", "pads-12" ".h5", "bare-15" ".h5", "friction-20" ".h5",
-    "friction-30" ".h5"
+    "friction-30" ".h5", "landing-44" ".h5"
 ];
 
 /// Quantities that a reference may state, and where the result has each.
