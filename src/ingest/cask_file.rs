@@ -81,8 +81,8 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), In
     if !cask_file.channels.is_empty() {
         return Ok(());
     }
-    let problem = "the cask file has no [[channel]] of an accelerometer, with end = \"first\" or \"second\", so \
-                   that none can be found in the recording";
+    let problem = "the cask file has no [[channel]] of an accelerometer, with end = \"first\" or \"second\", \
+                   so that none can be found in the recording";
     let mend = format!(
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of \
          the accelerometers",
@@ -126,8 +126,8 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
         )
     })?;
     if text.trim().is_empty() {
-        let mend = "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg; `dropcheck \
-                    init RECORDING` writes a cask file to fill in";
+        let mend = "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg; \
+                    `dropcheck init RECORDING` writes a cask file to fill in";
         return Err(no_cask_file(path, &format!("{} is empty", kind.name), mend));
     }
     Ok(text)

@@ -236,8 +236,8 @@ fn position_m(table: &Section, cask: &Cask) -> Result<f64, IngestError> {
         return Ok(position_m);
     }
     let message = format!("position_m {position_m} lies outside the cask, which is {} m long", cask.length_m);
-    let mend = "position_m counts along the axis from the first end, in metres, for sensors on the second end \
-                too";
+    let mend = "position_m counts along the axis from the first end, in metres, for sensors on the second \
+                end too";
     Err(table.refuse("position_m", message, mend))
 }
 
