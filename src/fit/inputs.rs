@@ -20,8 +20,8 @@ const MEASURE: &str = "measure between the edges that strike";
 /// The key of the tolerance of the friction.
 const FRICTION: &str = "friction_percent";
 /// A corner that crushes by less than the first share of the length is an edge, one that crushes by more than
-/// the second a limiter's: contacts of 10 and 17 ms after a fall of 9 m. With half of them lengths that are 3 %
-/// off stay untold.
+/// the second a limiter's: contacts of 10 and 17 ms after a fall of 9 m. With half of them lengths that are
+/// 3 % off stay untold.
 const EDGE: f64 = 0.012;
 const LIMITER: f64 = 0.02;
 /// The force on a limiter moves inward for each crush by so much of cot φ, as a standard uncertainty: half of

@@ -145,8 +145,8 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// Angular impulse about S over mass in one step of the contact, m²/s: ∫((a − d) f_z − b f_x) dt with the arms
-/// of (1)   (32)
+/// Angular impulse about S over mass in one step of the contact, m²/s: ∫((a − d) f_z − b f_x) dt with the
+/// arms of (1)   (32)
 fn turning_m2_s(
     setup: &Setup,
     before: &MotionState,
