@@ -108,7 +108,7 @@ pub fn from_times(
 /// Samples without times, at the rate that is claimed.
 ///
 /// # Errors
-/// As [`at_taken`], and where no rate is stated, or two that contradict each other.
+/// Where samples or times make no record, where no rate is stated, or two that contradict each other.
 pub fn from_claims(start_s: f64, claims: &Claims, samples: Samples) -> Result<Uniform, Refusal> {
     at_taken(start_s, claims.weigh(None)?, samples)
 }

@@ -32,7 +32,7 @@ impl Doubles {
 /// are.
 ///
 /// # Errors
-/// [`Refusal`] where stamps or rate make no record.
+/// A refusal where stamps or rate make no record.
 pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, Refusal> {
     let count: usize = blocks.iter().map(|block| block.count).sum();
     check_lengths(count, samples.len())?;
