@@ -29,6 +29,8 @@ const LIMITER: f64 = 0.02;
 const U_INWARD: f64 = 0.2;
 /// Outward it moves by no more than this share of it.
 const LEAST_INWARD: f64 = 0.2;
+/// What moves inward turns the cask by no more than half less: by a fifth, where friction is not known.
+const MOST_MISSED: f64 = 0.5;
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
 
@@ -275,7 +277,13 @@ impl InputList {
             });
         }
         let limited = ((motion.crush_m / setup.length_m - EDGE) / (LIMITER - EDGE)).clamp(0.0, 1.0);
-        if measured.inertia_m2.is_some() && limited > 0.0 {
+        let turned_rad_s = motion.separation.angular_velocity_rad_s;
+        let by_impulse_rad_s = measured.inertia_m2.map_or(f64::INFINITY, |inertia_m2| {
+            motion.contact.angular_velocity_rad_s + motion.angular_impulse_m2_s / inertia_m2
+        });
+        // Of an end that is another one, or of a wrong scale, no crush is known.
+        let is_near = (turned_rad_s - by_impulse_rad_s).abs() < MOST_MISSED * turned_rad_s;
+        if limited > 0.0 && is_near {
             let u = limited * U_INWARD / setup.angle_rad.tan();
             let size = format!("{u:.2} m per m of crush");
             // Twice as steep inward, and level outward.
