@@ -176,11 +176,7 @@ impl SecondImpact {
         let inertia_m2 = inputs.inertia_m2?;
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
         let motion = motion::outcome(&self.integrated, &flight, &times, &setup)?;
-        Some(
-            motion.separation.angular_velocity_rad_s
-                - motion.contact.angular_velocity_rad_s
-                - motion.angular_impulse_m2_s / inertia_m2,
-        )
+        Some(motion.turned_beyond_rad_s(inertia_m2))
     }
 
     /// The contact of R after a first impact with these inputs and this motion.

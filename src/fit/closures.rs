@@ -82,10 +82,8 @@ fn turning<'a>(measured: &FitData, motion: &Motion) -> Option<Observable<'a>> {
     let turning_rad_s = motion.separation.angular_velocity_rad_s.abs();
     let name = "rotation against the impulse of the first impact";
     // Δω − ∫(a f_z − b f_x) dt m / Θ = 0   (32)
-    let miss_rad_s = |inputs: &Inputs, motion: &Motion| {
-        let [before, after] = [&motion.contact, &motion.separation].map(|s| s.angular_velocity_rad_s);
-        Some(after - before - motion.angular_impulse_m2_s / inputs.inertia_m2?)
-    };
+    let miss_rad_s =
+        |inputs: &Inputs, motion: &Motion| inputs.inertia_m2.map(|m2| motion.turned_beyond_rad_s(m2));
     let words = move |miss: f64| format!("{:+.1} % of ω", 100.0 * miss / turning_rad_s);
     let u_rad_s = U_TURNING * turning_rad_s;
     (u_rad_s > 0.0 && measured.inertia_m2.is_some())

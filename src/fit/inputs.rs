@@ -276,14 +276,22 @@ impl InputList {
                 inputs.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
             });
         }
+        self.add_footprint(measured, motion);
+        let by_m = known.length * setup.length_m / 2.0;
+        let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
+        self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);
+        let by_m = known.height * setup.height_m / 2.0;
+        let key = stated("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
+        self.add("section", mm(by_m), Some(key), move |inputs, by| inputs.setup.height_m += by * by_m);
+    }
+
+    /// How far the force moves inward from a corner that crushes   (32)
+    fn add_footprint(&mut self, measured: &FitData, motion: &Motion) {
+        let (setup, Some(inertia_m2)) = (measured.setup, measured.inertia_m2) else { return };
         let limited = ((motion.crush_m / setup.length_m - EDGE) / (LIMITER - EDGE)).clamp(0.0, 1.0);
         let turned_rad_s = motion.separation.angular_velocity_rad_s;
-        let by_impulse_rad_s = measured.inertia_m2.map_or(f64::INFINITY, |inertia_m2| {
-            motion.contact.angular_velocity_rad_s + motion.angular_impulse_m2_s / inertia_m2
-        });
         // Of an end that is another one, or of a wrong scale, no crush is known.
-        let is_near = (turned_rad_s - by_impulse_rad_s).abs() < MOST_MISSED * turned_rad_s;
-        if limited > 0.0 && is_near {
+        if limited > 0.0 && motion.turned_beyond_rad_s(inertia_m2).abs() < MOST_MISSED * turned_rad_s {
             let u = limited * U_INWARD / setup.angle_rad.tan();
             let size = format!("{u:.2} m per m of crush");
             // Twice as steep inward, and level outward.
@@ -292,12 +300,6 @@ impl InputList {
                 inputs.setup.inward = u * moved(by);
             });
         }
-        let by_m = known.length * setup.length_m / 2.0;
-        let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
-        self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);
-        let by_m = known.height * setup.height_m / 2.0;
-        let key = stated("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
-        self.add("section", mm(by_m), Some(key), move |inputs, by| inputs.setup.height_m += by * by_m);
     }
 
     /// Rotation and sideways velocity, the recorder's clock, and what the second impact has of its own.
