@@ -51,19 +51,27 @@ macro_rules! number_types {
         }
     };
 }
-// Held as f32 are f32 itself and short integers.
-number_types!(
-    I8 = i8 as f32 in F32,
-    I16 = i16 as f32 in F32,
-    I32 = i32 as f64 in F64,
-    I64 = i64 as f64 in F64,
-    U8 = u8 as f32 in F32,
-    U16 = u16 as f32 in F32,
-    U32 = u32 as f64 in F64,
-    U64 = u64 as f64 in F64,
-    F32 = f32 as f32 in F32,
-    F64 = f64 as f64 in F64
-);
+
+/// Hands all types to a macro, each with what it is held as: f32 are f32 itself and short integers.
+macro_rules! for_number_types {
+    ($of_types:ident) => {
+        $of_types!(
+            I8 = i8 as f32 in F32,
+            I16 = i16 as f32 in F32,
+            I32 = i32 as f64 in F64,
+            I64 = i64 as f64 in F64,
+            U8 = u8 as f32 in F32,
+            U16 = u16 as f32 in F32,
+            U32 = u32 as f64 in F64,
+            U64 = u64 as f64 in F64,
+            F32 = f32 as f32 in F32,
+            F64 = f64 as f64 in F64
+        );
+    };
+}
+pub(super) use for_number_types;
+
+for_number_types!(number_types);
 
 impl NumberType {
     /// An integer of so many bytes; `None` where Rust has none.

@@ -6,7 +6,7 @@ use super::column::{DatasetColumn, Place};
 use super::fault::REPACK;
 use crate::data::Samples;
 use crate::ingest::Limits;
-use crate::ingest::number_type::NumberType;
+use crate::ingest::number_type::{NumberType, for_number_types};
 use crate::ingest::recording_file::OpenFile;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{RecordingFile, unpack};
@@ -45,18 +45,7 @@ macro_rules! stored {
         }
     };
 }
-stored!(
-    F32 = f32 as f32 in F32,
-    F64 = f64 as f64 in F64,
-    I8 = i8 as f32 in F32,
-    I16 = i16 as f32 in F32,
-    I32 = i32 as f64 in F64,
-    I64 = i64 as f64 in F64,
-    U8 = u8 as f32 in F32,
-    U16 = u16 as f32 in F32,
-    U32 = u32 as f64 in F64,
-    U64 = u64 as f64 in F64
-);
+for_number_types!(stored);
 
 impl DatasetColumn {
     /// Its numbers as stored: f32 and short integers as f32, the rest as f64.
