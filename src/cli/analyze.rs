@@ -179,24 +179,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     };
 
     if let Some(folder) = &folder {
-        let mut files = report::files(&analysis)?;
-        if arguments.csv_locale == CsvLocale::De {
-            for (_, bytes) in files.iter_mut().filter(|(name, _)| name == "curves.csv") {
-                *bytes = report::in_german(bytes)?;
-            }
-        }
-        let printed = arguments.pdf.then(|| pdf::printed(&files[0].1)).transpose();
-        match printed {
-            Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
-            Err(why) => {
-                note(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
-            }
-        }
-        folder.write(&files)?;
-        let is_new = files.iter().any(|(name, _)| name == pdf::NAME);
-        if !is_new && Path::new(&folder.file(pdf::NAME)).exists() {
-            note(&format!("{} is of an earlier run; --pdf writes it anew.", folder.file(pdf::NAME)));
-        }
+        write_report(arguments, &analysis, folder)?;
     }
     json.write(|| report::pretty_json(&analysis.result))?;
     if json.is_standard_output() {
@@ -217,4 +200,25 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     let strict = if not_strict.is_some() { Ending::NeedsALook } else { Ending::Clear };
     Ok(repeated.max(strict).max(analysis.result.verdict.into()))
+}
+
+/// Writes the files of `--out`, with a note where the printed report among them is not of this run.
+fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> miette::Result<()> {
+    let mut files = report::files(analysis)?;
+    if arguments.csv_locale == CsvLocale::De {
+        for (_, bytes) in files.iter_mut().filter(|(name, _)| name == "curves.csv") {
+            *bytes = report::in_german(bytes)?;
+        }
+    }
+    let printed = arguments.pdf.then(|| pdf::printed(&files[0].1)).transpose();
+    match printed {
+        Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
+        Err(why) => note(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME)),
+    }
+    folder.write(&files)?;
+    let is_new = files.iter().any(|(name, _)| name == pdf::NAME);
+    if !is_new && Path::new(&folder.file(pdf::NAME)).exists() {
+        note(&format!("{} is of an earlier run; --pdf writes it anew.", folder.file(pdf::NAME)));
+    }
+    Ok(())
 }
