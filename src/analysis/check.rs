@@ -34,8 +34,8 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
     let across = rest.channels.iter().filter(|channel| has_blows && channel.axis == Axis::Transverse);
     let felt: Vec<_> = across.map(|channel| (channel, events::blow_answers(channel))).collect();
     let first_blow_s = felt.iter().flat_map(|(_, blows)| blows).map(|blow| blow.at_s - BEFORE_BLOW_S);
-    let quiet_to_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).chain(first_blow_s);
-    let (signals, mut found) = quiet(rest, file, quiet_to_s.fold(f64::INFINITY, f64::min));
+    let quiet_to_s = first_blow_s.fold(rest.end_s(), f64::min);
+    let (signals, mut found) = quiet(rest, file, quiet_to_s);
     // What a copy reads is not its own.
     found.extend(judge::judge_copies(&rest.channels));
     let level = |channel| Some((channel, events::at_rest(channel, file.drop.gravity_m_s2)?));
@@ -92,8 +92,7 @@ fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding
         let own = needs.channels.iter().find(|needs| needs.name == channel.name);
         found.extend(own.into_iter().flat_map(|own| judge::judge_chain(channel, signal, &own.peaks)));
     }
-    let lasts_s = rest.channels.iter().map(|c| c.time_s(c.samples.len())).fold(f64::INFINITY, f64::min);
-    found.extend(judge::judge_record(rest.before_trigger_s, lasts_s, needs.after_s));
+    found.extend(judge::judge_record(rest.before_trigger_s, rest.end_s(), needs.after_s));
     found
 }
 

@@ -4,8 +4,8 @@
 use super::flight_search::{self, Patience};
 use super::{missing_end, rest};
 use crate::data::{
-    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
-    Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
+    At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End,
+    Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
 };
 use crate::{condition, events, judge};
 use missing_end::StandIn;
@@ -68,13 +68,10 @@ impl Impact {
         let last_s = last_within_s(farthest);
         let goes_on = last_within_s(farthest.longest()) > last_s;
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
-        let (mut signals, mut found) = condition::condition(recording, &event, &reach, file.corrections);
-        if let Some(nearer) = nearer(&event, &signals, &found) {
-            (signals, found) = condition::condition(recording, &nearer, &reach, file.corrections);
-        }
+        let (mut signals, found) = conditioned(recording, file, &event, &reach);
         signals.retain(|signal| copied.iter().all(|copy| copy.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
-        let Some(mut contact) = events::first_contact(&signals, &event) else {
+        let Some(contact) = first_contact(&file.cask, &signals, &event) else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), Some(&event)));
             return None;
         };
@@ -84,18 +81,11 @@ impl Impact {
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
-        let ends_s = recording.channels.iter().map(|c| c.time_s(c.samples.len()));
-        let record_end_s = ends_s.fold(f64::INFINITY, f64::min);
-        if events::transverse(&signals, End::First).is_none() {
-            // A bending wave takes this time from L to R, where it is seen first.
-            contact.u_s = contact.u_s.hypot(file.cask.length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt());
-        }
         let u_skew_s = align(file, &mut signals, contact.time_s, findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
-        let (mut rests, fall_s) = before(recording, drop, contact.time_s);
-        if rests.is_empty() {
-            rests = rest::levels(recording, &signals, file, contact.time_s);
-        }
+        let (own_rests, fall_s) = before(recording, drop, contact.time_s);
+        let of_file = || rest::levels(recording, &signals, file, contact.time_s);
+        let rests = if own_rests.is_empty() { of_file() } else { own_rests };
         let impact = Self {
             signals,
             contact,
@@ -103,8 +93,8 @@ impl Impact {
             stand_in,
             rests,
             fall_s,
-            sought_to_s: sought_to_s.min(record_end_s),
-            is_record_end: record_end_s <= sought_to_s,
+            sought_to_s: sought_to_s.min(recording.end_s()),
+            is_record_end: recording.end_s() <= sought_to_s,
             goes_on,
             patience,
             others: Arc::clone(&recording.others),
@@ -127,6 +117,28 @@ impl Impact {
     pub fn recorded(&self) -> &[Signal] {
         &self.signals[..self.signals.len() - usize::from(self.stand_in.is_some())]
     }
+}
+
+/// The signals about the event, and what is to be said of them.
+fn conditioned(
+    recording: &Recording,
+    file: &CaskFile,
+    event: &CoarseEvent,
+    reach: &condition::Reach,
+) -> (Vec<Signal>, Vec<Finding>) {
+    let (signals, found) = condition::condition(recording, event, reach, file.corrections);
+    match nearer(event, &signals, &found) {
+        Some(nearer) => condition::condition(recording, &nearer, reach, file.corrections),
+        None => (signals, found),
+    }
+}
+
+/// When L first touches, also where R alone shows it: a bending wave takes its time from L to R.
+fn first_contact(cask: &Cask, signals: &[Signal], event: &CoarseEvent) -> Option<At> {
+    let contact = events::first_contact(signals, event)?;
+    let is_seen_at_once = events::transverse(signals, End::First).is_some();
+    let u_way_s = cask.length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt();
+    Some(if is_seen_at_once { contact } else { At { u_s: contact.u_s.hypot(u_way_s), ..contact } })
 }
 
 /// The coarse event from where a channel first answers on, where too little free fall for an offset lies

@@ -53,6 +53,13 @@ pub struct Recording {
     pub issues: Vec<Finding>,
 }
 
+impl Recording {
+    /// When the first of its channels ends, one sample behind its last, s.
+    pub fn end_s(&self) -> f64 {
+        self.channels.iter().map(|c| c.time_s(c.samples.len())).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// A file with the rest before the drop.
 #[derive(Debug, Clone)]
 pub struct RestFile {
