@@ -22,7 +22,6 @@ const RINGING_SHARE: f64 = 0.005;
 impl Mode {
     /// Standard uncertainty of a plateau on which the mode rings with this amplitude for so long, in the unit
     /// of the amplitude.
-    #[must_use]
     pub fn u_plateau(&self, amplitude: f64, flight_s: f64) -> f64 {
         let periods = self.frequency_hz * flight_s;
         // A mode of which the flight shows less than a period looks like a bend of the plateau.
@@ -156,7 +155,6 @@ const SHOWN: f64 = 0.1;
 impl FlightFit {
     /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a
     /// period, slower than any cask's or damped as none; or wholly at one end, as a cable that whips.
-    #[must_use]
     pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
         let (frequency_hz, damping) =
             self.modes.get(mode).map_or((f64::INFINITY, 0.0), |m| (m.frequency_hz, m.damping));
@@ -175,7 +173,6 @@ impl FlightFit {
 
     /// How far the outermost channel on the first end goes along with that on the second in a mode, as a
     /// share of it; negative where it goes the other way.
-    #[must_use]
     pub fn goes_along(&self, mode: usize, signals: &[Signal]) -> f64 {
         let across = || signals.iter().zip(&self.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
         let by_place =
@@ -191,7 +188,6 @@ impl FlightFit {
     /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
     /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
     /// slowest in which they go together; or as far as one another where bending would let them differ.
-    #[must_use]
     pub fn swinging(&self, signals: &[Signal], length_m: f64) -> usize {
         let largest_m_s = self.modes.iter().map(|m| m.amplitude_m_s).fold(0.0, f64::max);
         let goes = |(i, m): (usize, &Mode)| {
@@ -219,7 +215,6 @@ impl FlightFit {
 
     /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
     /// together, and which of these it is; 0 where the cask swings.
-    #[must_use]
     pub fn bending_orders(&self, signals: &[Signal], length_m: f64) -> Vec<u8> {
         let (swinging, mut together) = (self.swinging(signals, length_m), 0);
         let order = |mode: usize| {
@@ -237,7 +232,6 @@ impl FlightFit {
     }
 
     /// How many periods of its slowest mode it shows; infinite without modes.
-    #[must_use]
     pub fn periods(&self) -> f64 {
         let lowest_hz = self.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
         lowest_hz * (self.to_s - self.from_s)
@@ -247,7 +241,6 @@ impl FlightFit {
     /// whatever they are called.
     ///
     /// Neighbours lie apart by half of 1/T, and there is a period of the fastest for each pair of modes.
-    #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "a handful of modes")]
     pub fn resolves_modes(&self) -> bool {
         let length_s = self.to_s - self.from_s;
@@ -259,13 +252,11 @@ impl FlightFit {
     }
 
     /// Whether it shows its slowest mode for long enough to tell fits apart by what they leave.
-    #[must_use]
     pub fn is_told_apart(&self) -> bool {
         self.periods() > TOLD_APART_PERIODS
     }
 
     /// The plateau of a channel.
-    #[must_use]
     pub fn plateau(&self, channel: &str) -> Option<&Plateau> {
         self.plateaus.iter().find(|p| p.channel == channel)
     }

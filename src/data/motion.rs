@@ -128,7 +128,6 @@ pub struct Motion {
 impl Motion {
     /// By how much the first contact turns the cask more than its impulse gives a body of this Θ/m, m²: rad/s
     /// (32)
-    #[must_use]
     pub fn turned_beyond_rad_s(&self, inertia_m2: f64) -> f64 {
         self.separation.angular_velocity_rad_s
             - self.contact.angular_velocity_rad_s

@@ -33,7 +33,6 @@ pub struct ContactCourse {
 impl ContactCourse {
     /// From the states of a contact by the one force that it is of; `None` of fewer than two states, and of a
     /// contact that gives nothing.
-    #[must_use]
     pub fn of(measured: &[MotionState], setup: &Setup, by: ForceCourse) -> Option<Self> {
         let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
         let ends = [*states.first()?, *states.last()?];
@@ -69,7 +68,6 @@ impl ContactCourse {
     }
 
     /// Kinetic energy over the mass at the contact's beginning and end, m²/s²; Θ/m in m².
-    #[must_use]
     pub fn kinetic_m2_s2(&self, inertia_m2: f64) -> [f64; 2] {
         self.ends.map(|s| {
             let square = s.horizontal_velocity_m_s.powi(2) + s.vertical_velocity_m_s.powi(2);
@@ -79,7 +77,6 @@ impl ContactCourse {
 
     /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and
     /// after them; as long as they are.
-    #[must_use]
     pub fn low_passed<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {
         match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) {
             Some(filter) => filter.apply_to_pulses(courses_m_s2),
@@ -136,7 +133,6 @@ fn by_one_force(states: &[MotionState], gravity_m_s2: f64, by: ForceCourse) -> O
 }
 
 /// The largest value.
-#[must_use]
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value))
 }
@@ -167,7 +163,6 @@ pub struct PulseLength {
 
 /// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz;
 /// `None` where samples are clipped or lost.
-#[must_use]
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
     let is_whole =

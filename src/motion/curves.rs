@@ -23,7 +23,6 @@ const CUTOFF_100_T_HZ: f64 = 200.0;
 const CURVE_POINTS: u32 = 600;
 
 /// The −3 dB cut-off for curves and peaks, Hz, and where it comes from: the same for every drop of a mass.
-#[must_use]
 pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64) -> (f64, &'static str) {
     match choice {
         FilterChoice::Cfc(class) => (class * CFC_DESIGN * TWO_PASS_CUTOFF, "cask file"),
@@ -35,7 +34,6 @@ pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64) -> (f64, &'static str) {
 }
 
 /// The name of the low-pass that [`cutoff_hz`] gives.
-#[must_use]
 pub fn filter_name(choice: FilterChoice) -> String {
     match choice {
         FilterChoice::Cfc(class) => format!("CFC {class}"),
@@ -46,7 +44,6 @@ pub fn filter_name(choice: FilterChoice) -> String {
 
 /// The low-passes that rigid-body decelerations are usually stated with, and their −3 dB frequencies,
 /// Hz   (28), (25)
-#[must_use]
 pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
     let by_mass_hz = cutoff_hz(FilterChoice::Auto, mass_kg).0;
     let classes = [60.0, 180.0, 600.0].map(|class| {
@@ -59,7 +56,6 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
 }
 
 /// The signals over what is shown, and as far around it as a low-pass with this −3 dB cut-off, Hz, reaches.
-#[must_use]
 pub fn around(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
     signals.iter().map(|signal| cut_wide(signal, shown_s(signal.start_s, events), cutoff_hz)).collect()
 }
@@ -72,7 +68,6 @@ pub(super) fn cut_wide(signal: &Signal, (from_s, to_s): (f64, f64), cutoff_hz: f
 
 /// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot
 /// carry leaves them as they are.
-#[must_use]
 pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
     let signals = decimated(signals, RATE_OVER_CUTOFF * cutoff_hz);
     let smooth = low_passed(&signals, cutoff_hz);
@@ -99,7 +94,6 @@ fn low_passed(signals: &[Signal], cutoff_hz: f64) -> Vec<Vec<f64>> {
 }
 
 /// Curves over the event, of signals with what lies [`around`] it.
-#[must_use]
 pub fn channel_curves(
     signals: &[Signal],
     events: &Events,
@@ -136,7 +130,6 @@ pub fn channel_curves(
 }
 
 /// The samples that are shown.
-#[must_use]
 pub fn shown(signal: &Signal, events: &Events) -> Range<usize> {
     let (first_s, last_s) = shown_s(signal.start_s, events);
     let from = signal.index_from(first_s);

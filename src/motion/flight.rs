@@ -66,7 +66,6 @@ const INDISTINCT: f64 = 10.0;
 /// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels,
 /// their phases free or those that the contact force gives them; their number and whether there is a drift
 /// are decided by the Bayesian information criterion (21).
-#[must_use]
 pub fn fit_flights(
     integrated: &Integrated,
     window: &Window,
@@ -115,7 +114,6 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
 }
 
 /// The most probable of `fit_flights`.
-#[must_use]
 pub fn fit_flight(
     integrated: &Integrated,
     window: &Window,

@@ -216,7 +216,6 @@ fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex
 /// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from
 /// `from_s` on: that of the rotation freed of an earlier fit's ringing, or a half sine where there is none.
 /// `None` without two transverse channels apart.
-#[must_use]
 pub fn drive(
     integrated: &Integrated,
     fit: Option<&FlightFit>,

@@ -50,7 +50,6 @@ const SHARE: f64 = 0.03;
 
 /// The touches that `flight` holds near its end, as one; `None` where there is none, where the stretch behind
 /// them is too short, or where a push at L would turn the cask otherwise.
-#[must_use]
 pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cask: &Cask) -> Option<Landing> {
     let signals = &integrated.signals;
     let nearest = struck_first(signals).filter(|_| cask.is_body)?;

@@ -21,7 +21,6 @@ const FEWEST: usize = 30;
 ///
 /// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that
 /// of the flight as it was fitted.
-#[must_use]
 pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) -> Option<Strike> {
     let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };
     let series = series(integrated, &window, cog_m);

@@ -23,7 +23,6 @@ pub struct CornerRinging {
 ///
 /// It is what the channel nearest to the corner then has beyond its plateau, each mode carried to the corner
 /// by its shape. `None` without a transverse channel on the second end.
-#[must_use]
 pub fn ringing_of_second_end(
     integrated: &Integrated,
     flight: &FlightFit,

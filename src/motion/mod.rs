@@ -53,7 +53,6 @@ pub struct Integrated<'a> {
 impl<'a> Integrated<'a> {
     /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz
     /// at the least.
-    #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
         let signals = decimate::decimated(signals, 0.0);
         let velocity_and_peak = |s: &Signal| {
@@ -66,13 +65,11 @@ impl<'a> Integrated<'a> {
     }
 
     /// What a signal has gained since shortly before first contact, m/s.
-    #[must_use]
     pub fn gained_m_s(&self, signal: usize, time_s: f64) -> f64 {
         self.velocities[signal].at(time_s)
     }
 
     /// The same with signals of its own.
-    #[must_use]
     pub fn into_owned(self) -> Integrated<'static> {
         Integrated { signals: Cow::Owned(self.signals.into_owned()), ..self }
     }

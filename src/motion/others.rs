@@ -9,7 +9,6 @@ use crate::numerics::spectrum::magnitude;
 const LEAST_PERIODS: f64 = 3.0;
 
 /// The curve over what is shown of the event; `None` where the first contact is not known.
-#[must_use]
 pub fn other_curve(channel: &Channel, events: &Events) -> Option<OtherCurve> {
     let (from_s, to_s) = events.first_contact_s().map(|contact_s| shown_s(contact_s, events))?;
     // Of a slow channel also the samples on either side.
@@ -31,7 +30,6 @@ pub fn other_curve(channel: &Channel, events: &Events) -> Option<OtherCurve> {
 }
 
 /// The strongest maximum of its spectrum, from three periods in the curve on.
-#[must_use]
 pub fn strongest_line(curve: &OtherCurve) -> Option<SpectralLine> {
     let least_hz = LEAST_PERIODS / (curve.time_s.last()? - curve.time_s.first()?);
     let is_maximum = |m: &[f64]| m[1] > m[0] && m[1] >= m[2];

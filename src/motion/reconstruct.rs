@@ -16,7 +16,6 @@ const FLIGHT_STEPS: u32 = 200;
 ///
 /// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ
 /// − Ω v_ξ (17); v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
-#[must_use]
 pub fn reconstruct(
     integrated: &Integrated,
     fit: &FlightFit,
@@ -48,13 +47,11 @@ pub fn reconstruct(
 }
 
 /// The same motion without its curve and what L does in the flight: what a fit asks for often.
-#[must_use]
 pub fn outcome(integrated: &Integrated, fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
     follow(integrated, fit, events, setup, &mut |_| ())
 }
 
 /// The same with the states of the contact, in steps of equal length.
-#[must_use]
 pub fn with_states(
     integrated: &Integrated,
     fit: &FlightFit,

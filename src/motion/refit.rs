@@ -7,7 +7,6 @@ use crate::numerics::damped_modes::{Form, describe};
 
 /// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of
 /// the best fit.
-#[must_use]
 pub fn mean_of_flight(
     integrated: &Integrated,
     best: &FlightFit,
@@ -18,7 +17,6 @@ pub fn mean_of_flight(
 }
 
 /// The same window and the same modes, in the sizes that they have in these signals.
-#[must_use]
 pub fn with_modes(
     integrated: &Integrated,
     best: &FlightFit,

@@ -20,13 +20,11 @@ pub struct RingingRemoved {
 
 impl RingingRemoved {
     /// The sum and what it is made of: signals by name, each with its weight.
-    #[must_use]
     pub fn new((signal, parts): (Signal, Vec<(String, f64)>)) -> Self {
         Self { signal, parts, before: (0, Vec::new()) }
     }
 
     /// The sum as it now is.
-    #[must_use]
     pub fn signal(&self) -> &Signal {
         &self.signal
     }
@@ -76,7 +74,6 @@ impl RingingRemoved {
 /// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went
 /// with their offset, rad/s: the root of the difference of both squares, negative where the cask turns more
 /// slowly than before.
-#[must_use]
 pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f64 {
     let gained_rad_s = rotation_rad_s(signals, fit);
     if before_rad_s == 0.0 {
@@ -89,7 +86,6 @@ pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f
 /// The signals of a drop from its flight on as those of a drop that begins with the slap-down, seen in a
 /// mirror: R is its first end, and nothing rings or shifts in its fall, nor pulls outward while the cask
 /// turns by ω, rad/s.
-#[must_use]
 pub fn mirrored(
     signals: &[Signal],
     fit: &FlightFit,
@@ -114,14 +110,12 @@ pub fn mirrored(
 
 /// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position
 /// (16); 0 where there is none.
-#[must_use]
 pub fn rotation_rad_s(signals: &[Signal], fit: &FlightFit) -> f64 {
     let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
     rotation_by(across.map(|s| (&s.name[..], s.position_m)), fit)
 }
 
 /// The same from the names of the transverse channels and their positions, m.
-#[must_use]
 pub fn rotation_by<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &FlightFit) -> f64 {
     let points: Vec<(f64, f64)> = across
         .filter_map(|(name, position_m)| Some((position_m, fit.plateau(name)?.velocity_step_m_s)))

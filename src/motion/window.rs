@@ -7,7 +7,6 @@ const BEHIND_CONTACT: f64 = 0.1;
 const BEHIND_CONTACT_S: f64 = 3e-4;
 
 /// When a fit of the flight may begin, s.
-#[must_use]
 pub fn clear_of_contact_s(contact_s: f64, left_s: f64) -> f64 {
     left_s + BEHIND_CONTACT * (left_s - contact_s) + BEHIND_CONTACT_S
 }

@@ -28,7 +28,6 @@ pub fn as_count(number: f64) -> usize {
 }
 
 /// The least and the largest of some numbers; from infinity down to its negative where there is none.
-#[must_use]
 pub fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)))
 }
