@@ -142,16 +142,7 @@ impl ExpectedDrop {
         specs.sort_by_key(|spec| spec.axis == Axis::Axial);
         let read = |spec: &&ChannelSpec| half_sine(spec, step_m_s(spec, file, &predicted), lasts_s, flight_s);
         let (signals, plateaus): (Vec<_>, Vec<_>) = specs.iter().map(read).unzip();
-        let flight = FlightFit {
-            from_s: left_s,
-            to_s: struck_s,
-            plateaus,
-            modes: Vec::new(),
-            drift: false,
-            candidates: Vec::new(),
-            strike: None,
-            landing: None,
-        };
+        let flight = FlightFit { from_s: left_s, to_s: struck_s, plateaus, ..FlightFit::default() };
         let integrated = Integrated::over(&signals, CONTACT_S).into_owned();
         Some(Self { integrated, flight, events })
     }
@@ -223,15 +214,6 @@ fn half_sine(spec: &ChannelSpec, step_m_s: f64, lasts_s: f64, flight_s: f64) -> 
         free_fall_s: CONTACT_S,
         ..Signal::default()
     };
-    let plateau = Plateau {
-        channel: spec.name.clone(),
-        velocity_step_m_s: step_m_s,
-        u_m_s: 0.0,
-        zero_shift_m_s2: 0.0,
-        u_zero_shift_m_s2: 0.0,
-        residual_m_s: 0.0,
-        ringing_m_s: Vec::new(),
-        late_mismatch_m_s: None,
-    };
-    (signal, plateau)
+    let channel = spec.name.clone();
+    (signal, Plateau { channel, velocity_step_m_s: step_m_s, ..Plateau::default() })
 }

@@ -7,23 +7,7 @@ use super::{
 
 /// A transverse signal of the first end from 0 s on, without noise, spans or a free fall before it.
 pub(crate) fn signal(sample_rate_hz: f64, force_m_s2: Vec<f64>) -> Signal {
-    Signal {
-        name: "A1".into(),
-        end: End::First,
-        axis: Axis::Transverse,
-        position_m: 0.1,
-        offset_m: 0.0,
-        start_s: 0.0,
-        sample_rate_hz,
-        force_m_s2,
-        removed_offset_m_s2: 0.0,
-        u_offset_m_s2: 0.0,
-        noise_m_s2: 0.0,
-        noise_spectrum: vec![],
-        free_fall_s: 0.0,
-        clipped: vec![],
-        gaps: vec![],
-    }
+    Signal { name: "A1".into(), position_m: 0.1, sample_rate_hz, force_m_s2, ..Signal::default() }
 }
 
 /// A transverse channel of the first end from 0 s on at 10 kHz, in m/s².
@@ -57,30 +41,12 @@ pub(crate) fn other(samples: Vec<f64>) -> Channel {
 
 /// A channel's step in the flight, known exactly.
 pub(crate) fn plateau(channel: &str, velocity_step_m_s: f64) -> Plateau {
-    Plateau {
-        channel: channel.into(),
-        velocity_step_m_s,
-        u_m_s: 0.0,
-        zero_shift_m_s2: 0.0,
-        u_zero_shift_m_s2: 0.0,
-        residual_m_s: 0.0,
-        ringing_m_s: vec![],
-        late_mismatch_m_s: None,
-    }
+    Plateau { channel: channel.into(), velocity_step_m_s, ..Plateau::default() }
 }
 
 /// A flight between two times without modes or drift.
 pub(crate) fn flight(from_s: f64, to_s: f64, plateaus: Vec<Plateau>) -> FlightFit {
-    FlightFit {
-        from_s,
-        to_s,
-        plateaus,
-        modes: vec![],
-        drift: false,
-        candidates: vec![],
-        strike: None,
-        landing: None,
-    }
+    FlightFit { from_s, to_s, plateaus, ..FlightFit::default() }
 }
 
 /// First contact and slap-down known exactly.

@@ -30,7 +30,7 @@ impl Mode {
 }
 
 /// The velocity step of one channel from before the impact to the flight, free of ringing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Plateau {
     /// The channel's name.
     pub channel: String,
@@ -72,7 +72,7 @@ pub struct FlightModelScore {
 }
 
 /// The fit of the free-flight window.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct FlightFit {
     /// Start of the window, s from the recording's first sample.
     pub from_s: f64,
