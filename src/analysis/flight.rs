@@ -116,13 +116,8 @@ fn moved(
 ) -> Option<Flown> {
     let signals = &impact.signals;
     let (setup, friction) = contact(file, integrated, &flight, events);
-    let window = motion::Window {
-        from_s: flight.from_s,
-        to_s: flight.to_s,
-        drift: flight.drift,
-        angular_velocity_rad_s: motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s),
-    };
-    let plain = motion::mean_of_flight(integrated, &flight, &window, setup.cog_m);
+    let turning_rad_s = motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s);
+    let plain = motion::mean_of_flight(integrated, &flight, turning_rad_s, setup.cog_m);
     let cask = &file.cask;
     let measured = fit::FitData {
         signals,
@@ -169,7 +164,7 @@ fn moved(
     let ringing = events
         .slap_down
         .filter(|_| is_whole)
-        .and_then(|at| motion::ringing_of_second_end(integrated, moved, &window, at, as_taken));
+        .and_then(|at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
     let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
     Some(Flown {

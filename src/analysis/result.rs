@@ -46,7 +46,7 @@ pub(super) fn of(
     let Examined { impact, events, shown, flown, measured } = found;
     let stated = flown.as_ref().filter(|_| measured.is_some());
     let quantities = stated.map(|flown| &flown.quantities);
-    let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, file, flown));
+    let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, flown));
     let signals = impact.recorded();
     let recorded = signals.len();
     let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
@@ -187,18 +187,11 @@ fn cutoff(file: &CaskFile) -> (f64, &'static str) {
 fn filter_effect(
     smooth: &[Signal],
     events: &Events,
-    file: &CaskFile,
     Flown { setup, quantities, flight, .. }: &Flown,
 ) -> Option<String> {
     let speed = quantities.speed?;
-    let window = motion::Window {
-        from_s: flight.from_s,
-        to_s: flight.to_s,
-        drift: file.corrections.zero_shift,
-        angular_velocity_rad_s: quantities.angular_velocity.value,
-    };
     let integrated = motion::Integrated::over(smooth, events.first_contact?.time_s);
-    let flight = motion::with_modes(&integrated, flight, &window, setup.cog_m)?;
+    let flight = motion::with_modes(&integrated, flight, quantities.angular_velocity.value, setup.cog_m)?;
     let motion = motion::outcome(&integrated, &flight, events, setup)?;
     let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
     // No sign before nothing: −0 and 0 are 0.

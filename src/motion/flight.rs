@@ -208,7 +208,7 @@ fn late_mismatch_m_s(
         return None;
     }
     let plateau = flight.plateau(&signal.name)?;
-    let centrifugal_m_s2 = centrifugal_m_s2(signal, whole, cog_m);
+    let centrifugal_m_s2 = centrifugal_m_s2(signal, whole.angular_velocity_rad_s, cog_m);
     let off_m_s = |length_s: f64| {
         let from_s = to_s - length_s;
         let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
@@ -240,9 +240,8 @@ pub(super) fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
     }
 }
 
-pub(super) fn centrifugal_m_s2(signal: &Signal, window: &Window, cog_m: f64) -> f64 {
-    let turning = window.angular_velocity_rad_s;
-    -turning * turning.abs() * centrifugal_arm_m(signal, cog_m)
+pub(super) fn centrifugal_m_s2(signal: &Signal, turning_rad_s: f64, cog_m: f64) -> f64 {
+    -turning_rad_s * turning_rad_s.abs() * centrifugal_arm_m(signal, cog_m)
 }
 
 /// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode
@@ -311,7 +310,7 @@ fn series_of(
     window: &Window,
     cog_m: f64,
 ) -> Series {
-    let centrifugal_m_s2 = centrifugal_m_s2(signal, window, cog_m);
+    let centrifugal_m_s2 = centrifugal_m_s2(signal, window.angular_velocity_rad_s, cog_m);
     let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
     let points = as_count(length_s * signal.sample_rate_hz).min(POINTS);
     let bin_s = length_s / as_f64(points.max(1));

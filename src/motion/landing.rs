@@ -61,7 +61,7 @@ pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cas
         let until_s = from_s - CLEAR_S;
         let since_s = (until_s - BEFORE_S).max(flight.from_s);
         let over = FlightFit { from_s: since_s, to_s: until_s, ..flight.clone() };
-        let before = with_modes(integrated, &over, window, cask.cog_m)?;
+        let before = with_modes(integrated, &over, window.angular_velocity_rad_s, cask.cog_m)?;
         let left_m_s = before.plateaus.iter().map(|plateau| plateau.residual_m_s);
         let is_read = until_s - since_s > LEAST_S && is_explained(signals, left_m_s);
         is_read.then(|| Touched { integrated, cask, window, before, nearest, from_s, to_s }.read())?
@@ -198,7 +198,7 @@ impl Touched<'_> {
         let since_s = from_s - before.from_s;
         for ((own, signal), plateau) in all.iter_mut().zip(&*integrated.signals).zip(&before.plateaus) {
             // The centrifugal force behind `from_s` is taken off already.
-            let centrifugal_m_s = centrifugal_m_s2(signal, window, cog_m) * since_s;
+            let centrifugal_m_s = centrifugal_m_s2(signal, window.angular_velocity_rad_s, cog_m) * since_s;
             let first_s = *own.time_s.first()?;
             for (value, time_s) in own.value.iter_mut().zip(&own.time_s) {
                 let shifted_m_s = plateau.zero_shift_m_s2 * (since_s + time_s);

@@ -1,7 +1,7 @@
 //! The velocity of the second end's channel as R strikes to what ringing and swinging add to R's corner.
 
+use super::Integrated;
 use super::flight::{centrifugal_m_s2, oscillation};
-use super::{Integrated, Window};
 use crate::data::{At, Axis, FlightFit, Setup, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::free_beam;
@@ -26,7 +26,7 @@ pub struct CornerRinging {
 pub fn ringing_of_second_end(
     integrated: &Integrated,
     flight: &FlightFit,
-    window: &Window,
+    turning_rad_s: f64,
     slap_down: At,
     setup: &Setup,
 ) -> Option<CornerRinging> {
@@ -38,7 +38,7 @@ pub fn ringing_of_second_end(
     let plateau = flight.plateau(&last.name)?;
     let before_s = slap_down.time_s - slap_down.u_s.max(1.0 / last.sample_rate_hz);
     let since_s = before_s - flight.from_s;
-    let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, window, setup.cog_m);
+    let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, turning_rad_s, setup.cog_m);
     let own_m_s = integrated.gained_m_s(channel, before_s) - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
     let orders = flight.bending_orders(&integrated.signals, setup.length_m);
@@ -99,7 +99,6 @@ mod tests {
         let mode = Mode { frequency_hz, damping: 0.0, amplitude_m_s: corner_m_s };
         let plateaus = vec![plateau("A1", opposite), plateau("A2", 1.0)];
         let flight = FlightFit { modes: vec![mode], ..example::flight(0.0, 0.1, plateaus) };
-        let window = Window { from_s: 0.0, to_s: 0.1, drift: false, angular_velocity_rad_s: 0.0 };
         let setup = Setup {
             length_m: 5.0,
             height_m: 0.5,
@@ -116,7 +115,7 @@ mod tests {
             contact_steps: CONTACT_STEPS,
         };
         let integrated = Integrated::over(&signals, 0.02);
-        ringing_of_second_end(&integrated, &flight, &window, At::exactly(0.1), &setup).expect("two ends")
+        ringing_of_second_end(&integrated, &flight, 0.0, At::exactly(0.1), &setup).expect("two ends")
     }
 
     #[test]

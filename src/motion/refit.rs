@@ -10,21 +10,23 @@ use crate::numerics::damped_modes::{Form, describe};
 pub fn mean_of_flight(
     integrated: &Integrated,
     best: &FlightFit,
-    window: &Window,
+    turning_rad_s: f64,
     cog_m: f64,
 ) -> Option<FlightFit> {
-    with_modes(integrated, &FlightFit { modes: Vec::new(), drift: false, ..best.clone() }, window, cog_m)
+    let plain = FlightFit { modes: Vec::new(), drift: false, ..best.clone() };
+    with_modes(integrated, &plain, turning_rad_s, cog_m)
 }
 
-/// The same window and the same modes, in the sizes that they have in these signals.
+/// The same window and the same modes, in the sizes that they have in these signals; the cask turns so fast.
 pub fn with_modes(
     integrated: &Integrated,
     best: &FlightFit,
-    window: &Window,
+    turning_rad_s: f64,
     cog_m: f64,
 ) -> Option<FlightFit> {
-    let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
+    let &FlightFit { from_s, to_s, drift, .. } = best;
+    let window = Window { from_s, to_s, drift, angular_velocity_rad_s: turning_rad_s };
     let series = series(integrated, &window, cog_m);
-    let again = describe(&series, best.modes.iter().map(oscillation).collect(), Form::free(best.drift))?;
+    let again = describe(&series, best.modes.iter().map(oscillation).collect(), Form::free(drift))?;
     Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })
 }

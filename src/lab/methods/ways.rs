@@ -140,13 +140,8 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     };
     let (setup, mut flight) = (sticking(file), found.flight?);
     if rung == ReconstructionRung::Planar {
-        let window = motion::Window {
-            from_s: flight.from_s,
-            to_s: flight.to_s,
-            drift: flight.drift,
-            angular_velocity_rad_s: motion::rotation_rad_s(&signals, &flight),
-        };
-        flight = motion::mean_of_flight(&integrated, &flight, &window, setup.cog_m)?;
+        let turning_rad_s = motion::rotation_rad_s(&signals, &flight);
+        flight = motion::mean_of_flight(&integrated, &flight, turning_rad_s, setup.cog_m)?;
     }
     let moved = motion::outcome(&integrated, &flight, &events, &setup)?;
     let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
