@@ -204,9 +204,9 @@ pub fn record_end_s(signals: &[Signal]) -> f64 {
 
 impl FoundFlight {
     /// The motion that the signals, the times and the flight give where L sticks.
-    fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
+    pub fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
         let times = Events {
-            first_contact: Some(At { time_s: integrated.contact_s, u_s: 0.0 }),
+            first_contact: Some(At::exactly(integrated.contact_s)),
             separation: Some(self.separation),
             slap_down: self.slap_down,
             ..Events::default()

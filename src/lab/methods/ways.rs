@@ -2,9 +2,9 @@
 //! answer.
 
 use crate::analysis::flight_search::{self, Patience};
-use crate::analysis::{self, analyze, sticking};
+use crate::analysis::{self, analyze};
 use crate::data::{
-    CaskFile, CoarseEvent, Estimate, Events, ReconstructionRung, Recording, STANDARD_GRAVITY_M_S2, Signal,
+    CaskFile, CoarseEvent, Estimate, ReconstructionRung, Recording, STANDARD_GRAVITY_M_S2, Signal,
 };
 use crate::lab::chance::Chance;
 use crate::lab::damage;
@@ -131,21 +131,15 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
-    let found = flight_search::find(file, &integrated, Patience::EachBeginning)?;
-    let events = Events {
-        first_contact: Some(contact),
-        separation: Some(found.separation),
-        slap_down: found.slap_down,
-        ..Events::default()
-    };
-    let (setup, mut flight) = (sticking(file), found.flight?);
+    let mut found = flight_search::find(file, &integrated, Patience::EachBeginning)?;
     if rung == ReconstructionRung::Planar {
+        let flight = found.flight?;
         let turning_rad_s = motion::rotation_rad_s(&signals, &flight);
-        flight = motion::mean_of_flight(&integrated, &flight, turning_rad_s, setup.cog_m)?;
+        found.flight = motion::mean_of_flight(&integrated, &flight, turning_rad_s, file.cask.cog_m);
     }
-    let moved = motion::outcome(&integrated, &flight, &events, &setup)?;
+    let moved = found.moved(file, &integrated)?;
     let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
-    Some([speed_m_s, Some(moved.rebound_m_s / setup.impact_velocity_m_s)].map(bare))
+    Some([speed_m_s, Some(moved.rebound_m_s / moved.impact_m_s)].map(bare))
 }
 
 /// A number without an interval.
