@@ -58,10 +58,7 @@ pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
     signals
         .iter()
         .filter(|s| s.axis == Axis::Transverse && s.name != struck.name)
-        .filter_map(|signal| {
-            let (delay_s, u_s) = Answering::new(signal, &cause)?.delay()?;
-            Some(Onset { channel: signal.name.clone(), delay_s, u_s })
-        })
+        .filter_map(|signal| Answering::new(signal, &cause)?.delay())
         .collect()
 }
 
@@ -156,13 +153,6 @@ struct Answering<'a> {
     noise: f64,
 }
 
-/// What one fit says: delay and standard uncertainty, s.
-#[derive(Clone, Copy)]
-struct Delay {
-    delay_s: f64,
-    u_s: f64,
-}
-
 impl<'a> Answering<'a> {
     fn new(signal: &'a Signal, cause: &'a Cause) -> Option<Self> {
         let from = signal.index_from(cause.contact_s - BEFORE_S);
@@ -181,8 +171,8 @@ impl<'a> Answering<'a> {
 
     /// The delay by the shortest stretch that tells it well; by how much longer stretches say otherwise is in
     /// its uncertainty.
-    fn delay(&self) -> Option<(f64, f64)> {
-        let fits: Vec<Delay> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
+    fn delay(&self) -> Option<Onset> {
+        let fits: Vec<Onset> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
         let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
         let taken = fits
             .iter()
@@ -200,12 +190,12 @@ impl<'a> Answering<'a> {
         if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && !self.goes_on(taken.delay_s) {
             u_s = taken.delay_s.abs() / 2.0;
         }
-        Some((taken.delay_s, u_s))
+        Some(Onset { u_s, ..taken.clone() })
     }
 
     /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` where nothing fits
     /// it.
-    fn fit(&self, length_s: f64) -> Option<Delay> {
+    fn fit(&self, length_s: f64) -> Option<Onset> {
         const ORDERS: [usize; 3] = [0, 2, 4];
         let rate_hz = self.signal.sample_rate_hz;
         let back_s = (2.0 * length_s).clamp(5e-4, 3e-3);
@@ -246,7 +236,8 @@ impl<'a> Answering<'a> {
         let mut as_good = coarse.iter().filter(|c| c.1 <= limit).map(|c| c.0);
         let first_s = as_good.next().unwrap_or(delay_s);
         let last_s = as_good.next_back().unwrap_or(first_s);
-        Some(Delay { delay_s, u_s: ((last_s - first_s) / 4.0).max(step_s / 4.0) })
+        let u_s = ((last_s - first_s) / 4.0).max(step_s / 4.0);
+        Some(Onset { channel: self.signal.name.clone(), delay_s, u_s })
     }
 
     /// Whether rigid body, bending and its damping explain some stretch from first contact on without any
