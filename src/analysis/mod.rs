@@ -122,19 +122,20 @@ fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analy
             (findings, found) = farther;
         }
     }
-    let Some(AfterImpact { impact, events, flown }) = found else {
+    let Some(found) = found else {
         return result::without_impact(recording, file, findings);
     };
-    judge::weigh_by_distance(&mut findings, &events);
+    let AfterImpact { impact, events, flown } = &found;
+    judge::weigh_by_distance(&mut findings, events);
     let (on_channels, shown) = rayon::join(
-        || judge::judge_channels(impact.recorded(), &events, file, &findings),
-        || result::ShownSignals::of(&impact.signals, &events, file),
+        || judge::judge_channels(impact.recorded(), events, file, &findings),
+        || result::ShownSignals::of(&impact.signals, events, file),
     );
     findings.extend(on_channels);
-    let judged = |flown: &Flown| Measured::of(flown, &impact, &events, file, &mut findings);
+    let judged = |flown: &Flown| Measured::of(flown, impact, events, file, &mut findings);
     let measured = flown.as_ref().and_then(judged);
     if measured.is_none() {
-        findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
+        findings.extend(judge::judge_fall_time(&findings, &file.drop, events, &file.tolerances));
     }
-    result::of(recording, file, findings, result::Examined { impact, events, shown, flown, measured })
+    result::of((recording, file), findings, found, shown, measured)
 }

@@ -2,9 +2,8 @@
 
 use super::comparison::Measured;
 use super::flight::Flown;
-use super::impact::Impact;
-use super::impacts;
 use super::setup::sticking;
+use super::{AfterImpact, impacts};
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
     Finding, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice, Prediction, Quantities, Recording,
@@ -18,17 +17,6 @@ use std::sync::Arc;
 /// 0.25 of the rate, 2.0 for one of eighth order at 0.4 (Butterworth, at low frequency).
 const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 
-/// What was found from the first impact on.
-pub(super) struct Examined {
-    pub impact: Impact,
-    pub events: Events,
-    pub shown: ShownSignals,
-    /// The motion, where it could be had …
-    pub flown: Option<Flown>,
-    /// … and where what it says is to be stated.
-    pub measured: Option<Measured>,
-}
-
 /// The result where no impact was found.
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
     let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
@@ -36,14 +24,14 @@ pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: V
     analysis(recording, file, result, Curves::default)
 }
 
-/// The result from the first impact on, as far as the analysis came.
+/// The result from the first impact on, as far as the analysis came; measured is what is to be stated.
 pub(super) fn of(
-    recording: &Recording,
-    file: &CaskFile,
+    (recording, file): (&Recording, &CaskFile),
     findings: Vec<Finding>,
-    found: Examined,
+    AfterImpact { impact, events, flown }: AfterImpact,
+    shown: ShownSignals,
+    measured: Option<Measured>,
 ) -> Analysis {
-    let Examined { impact, events, shown, flown, measured } = found;
     let stated = flown.as_ref().filter(|_| measured.is_some());
     let quantities = stated.map(|flown| &flown.quantities);
     let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, flown));
