@@ -9,9 +9,10 @@ use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
     Events, Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
+    transverse,
 };
 use crate::motion::{self, CornerRinging, Integrated};
-use crate::{events, fit, judge};
+use crate::{fit, judge};
 
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only
 /// the other end shows it.
@@ -39,7 +40,7 @@ pub(super) fn flown(
     findings: &mut Vec<Finding>,
 ) -> (Events, Option<Flown>) {
     let mut events = impact.events();
-    let is_missing = |end: &End| events::transverse(&impact.signals, *end).is_none();
+    let is_missing = |end: &End| transverse(&impact.signals, *end).is_none();
     let missing = [End::First, End::Second].into_iter().find(is_missing);
     if let Some(end) = impact.stand_in.as_ref().map(|s| s.end).or(missing) {
         findings.push(DropFinding::MissingEnd { end, is_stood_in_for: impact.stand_in.is_some() }.into());
@@ -76,7 +77,7 @@ fn fitted(
     let is_cut = |s: &Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact_s, left_s));
     // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its
     // length.
-    let is_uncertain = is_made(End::First) || events::transverse(signals, End::First).is_some_and(is_cut);
+    let is_uncertain = is_made(End::First) || transverse(signals, End::First).is_some_and(is_cut);
     let u_pulse_s = if is_uncertain { UNCERTAIN_PULSE * (left_s - contact_s) } else { 0.0 };
     if let Some(overlap) = judge::judge_overlap(left_s - contact_s, &file.cask, &file.drop, &file.tolerances)
     {

@@ -5,7 +5,7 @@ use super::flight_search::{self, Patience};
 use super::{missing_end, rest};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End,
-    Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
+    Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal, transverse,
 };
 use crate::{condition, events, judge};
 use missing_end::StandIn;
@@ -136,7 +136,7 @@ fn conditioned(
 /// When L first touches, also where R alone shows it: a bending wave takes its time from L to R.
 fn first_contact(cask: &Cask, signals: &[Signal], event: &CoarseEvent) -> Option<At> {
     let contact = events::first_contact(signals, event)?;
-    let is_seen_at_once = events::transverse(signals, End::First).is_some();
+    let is_seen_at_once = transverse(signals, End::First).is_some();
     let u_way_s = cask.length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt();
     Some(if is_seen_at_once { contact } else { At { u_s: contact.u_s.hypot(u_way_s), ..contact } })
 }

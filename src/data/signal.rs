@@ -129,6 +129,15 @@ impl Signal {
     }
 }
 
+/// The transverse signal nearest to an end: what happens there shows on it first.
+pub(crate) fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {
+    let from_middle = |s: &Signal| if end == End::First { s.position_m } else { -s.position_m };
+    signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse && s.end == end)
+        .min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)))
+}
+
 /// Where the event lies, found on a coarse pass: enough to cut the window that the fine work needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseEvent {

@@ -1,7 +1,6 @@
 //! The first impact on two channels to the delay between their answers.
 
-use super::transverse;
-use crate::data::{Axis, End, Onset, Signal};
+use crate::data::{Axis, End, Onset, Signal, transverse};
 use crate::numerics::projection::residual_square;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::reduce::{block_means, peak};

@@ -14,7 +14,7 @@ pub use release::{FreeFall, at_rest, feels_gravity, free_fall, rest_over_fall};
 pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
 pub use taps::blow_answers;
 
-use crate::data::{Axis, Channel, End, Signal, of_either};
+use crate::data::{Channel, End, Signal, of_either, transverse};
 use crate::numerics::reduce;
 use std::ops::Range;
 
@@ -67,13 +67,4 @@ fn block_means_m_s2(channel: &Channel, range: Range<usize>, size: usize) -> Vec<
         *mean *= channel.scale_m_s2;
     }
     means
-}
-
-/// The transverse signal nearest to an end: what happens there shows on it first.
-pub fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {
-    let from_middle = |s: &Signal| if end == End::First { s.position_m } else { -s.position_m };
-    signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse && s.end == end)
-        .min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)))
 }

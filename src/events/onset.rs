@@ -1,7 +1,6 @@
 //! A pulse to its beginning, finer than a sample.
 
-use super::transverse;
-use crate::data::{At, CoarseEvent, End, Signal};
+use crate::data::{At, CoarseEvent, End, Signal, transverse};
 use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.

@@ -1,6 +1,6 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
-use crate::data::{ChannelFinding, DropFinding, Events, Finding, FlightFit, Signal};
+use crate::data::{ChannelFinding, DropFinding, End, Events, Finding, FlightFit, Signal, transverse};
 use crate::numerics::as_f64;
 use crate::numerics::reduce::{block_means, block_of, peak};
 
@@ -32,7 +32,7 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
 /// and what came then is another blow.
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
-    let struck = super::struck(signals)?;
+    let struck = transverse(signals, End::First)?;
     let block = block_of(RATE_HZ, struck.sample_rate_hz);
     let force = struck.force_m_s2.get(struck.index_from(contact_s)..struck.index_from(left_s))?;
     let means = block_means(force, block);

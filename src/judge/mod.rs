@@ -39,18 +39,12 @@ pub use silent::judge_silent;
 pub use skew::judge_skew;
 pub use taps::judge_taps;
 
-use crate::data::{Axis, End, Events, Finding, IssueCode, Severity, Signal, Verdict};
+use crate::data::{Events, Finding, IssueCode, Severity, Verdict};
 
 /// Free fall before first contact that the offset may come from, s.
 const OFFSET_WINDOW_S: f64 = 0.25;
 /// Into the slap-down, s: its onset.
 const ONSET_S: f64 = 2e-3;
-
-/// The transverse channel of the first end that is nearest to where the target strikes it.
-fn struck(signals: &[Signal]) -> Option<&Signal> {
-    let of_first = signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == End::First);
-    of_first.min_by(|a, b| a.position_m.total_cmp(&b.position_m))
-}
 
 /// What was lost or jitters far from the event does not weigh on the result: such warnings become notes.
 pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {

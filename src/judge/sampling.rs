@@ -1,6 +1,6 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
-use crate::data::{ChannelFinding, Events, Finding, Signal};
+use crate::data::{ChannelFinding, End, Events, Finding, Signal, transverse};
 use crate::numerics::as_f64;
 use crate::numerics::spectrum::magnitude;
 use rayon::prelude::*;
@@ -34,8 +34,9 @@ const LONGEST_S: f64 = 0.05;
 ///
 /// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
 pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Finding> {
-    let struck = super::struck(signals);
-    let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s()) else { return Vec::new() };
+    let (Some(struck), Some(contact_s)) = (transverse(signals, End::First), events.first_contact_s()) else {
+        return Vec::new();
+    };
     let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
     let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
     let contents: Vec<Option<BandContent>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();

@@ -4,7 +4,7 @@ use super::flight::{centrifugal_m_s2, oscillation, series};
 use super::histories::AlongAxis;
 use super::refit::with_modes;
 use super::{BEFORE_SLAP_DOWN_S, Integrated, Window};
-use crate::data::{Axis, Cask, End, FlightFit, Landing, Plateau, Signal};
+use crate::data::{Axis, Cask, End, FlightFit, Landing, Plateau, Signal, transverse};
 use crate::numerics::as_f64;
 use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Series, SeriesFit, describe, uniform_ringing,
@@ -52,9 +52,10 @@ const SHARE: f64 = 0.03;
 /// them is too short, or where a push at L would turn the cask otherwise.
 pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cask: &Cask) -> Option<Landing> {
     let signals = &integrated.signals;
-    let nearest = struck_first(signals).filter(|_| cask.is_body)?;
+    let struck = transverse(signals, End::First).filter(|_| cask.is_body)?;
+    let nearest = signals.iter().position(|s| s.name == struck.name)?;
     let to_s = window.to_s - CLEAR_S;
-    let begin_s = |sought_s: f64| touch_s(&signals[nearest], &((to_s - sought_s).max(flight.from_s)..to_s));
+    let begin_s = |sought_s: f64| touch_s(struck, &((to_s - sought_s).max(flight.from_s)..to_s));
     let mut begins_s: Vec<f64> = SOUGHT_S.into_iter().filter_map(begin_s).collect();
     begins_s.dedup();
     let read = |from_s: f64| {
@@ -211,13 +212,6 @@ impl Touched<'_> {
         }
         all.iter().all(|own| own.steps_s.is_empty()).then_some(all)
     }
-}
-
-/// The place of the transverse channel nearest to L.
-fn struck_first(signals: &[Signal]) -> Option<usize> {
-    let is_of_first = |s: &Signal| s.axis == Axis::Transverse && s.end == End::First;
-    let of_first = signals.iter().enumerate().filter(|(_, s)| is_of_first(s));
-    of_first.min_by(|a, b| a.1.position_m.total_cmp(&b.1.position_m)).map(|(place, _)| place)
 }
 
 /// When the pulse begins that stands out of a stretch, s.
