@@ -123,7 +123,7 @@ fn flight_fit(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher
         .counter(m.conditioned())
-        .bench(|| stages::fit_flight(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
+        .bench(|| stages::fit_flights(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
 }
 
 #[divan::bench(args = SIZES)]

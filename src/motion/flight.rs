@@ -113,16 +113,6 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
     }
 }
 
-/// The most probable of `fit_flights`.
-pub fn fit_flight(
-    integrated: &Integrated,
-    window: &Window,
-    drive: Option<&Drive>,
-    cog_m: f64,
-) -> Option<FlightFit> {
-    fit_flights(integrated, window, drive, cog_m).into_iter().next()
-}
-
 /// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are
 /// not clear.
 fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<Fit> {

@@ -227,7 +227,7 @@ fn touch_s(signal: &Signal, sought_s: &std::ops::Range<f64>) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::flight::fit_flight;
+    use super::super::flight::fit_flights;
     use super::*;
     use crate::data::example;
     use std::f64::consts::{PI, TAU};
@@ -282,7 +282,7 @@ mod tests {
         }
         let window = Window { from_s: 0.026, to_s: 0.2995, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::over(&signals, 0.02);
-        let flight = fit_flight(&integrated, &window, None, 2.5).expect("a flight");
+        let flight = fit_flights(&integrated, &window, None, 2.5).swap_remove(0);
         landing(&flight, &integrated, &window, &Cask::block("a", 4000.0, 5.0, 1.0))
     }
 

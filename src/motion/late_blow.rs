@@ -61,7 +61,7 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
 
 #[cfg(test)]
 mod tests {
-    use super::super::flight::fit_flight;
+    use super::super::flight::fit_flights;
     use super::*;
     use crate::data::{End, Signal, example};
     use std::f64::consts::{PI, TAU};
@@ -101,7 +101,7 @@ mod tests {
         ];
         let window = Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::over(&signals, 0.02);
-        let flight = fit_flight(&integrated, &window, None, 2.5).expect("a flight");
+        let flight = fit_flights(&integrated, &window, None, 2.5).swap_remove(0);
         strike(&flight, &integrated, &window, 2.5).expect("a flight without gaps")
     }
 
