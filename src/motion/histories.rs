@@ -1,12 +1,13 @@
 //! Signals and the plateaus of the flight to what the channels say over the contact: the line over their
 //! positions, free of ringing.
 
+use super::flight::oscillation;
 use super::{Integrated, Velocity};
 use crate::data::{Axis, CONTACT_STEPS, FlightFit, Mode, Signal};
 use crate::numerics::as_f64;
-use crate::numerics::damped_modes::Drive;
+use crate::numerics::damped_modes::{Drive, rate};
 use nalgebra::Complex;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// A mode that answered more strongly by this factor while it was driven than as L left is not known well
 /// enough to follow back.
@@ -134,7 +135,7 @@ impl<'a> Histories<'a> {
         let steps = self.sums.len() - 1;
         let mut all = vec![[0.0; 3]; steps + 1];
         for (m, (mode, driven)) in fit.modes.iter().zip(driven).enumerate() {
-            let aged = (rate(mode) * left_s).exp();
+            let aged = (rate(oscillation(mode)) * left_s).exp();
             let last = driven[steps];
             let largest = driven.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
             if last.norm_sqr() * MOST_DECLINE * MOST_DECLINE < largest || largest <= 0.0 {
@@ -192,17 +193,12 @@ fn half_sine(steps: usize) -> Vec<f64> {
     (0..=steps).map(|i| (1.0 - (PI * as_f64(i) / as_f64(steps)).cos()) / 2.0).collect()
 }
 
-/// (−ζ + i) ω.
-fn rate(mode: &Mode) -> Complex<f64> {
-    let omega = TAU * mode.frequency_hz;
-    Complex::new(-mode.damping * omega, omega)
-}
-
 /// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: modes driven by the shape of the contact force,
 /// −dΩ/dt   (36)
 fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex<f64>>> {
     let response = |mode: &Mode| {
-        let (turn, half_turn) = ((rate(mode) * step_s).exp(), (rate(mode) * (step_s / 2.0)).exp());
+        let rate = rate(oscillation(mode));
+        let (turn, half_turn) = ((rate * step_s).exp(), (rate * (step_s / 2.0)).exp());
         let mut value = Complex::new(0.0, 0.0);
         let steps = turning_rad_s.windows(2).map(|pair| {
             value = value * turn + half_turn * (pair[0] - pair[1]);

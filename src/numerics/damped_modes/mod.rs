@@ -14,7 +14,7 @@ use seeds::best_seed;
 
 pub use common_step::CommonStep;
 pub use drive::{Drive, Form};
-pub use ringing::uniform_ringing;
+pub use ringing::{rate, uniform_ringing};
 pub use seeds::Seeds;
 pub use series::{Fit, Oscillation, Series, SeriesFit};
 

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 const LONGEST_RUN: usize = 256;
 
 /// (−ζ + i) ω.
-pub(super) fn rate(mode: Oscillation) -> Complex<f64> {
+pub fn rate(mode: Oscillation) -> Complex<f64> {
     let omega = TAU * mode.frequency_hz;
     Complex::new(-mode.damping * omega, omega)
 }
