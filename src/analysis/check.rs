@@ -24,7 +24,7 @@ const BEFORE_BLOW_S: f64 = 0.02;
 /// [`IngestError`] where a channel is too short to tell.
 pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check, IngestError> {
     for channel in &rest.channels {
-        let length_s = length_s(channel);
+        let length_s = channel.time_s(channel.samples.len()) - channel.start_s;
         if length_s < LEAST_S {
             let problem = format!("it lasts {length_s:.2} s, too short to tell the rest");
             let mend = "record the cask at rest in the rig for a second or more";
@@ -55,10 +55,6 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
         found.extend(judge::judge_taps(&felt));
     }
     Ok(gathered(&file.drop, &signals, &levels, found))
-}
-
-fn length_s(channel: &Channel) -> f64 {
-    channel.time_s(channel.samples.len()) - channel.start_s
 }
 
 /// The quiet before a time as an analysis would have the free fall, and what it would say of it; hum is

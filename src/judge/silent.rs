@@ -24,7 +24,8 @@ struct Excursion {
 
 /// Names each channel that stays within its noise over the whole recording while another does not.
 pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
-    let reaches: Vec<Excursion> = channels.par_iter().map(|channel| reach(channel)).collect();
+    let of_channel = |c: &&Channel| of_either!(&c.samples, v => reach(v, c.scale_m_s2.abs()));
+    let reaches: Vec<Excursion> = channels.par_iter().map(of_channel).collect();
     let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
     let is_silent = |r: &Excursion| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
@@ -36,12 +37,7 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
         .collect()
 }
 
-fn reach(channel: &Channel) -> Excursion {
-    let scale = channel.scale_m_s2.abs();
-    of_either!(&channel.samples, v => reach_of(v, scale))
-}
-
-fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
+fn reach<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
     let value = |x: &T| -> f64 { (*x).into() };
     let stretches: Vec<Vec<f64>> = samples
         .chunks((samples.len() / STRETCHES).max(1))
