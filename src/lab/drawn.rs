@@ -3,7 +3,7 @@
 
 use super::chance::Chance;
 use super::data::{
-    BendingMode, Chain, Scene, SceneChannel, SceneExtras, SimulatedMotion, SyntheticRecording, WantedImpact,
+    BendingMode, Chain, Scene, SceneChannel, SimulatedMotion, SyntheticRecording, WantedImpact,
 };
 use super::{in_memory, synth};
 use crate::analysis::measure;
@@ -51,17 +51,12 @@ pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedIm
         seed: 1,
         first_end: end(End::First, impacts[0]),
         second_end: end(End::Second, impacts[1]),
-        modes: Vec::new(),
         before_s: 0.1,
         after_s: 0.05,
-        rest: false,
-        clock_error: 0.0,
-        swapped_ends: false,
-        channels: Vec::new(),
-        extras: SceneExtras::default(),
         cask,
         drop,
         contact,
+        ..Scene::default()
     }
 }
 

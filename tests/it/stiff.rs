@@ -81,7 +81,7 @@ impl Case {
             name: String::new(),
             seed: 1,
             first_end: synth::crushable_end(&cask, &drop, self.contact, End::First, wanted),
-            second_end: CrushableEnd::elastic(1e9, 1e9),
+            second_end: CrushableEnd { loading_n_m: 1e9, unloading_n_m: 1e9, ..CrushableEnd::default() },
             contact: self.contact,
             modes: vec![],
             before_s: 0.0,

@@ -4,7 +4,7 @@ use crate::data::{Axis, Cask, Contact, Drop, End};
 use serde::Serialize;
 
 /// A corner that crushes: bilinear force over depth, so that k < 1 comes out of the two stiffnesses.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct CrushableEnd {
     /// Loading stiffness, N/m.
     pub loading_n_m: f64,
@@ -16,13 +16,6 @@ pub struct CrushableEnd {
     pub lock_up: Option<(f64, f64)>,
     /// How far inward the force moves along the target as the end flattens, m for each of crush.
     pub footprint: f64,
-}
-
-impl CrushableEnd {
-    /// An end without yield, lock-up and footprint, by its stiffnesses, N/m.
-    pub fn elastic(loading_n_m: f64, unloading_n_m: f64) -> Self {
-        Self { loading_n_m, unloading_n_m, yield_n: None, lock_up: None, footprint: 0.0 }
-    }
 }
 
 /// A loose mass in the cask, which flies across it from pad to pad: two of them are a body that rattles at
@@ -144,7 +137,7 @@ impl Chain {
 }
 
 /// A channel of the scene: where it sits, how it is written, and its chain.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct SceneChannel {
     /// Name.
     pub name: String,
@@ -172,19 +165,17 @@ impl SceneChannel {
         Self {
             name: name.to_owned(),
             end,
-            axis: Axis::Transverse,
             position_m,
-            offset_m: 0.0,
-            lateral_m: 0.0,
             unit: "g".to_owned(),
             sample_rate_hz: 2e4,
             chain: Chain::perfect(),
+            ..Self::default()
         }
     }
 }
 
 /// A scene, checked, with its defaults filled in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Scene {
     /// Name, for the files and the cask file.
     pub name: String,

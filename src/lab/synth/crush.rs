@@ -39,8 +39,10 @@ pub fn crushable_end(
     let loading_n_m = effective_kg * (FRAC_PI_2 * (1.0 + k) / pulse.duration_s).powi(2);
     let peak_n = drop.impact_velocity_m_s * (loading_n_m * effective_kg).sqrt();
     CrushableEnd {
+        loading_n_m,
+        unloading_n_m: loading_n_m / (k * k),
         yield_n: pulse.yield_share.map(|share| share * peak_n),
-        ..CrushableEnd::elastic(loading_n_m, loading_n_m / (k * k))
+        ..CrushableEnd::default()
     }
 }
 

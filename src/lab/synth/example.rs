@@ -1,7 +1,7 @@
 //! Scenes that the tests of the simulation start from.
 
 use crate::data::{Axis, Cask, Contact, Drop, End, block_inertia_kg_m2};
-use crate::lab::data::{CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
+use crate::lab::data::{CrushableEnd, Scene, SceneChannel, SimulatedMotion};
 
 /// The scene of `fixtures/examples/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for`
 /// of `fixtures/reference/simulate.py`.
@@ -12,7 +12,7 @@ pub(super) fn anf18() -> Scene {
     let effective_kg = 1.0 / (1.0 / mass_kg + arm_m * arm_m / inertia_kg_m2);
     let crush = |pulse_s: f64, k: f64| {
         let loading_n_m = effective_kg * (std::f64::consts::FRAC_PI_2 * (1.0 + k) / pulse_s).powi(2);
-        CrushableEnd::elastic(loading_n_m, loading_n_m / (k * k))
+        CrushableEnd { loading_n_m, unloading_n_m: loading_n_m / (k * k), ..CrushableEnd::default() }
     };
     Scene {
         name: "ANF-18".to_owned(),
@@ -22,14 +22,9 @@ pub(super) fn anf18() -> Scene {
         contact: Contact::Rough,
         first_end: crush(5e-3, 0.55),
         second_end: crush(4e-3, 0.3),
-        modes: vec![],
         before_s: 0.1,
         after_s: 0.04,
-        rest: false,
-        clock_error: 0.0,
-        swapped_ends: false,
-        channels: vec![],
-        extras: SceneExtras::default(),
+        ..Scene::default()
     }
 }
 
