@@ -96,40 +96,41 @@ pub const FILL_IN: &str = "FILL IN";
 /// The default of a key that must be there.
 pub const REQUIRED: &str = "required";
 
-pub(crate) const fn text(name: &'static str, default: &'static str) -> Key {
-    Key { name, takes: Takes::Text, default, example: "", remark: "", is_asked: false }
+pub(crate) const ANY: Takes = Takes::Number(Allowed::Any);
+pub(crate) const FROM_ZERO: Takes = Takes::Number(Allowed::FromZero);
+pub(crate) const ABOVE_ZERO: Takes = Takes::Number(Allowed::AboveZero);
+
+pub(crate) const fn within(least: f64, most: f64, why: &'static str) -> Takes {
+    Takes::Number(Allowed::Within(least, most, why))
 }
 
-pub(crate) const fn number(name: &'static str, default: &'static str) -> Key {
-    Key { takes: Takes::Number(Allowed::Any), ..text(name, default) }
+/// Declares the keys of tables. A row has the name, the default, what stands behind the key, and, for a file
+/// that has a form, its value and remark in the form that `init` writes; `ask` where the form asks for it.
+macro_rules! keys {
+    (@is_asked) => { false };
+    (@is_asked ask) => { true };
+    (@said) => { "" };
+    (@said $words:literal) => { $words };
+    ($($(#[$about:meta])* $table:ident {$(
+        $name:literal: $default:expr, $takes:expr $(, $($ask:ident)? $example:literal, $remark:literal)?;
+    )*})*) => {$(
+        $(#[$about])*
+        pub const $table: [$crate::data::keys::Key; [$($name),*].len()] = [$($crate::data::keys::Key {
+            name: $name,
+            takes: $takes,
+            default: $default,
+            example: keys!(@said $($example)?),
+            remark: keys!(@said $($remark)?),
+            is_asked: keys!(@is_asked $($($ask)?)?),
+        }),*];
+    )*};
 }
-
-pub(crate) const fn flag(name: &'static str) -> Key {
-    Key { takes: Takes::Flag, ..text(name, "true") }
-}
+pub(crate) use keys;
 
 impl Key {
-    pub(crate) const fn zero_or_more(self) -> Self {
-        Self { takes: Takes::Number(Allowed::FromZero), ..self }
-    }
-
-    #[cfg(feature = "lab")]
-    pub(crate) const fn above_zero(self) -> Self {
-        Self { takes: Takes::Number(Allowed::AboveZero), ..self }
-    }
-
-    #[cfg(feature = "lab")]
-    pub(crate) const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
-        Self { takes: Takes::Number(Allowed::Within(least, most, why)), ..self }
-    }
-
     /// Whether a value that the file leaves out enters the result all the same.
     pub(crate) fn is_assumed(&self) -> bool {
         let is_number = matches!(self.takes, Takes::Number(_) | Takes::TextOrNumber);
         is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)
-    }
-
-    pub(crate) const fn shown(self, example: &'static str, remark: &'static str) -> Self {
-        Self { example, remark, ..self }
     }
 }

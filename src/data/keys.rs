@@ -4,9 +4,8 @@
 //! The parser, the form that `init` writes, and the table in docs/formats.md are made from these rows.
 
 use super::SAMPLE_RATES_HZ;
+pub(crate) use super::key::{ABOVE_ZERO, ANY, FROM_ZERO, keys, within};
 pub use super::key::{Allowed, FILL_IN, Key, KeyTable, REQUIRED, Takes};
-#[cfg(feature = "lab")]
-pub(crate) use super::key::{flag, number, text};
 pub use super::tolerances::{CORRECTIONS, TOLERANCE};
 use Takes::{Date, Observation, Table, Text, TextOrNumber, TextOrTable, Texts};
 
@@ -39,34 +38,6 @@ pub static TABLES: [KeyTable; 16] = [
 
 /// Five times the impact of a limiter; a body that turns at 5 rad/s comes down in that.
 pub const LONGEST_CONTACT_S: f64 = 0.2;
-
-const ANY: Takes = Takes::Number(Allowed::Any);
-const FROM_ZERO: Takes = Takes::Number(Allowed::FromZero);
-const ABOVE_ZERO: Takes = Takes::Number(Allowed::AboveZero);
-
-const fn within(least: f64, most: f64, why: &'static str) -> Takes {
-    Takes::Number(Allowed::Within(least, most, why))
-}
-
-/// Declares the keys of tables. A row has the name, the default, what stands behind the key, and its value
-/// and remark in the form that `init` writes; `ask` where the form asks for it.
-macro_rules! keys {
-    (@is_asked) => { false };
-    (@is_asked ask) => { true };
-    ($($(#[$about:meta])* $table:ident {$(
-        $name:literal: $default:expr, $takes:expr, $($ask:ident)? $example:literal, $remark:literal;
-    )*})*) => {$(
-        $(#[$about])*
-        pub const $table: [Key; [$($name),*].len()] = [$(Key {
-            name: $name,
-            takes: $takes,
-            default: $default,
-            example: $example,
-            remark: $remark,
-            is_asked: keys!(@is_asked $($ask)?),
-        }),*];
-    )*};
-}
 
 keys! {
 /// Keys of `[test]`.

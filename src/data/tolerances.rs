@@ -2,7 +2,7 @@
 //! of a cask file, one row a key.
 
 use super::cask::Cask;
-use super::key::{Key, flag, number};
+use super::key::{FROM_ZERO, Key, Takes};
 use ToleranceUnit::{Degrees, Metres, MetresOf, MetresPerSecond, Percent};
 
 /// The unit of a tolerance in the cask file; it is held in SI units or as a share.
@@ -99,9 +99,14 @@ macro_rules! tolerances {
 
         /// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
         pub const TOLERANCE: [Key; TOLERANCES.len()] = [$(
-            number($key, [$($default_words,)? stringify!($default)][0])
-                .zero_or_more()
-                .shown([$($example,)? stringify!($default)][0], $remark),
+            Key {
+                name: $key,
+                takes: FROM_ZERO,
+                default: [$($default_words,)? stringify!($default)][0],
+                example: [$($example,)? stringify!($default)][0],
+                remark: $remark,
+                is_asked: false,
+            },
         )*];
 
         /// What the keys of `[tolerance]` hold, in their order.
@@ -189,8 +194,16 @@ macro_rules! corrections {
         }
 
         /// Keys of `[corrections]`.
-        pub const CORRECTIONS: [Key; [$($remark),*].len()] =
-            [$(flag(stringify!($key)).shown("true", $remark),)*];
+        pub const CORRECTIONS: [Key; [$($remark),*].len()] = [$(
+            Key {
+                name: stringify!($key),
+                takes: Takes::Flag,
+                default: "true",
+                example: "true",
+                remark: $remark,
+                is_asked: false,
+            },
+        )*];
     };
 }
 
