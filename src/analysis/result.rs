@@ -263,11 +263,7 @@ fn summary(channel: &Channel, file: &CaskFile) -> ChannelSummary {
         samples: channel.samples.len(),
         sample_rate_hz: channel.sample_rate_hz,
         unit: format!("{} ({})", channel.unit, channel.unit_origin),
-        offset_m_s2: None,
-        noise_m_s2: None,
-        peak_filtered_m_s2: None,
-        peak_raw_m_s2: None,
         sensor: spec.map(|spec| spec.sensor.clone()).unwrap_or_default(),
-        clipped: Vec::new(),
+        ..ChannelSummary::default()
     }
 }

@@ -149,7 +149,7 @@ fn time_s<S: Serializer>(at: &Option<At>, to: S) -> Result<S::Ok, S::Error> {
 }
 
 /// What one channel is worth.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ChannelSummary {
     /// The channel's name.
     pub name: String,

@@ -165,8 +165,7 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
                 residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
             })
             .collect(),
-        strike: None,
-        landing: None,
+        ..FlightFit::default()
     }
 }
 
