@@ -5,17 +5,8 @@ use super::impact::{Struck, strike_first_end, table_1};
 use super::path::{PathEnd, Way};
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
-use super::{predict, thin_rod};
+use super::{Fall, predict, thin_rod};
 use crate::data::{Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung};
-
-/// What is predicted: a body, its drop, the contact law and k.
-#[derive(Clone, Copy)]
-pub(super) struct Case<'a> {
-    pub body: &'a Body,
-    pub drop: &'a Drop,
-    pub contact: Contact,
-    pub k: f64,
-}
 
 /// What `rung` says; [`predict`] is the highest one.
 ///
@@ -27,14 +18,15 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
         Contact::Coulomb(_) => Contact::Smooth,
         contact => contact,
     };
+    let fall = Fall { body: *body, drop: *drop, contact, k };
     match rung {
         Rung::Rod => {
             let rod = thin_rod(body.mass_kg, body.length_m);
-            Case { body: &rod, drop, contact: ideal, k }.one_flight(table_1, true)
+            Fall { body: rod, contact: ideal, ..fall }.one_flight(table_1, true)
         }
-        Rung::Body => Case { body, drop, contact: ideal, k }.one_flight(strike_first_end, true),
-        Rung::Friction => Case { body, drop, contact, k }.one_flight(strike_first_end, true),
-        Rung::Unilateral => Case { body, drop, contact, k }.one_flight(strike_first_end, false),
+        Rung::Body => Fall { contact: ideal, ..fall }.one_flight(strike_first_end, true),
+        Rung::Friction => fall.one_flight(strike_first_end, true),
+        Rung::Unilateral => fall.one_flight(strike_first_end, false),
         Rung::FurtherImpacts => predict(body, &Drop { contact_duration_s: 0.0, ..*drop }, contact, k),
         Rung::FinitePulse => predict(body, drop, contact, k),
     }
@@ -63,15 +55,15 @@ pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
 /// An impact law: body, motion before, contact law and k to the motion after.
 type ImpactLaw = fn(&Body, &State, Contact, f64) -> Struck;
 
-impl Case<'_> {
+impl Fall {
     /// One flight; before it for k = 0 L on the target while it pushes, or where it `pulls` until R strikes.
     fn one_flight(&self, impact: ImpactLaw, pulls: bool) -> Prediction {
-        let start = State::falling(self.body, self.drop.angle_rad, self.drop);
-        let struck = impact(self.body, &start, self.contact, self.k);
+        let start = State::falling(&self.body, self.drop.angle_rad, &self.drop);
+        let struck = impact(&self.body, &start, self.contact, self.k);
         let outcome = if pulls && self.k <= 0.0 {
             self.held(&struck.after)
         } else {
-            Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
+            Way::of(&self.body, &self.drop, self.contact, None).follow(struck.after, self.k)
         };
         self.prediction(&start, &struck, &outcome)
     }
@@ -80,7 +72,7 @@ impl Case<'_> {
     fn held(&self, after: &State) -> PathEnd {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
-                let end = Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after);
+                let end = Support::of(&self.body, &self.drop, self.contact, Hold::Pulls).rest(after);
                 end.filter(|end| end.strikes).map(|end| (end.at, end.time_s))
             }
             _ => self.closed_form(after).and_then(|held| {
@@ -98,18 +90,18 @@ impl Case<'_> {
             Contact::Smooth => true,
             Contact::Coulomb(_) => return None,
         };
-        Some(Held { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
+        Some(Held { body: &self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
     }
 
     fn second_end_speed_m_s(&self, state: &State) -> f64 {
-        let corner = state.corner(self.body, second_end_m(self.body));
+        let corner = state.corner(&self.body, second_end_m(&self.body));
         corner.horizontal_velocity_m_s.hypot(corner.vertical_velocity_m_s)
     }
 
     /// What is told of a way that began with `start` and its first impact.
     pub fn prediction(&self, start: &State, struck: &Struck, outcome: &PathEnd) -> Prediction {
         let at = outcome.second_end.as_ref().map(|(state, _)| state);
-        let corner = at.map(|state| state.corner(self.body, second_end_m(self.body)));
+        let corner = at.map(|state| state.corner(&self.body, second_end_m(&self.body)));
         Prediction {
             model: self.body.model,
             contact: self.contact,
@@ -119,7 +111,7 @@ impl Case<'_> {
             horizontal_velocity_m_s: corner.as_ref().map(|c| c.horizontal_velocity_m_s),
             angular_velocity_rad_s: struck.after.angular_velocity_rad_s,
             flight_time_s: outcome.second_end.as_ref().map(|(_, time_s)| *time_s),
-            energy_ratio: at.map(|s| s.kinetic_energy_j(self.body) / start.kinetic_energy_j(self.body)),
+            energy_ratio: at.map(|s| s.kinetic_energy_j(&self.body) / start.kinetic_energy_j(&self.body)),
             slap_down_angle_deg: at.map(|s| s.angle_rad.to_degrees()),
             first_end_impacts: outcome.impacts,
             impulse_ratio: struck.horizontal_impulse_n_s / struck.vertical_impulse_n_s,

@@ -18,6 +18,15 @@ use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction,
 use path::Way;
 use state::State;
 
+/// What is predicted.
+#[derive(Debug, Clone, Copy)]
+struct Fall {
+    body: Body,
+    drop: Drop,
+    contact: Contact,
+    k: f64,
+}
+
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
     if model == BodyModel::Rod {
@@ -55,7 +64,7 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
     let (struck, outcome) = Way::of(body, drop, contact, Some(graze_share)).from(&start, drop, k);
-    ladder::Case { body, drop, contact, k }.prediction(&start, &struck, &outcome)
+    Fall { body: *body, drop: *drop, contact, k }.prediction(&start, &struck, &outcome)
 }
 
 /// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.

@@ -10,7 +10,7 @@ mod uncertain;
 
 pub use uncertain::{default_uncertain, usual_request};
 
-use super::{bodies, ladder, predict};
+use super::{Fall, bodies, ladder, predict};
 use crate::data::{
     Body, BodyModel, BodyPath, CaskFile, Contact, Drop, Ladder, Prediction, Study, StudyRequest,
 };
@@ -50,15 +50,7 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     }
 }
 
-/// A fall of which only the angle is open.
-#[derive(Debug, Clone, Copy)]
-struct Fall {
-    body: Body,
-    drop: Drop,
-    contact: Contact,
-    k: f64,
-}
-
+/// A fall of which the angle is open.
 impl Fall {
     fn drop_at(&self, angle_deg: f64) -> Drop {
         Drop { angle_rad: angle_deg.to_radians(), ..self.drop }
