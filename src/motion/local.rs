@@ -39,7 +39,8 @@ pub fn ringing_of_second_end(
     let before_s = slap_down.time_s - slap_down.u_s.max(1.0 / last.sample_rate_hz);
     let since_s = before_s - flight.from_s;
     let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, turning_rad_s, setup.cog_m);
-    let own_m_s = integrated.gained_m_s(channel, before_s) - plateau.velocity_step_m_s - shift_m_s2 * since_s;
+    let gained_m_s = integrated.velocities[channel].at(before_s);
+    let own_m_s = gained_m_s - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
     let orders = flight.bending_orders(&integrated.signals, setup.length_m);
     for (i, (mode, order)) in flight.modes.iter().zip(orders).enumerate() {

@@ -64,11 +64,6 @@ impl<'a> Integrated<'a> {
         Self { signals, contact_s, velocities, peaks_m_s2 }
     }
 
-    /// What a signal has gained since shortly before first contact, m/s.
-    pub fn gained_m_s(&self, signal: usize, time_s: f64) -> f64 {
-        self.velocities[signal].at(time_s)
-    }
-
     /// The same with signals of its own.
     pub fn into_owned(self) -> Integrated<'static> {
         Integrated { signals: Cow::Owned(self.signals.into_owned()), ..self }
