@@ -19,8 +19,7 @@ const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 
 /// The result where no impact was found.
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
-    let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
-    let result = result(recording, file, findings, (channels, Events::default()), None);
+    let result = result(recording, file, findings, Events::default(), None);
     analysis(recording, file, result, Curves::default)
 }
 
@@ -37,8 +36,8 @@ pub(super) fn of(
     let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, flown));
     let signals = impact.recorded();
     let recorded = signals.len();
-    let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
-    for ((summary, signal), smooth) in channels.iter_mut().zip(signals).zip(&shown.smooth) {
+    let mut result = result(recording, file, findings, events, quantities);
+    for ((summary, signal), smooth) in result.channels.iter_mut().zip(signals).zip(&shown.smooth) {
         let peak = |of: &Signal| peak(&of.force_m_s2[motion::shown(of, &events)]);
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);
@@ -47,7 +46,6 @@ pub(super) fn of(
         summary.clipped.clone_from(&signal.clipped);
     }
     let mut motion = None;
-    let mut result = result(recording, file, findings, (channels, events), quantities);
     let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     result.amplification = impacts::amplification(&result);
@@ -98,10 +96,11 @@ fn result(
     recording: &Recording,
     file: &CaskFile,
     mut findings: Vec<Finding>,
-    (channels, events): (Vec<ChannelSummary>, Events),
+    events: Events,
     quantities: Option<&Quantities>,
 ) -> DropResult {
     let verdict = judge::verdict(&mut findings);
+    let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
     let rates_hz = channels.iter().filter(|c| c.axis == Axis::Transverse).map(|c| c.sample_rate_hz);
     // What the recorder's filters delay all channels by is part of the interval of a time, and of no other.
     let delay_s = CHAIN_DELAY_SAMPLES / rates_hz.fold(f64::INFINITY, f64::min);
