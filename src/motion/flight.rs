@@ -6,7 +6,7 @@ use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
-use crate::numerics::{as_count, as_f64, robust};
+use crate::numerics::{as_count, as_f64, extent, robust};
 use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
@@ -283,8 +283,7 @@ fn is_sound(series: &[Series], fit: &Fit) -> bool {
 }
 
 fn range(values: &[f64]) -> f64 {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = extent(values.iter().copied());
     high - low
 }
 
