@@ -53,16 +53,15 @@ fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
 /// Ranges, rate and record that the predicted drop needs; of a cask file without channels for sensors at both
 /// ends.
 pub(super) fn needs(file: &CaskFile) -> RecordingNeeds {
-    let body = predict::bodies(&file.cask).pop();
-    let predicted = body.map(|body| predict::predict(&body, &file.drop, file.contact, LARGEST_K));
+    let predicted = predict::predict(&predict::richest(file), &file.drop, file.contact, LARGEST_K);
     let ends = [("first end", End::First, 0.0), ("second end", End::Second, file.cask.length_m)];
     let ends = ends.map(|(name, end, position_m)| ChannelSpec::plain(name, end, "", position_m));
     let specs = if file.channels.is_empty() { &ends[..] } else { &file.channels };
     let channel = |spec: &ChannelSpec| {
-        let step_m_s = predicted.as_ref().map_or(0.0, |predicted| largest_step_m_s(spec, file, predicted));
-        ChannelNeeds { name: spec.name.clone(), peaks: judge::expected_peaks(step_m_s, &file.drop) }
+        let peaks = judge::expected_peaks(largest_step_m_s(spec, file, &predicted), &file.drop);
+        ChannelNeeds { name: spec.name.clone(), peaks }
     };
-    let flight_s = predicted.as_ref().and_then(|p| p.flight_time_s).unwrap_or(0.0);
+    let flight_s = predicted.flight_time_s.unwrap_or(0.0);
     let (longest_s, shortest_s) = judge::pulse_lengths_s(&file.drop);
     let sample_rate_hz = judge::fit_rate_hz(shortest_s);
     RecordingNeeds {
@@ -120,9 +119,8 @@ struct ExpectedDrop {
 
 impl ExpectedDrop {
     fn of(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
-        let body = predict::bodies(&file.cask).pop()?;
         let at_once = Drop { contact_duration_s: 0.0, ..file.drop };
-        let predicted = predict::predict(&body, &at_once, file.contact, k);
+        let predicted = predict::predict(&predict::richest(file), &at_once, file.contact, k);
         let flies = predicted.first_end_impacts == 1 && predicted.regime == FlightRegime::Free;
         let flight_s = predicted.flight_time_s.filter(|_| flies && !predicted.turns_over())?;
         let lasts_s = judge::pulse_lengths_s(&file.drop).0;

@@ -12,7 +12,7 @@ mod study;
 mod support;
 
 pub use ladder::{ladder, predict_by};
-pub use study::{default_uncertain, study, usual_request};
+pub use study::{default_uncertain, richest, study, usual_request};
 
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, block_inertia_kg_m2};
 use path::Way;

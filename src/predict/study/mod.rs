@@ -85,7 +85,7 @@ fn paths(falls: &[Fall], angle_deg: f64) -> Vec<BodyPath> {
 }
 
 /// The body where the cask file describes one, else the rod.
-fn richest(cask_file: &CaskFile) -> Body {
+pub fn richest(cask_file: &CaskFile) -> Body {
     let model = if cask_file.cask.is_body { BodyModel::Body } else { BodyModel::Rod };
     super::body(&cask_file.cask, model)
 }
