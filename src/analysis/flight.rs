@@ -136,24 +136,13 @@ fn moved(
         fall_s: impact.fall_s.as_ref().map(|fall_s| fall_s.end - fall_s.start),
         second: None,
     };
-    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
     let stated = motion::outcome(integrated, &flight, events, &setup)?;
     // What rings behind a touch is not what rang before it: neither the second impact nor the corner is told.
     let is_whole = flight.landing.is_none();
     let second =
         is_whole.then(|| SecondImpact::find(file, &integrated.signals, &stated, &measured)).flatten();
-    let of_second = second.as_ref().map(|second| (second.inputs(), second));
-    let turned_beyond_rad_s =
-        |inputs: &_, first: &_| of_second.as_ref()?.1.turned_beyond_rad_s(inputs, first);
-    let contact = of_second.as_ref().map(|(inputs, second)| fit::SecondContact {
-        inputs,
-        turned_beyond_rad_s: &turned_beyond_rad_s,
-        turned_rad_s: second.turned_rad_s(),
-    });
-    let with_second = fit::FitData { second: contact, ..measured };
-    let taken = fit::ladder(&with_second, plain.as_ref(), &moved)
-        .or_else(|| fit::ladder(&measured, plain.as_ref(), &moved))?;
+    let taken = taken(integrated, &measured, plain.as_ref(), second.as_ref())?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
@@ -179,6 +168,25 @@ fn moved(
         tabulated,
         local_speed,
     })
+}
+
+/// The rung that is taken, with the rotation of the second impact among its closures where the fit finds an
+/// answer so.
+fn taken(
+    integrated: &Integrated,
+    measured: &fit::FitData,
+    plain: Option<&FlightFit>,
+    second: Option<&SecondImpact>,
+) -> Option<fit::RungTaken> {
+    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
+    let without = || fit::ladder(measured, plain, &moved);
+    let Some(second) = second else { return without() };
+    let contact = fit::SecondContact {
+        inputs: &second.inputs(),
+        turned_beyond_rad_s: &|inputs: &_, first: &_| second.turned_beyond_rad_s(inputs, first),
+        turned_rad_s: second.turned_rad_s(),
+    };
+    fit::ladder(&fit::FitData { second: Some(contact), ..*measured }, plain, &moved).or_else(without)
 }
 
 /// The speed of R's corner where ringing adds to that of the rigid body   (44)

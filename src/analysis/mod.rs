@@ -137,5 +137,5 @@ fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analy
     if measured.is_none() {
         findings.extend(judge::judge_fall_time(&findings, &file.drop, events, &file.tolerances));
     }
-    result::of((recording, file), findings, found, shown, measured)
+    result::of(recording, file, findings, found, shown, measured)
 }

@@ -23,9 +23,10 @@ pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: V
     analysis(recording, file, result, Curves::default)
 }
 
-/// The result from the first impact on, as far as the analysis came; measured is what is to be stated.
+/// The result from the first impact on, as far as the analysis came; `measured`: what is to be stated.
 pub(super) fn of(
-    (recording, file): (&Recording, &CaskFile),
+    recording: &Recording,
+    file: &CaskFile,
     findings: Vec<Finding>,
     AfterImpact { impact, events, flown }: AfterImpact,
     shown: ShownSignals,
