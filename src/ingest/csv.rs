@@ -25,7 +25,7 @@ use super::error::{self, IngestError};
 use super::lines::Text;
 use super::{RawChannel, RawRecording, ReadRequest};
 use crate::data::{CaskFile, ChannelSpec, Finding};
-use columns::{HeldColumn, Keep};
+use columns::HeldColumn;
 use layout::Layout;
 use plan::ColumnPlan;
 use table::{Refused, Table};
@@ -49,12 +49,10 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let most_rows = limits.samples_bytes() / (8 * wanted.columns.len().max(1) as u64);
     let rows = layout.rows_expected(text.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| HeldColumn::with_capacity(rows)).collect();
-    let mut keep = Keep::new(&wanted, columns);
-    let ending = rows::read(text, &layout, &wanted, &mut keep, request)
+    let mut table = Table::new(&layout, &plans, &wanted, columns);
+    let ending = rows::read(text, &layout, &wanted, &mut table, request)
         .map_err(|error| complaint::row_error(request, (&layout, &wanted), error))?;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
-    let Keep { columns, stamps, .. } = keep;
-    let mut table = Table { layout: &layout, plans: &plans, wanted: &wanted, columns, stamps };
     table.drop_blank().map_err(|refusal| error::of_file(path, refusal.at("the rows")))?;
     let name = |plan: usize| cask_file.channels[plan].name.as_str();
     let refused = |refused: Refused| error::of_channel(path, name(refused.plan), refused.refusal);

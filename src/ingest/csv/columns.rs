@@ -2,11 +2,6 @@
 
 use super::super::times::Counted;
 use super::even::Even;
-use super::rows::{RowsPart, Sink};
-use super::sensors;
-use super::stamp::Stamps;
-use super::wanted::Wanted;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// One wanted column.
@@ -25,7 +20,7 @@ impl HeldColumn {
     }
 
     /// Takes the next values; `is_time`: those of rising times, which may keep to a rule.
-    fn extend(&mut self, values: &[f64], is_time: bool) {
+    pub(super) fn extend(&mut self, values: &[f64], is_time: bool) {
         if is_time && self.even.is_none() && self.each.is_empty() {
             self.even = Even::of(values);
         }
@@ -65,57 +60,6 @@ impl HeldColumn {
             None if (scale - 1.0).abs() > 0.0 => self.each.iter_mut().for_each(|value| *value *= scale),
             None => {}
         }
-    }
-}
-
-/// Keeps the wanted columns whole.
-#[derive(Debug)]
-pub(super) struct Keep<'a> {
-    pub wanted: &'a Wanted,
-    pub columns: Vec<HeldColumn>,
-    pub stamps: Stamps,
-    /// Of columns that bear out others.
-    other_stamps: Stamps,
-}
-
-impl<'a> Keep<'a> {
-    pub(super) fn new(wanted: &'a Wanted, columns: Vec<HeldColumn>) -> Self {
-        Self { wanted, columns, stamps: Stamps::default(), other_stamps: Stamps::default() }
-    }
-
-    /// Takes over the rows of `parts`, in which the values of a slot lie at its `place`.
-    pub(super) fn extend(&mut self, parts: &[RowsPart], place: impl Fn(usize) -> usize + Sync) {
-        // A table of one piece is held as it is.
-        let may_keep_rule = parts.len() > 1;
-        // Most of the time the system hands out the memory, a page after the other.
-        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
-            |(slot, (column, is_time))| {
-                for part in parts {
-                    column.extend(&part.0[place(slot)], *is_time && may_keep_rule);
-                }
-            },
-        );
-    }
-}
-
-impl Sink for Keep<'_> {
-    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.wanted.is_sensor[slot] {
-            return Some(sensors::value(cell, b'.'));
-        }
-        if self.wanted.is_witness[slot] {
-            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
-        }
-        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
-    }
-
-    fn append(&mut self, parts: &mut [RowsPart]) {
-        self.extend(parts, |slot| slot);
-        parts.iter_mut().for_each(RowsPart::clear);
-    }
-
-    fn held_bytes(&self) -> u64 {
-        self.columns.iter().map(|column| 8 * column.each.len() as u64).sum()
     }
 }
 

@@ -5,7 +5,7 @@ use super::super::error::IngestError;
 use super::super::lines::Text;
 use super::super::refusal::Refusal;
 use super::super::{number, shown};
-use super::columns::{HeldColumn, Keep};
+use super::columns::HeldColumn;
 use super::complaint::{no_table, row_error};
 use super::header::TableColumn;
 use super::layout::Layout;
@@ -45,7 +45,7 @@ impl Range {
 /// Keeps the columns that one channel would take, and of all columns what they hold.
 #[derive(Debug)]
 pub(super) struct Survey<'a> {
-    keep: Keep<'a>,
+    kept: Table<'a>,
     /// The places among all columns of those that are kept.
     slots: Vec<usize>,
     /// The slot of the column that names sensors, and what stands for each of them.
@@ -58,16 +58,17 @@ pub(super) struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// Before the first row; `all` are read, and `kept` of them kept.
-    pub(super) fn of(layout: &Layout, all: &Wanted, kept: &'a Wanted) -> Self {
+    /// Before the first row; `all` are read, and those of `kept` kept.
+    pub(super) fn of(all: &Wanted, kept: Table<'a>) -> Self {
+        let layout = kept.layout;
         let value = |name: &&str| sensors::value(name.as_bytes(), layout.dialect.decimal);
         let sensors = layout.sensors.first();
         let sensors = sensors.map(|it| (all.slot(it.column), it.named(None).iter().map(value).collect()));
         let count = sensors.as_ref().map_or(1, |(_, sensors): &(usize, Vec<f64>)| sensors.len());
         Self {
             sensors,
-            keep: Keep::new(kept, vec![HeldColumn::default(); kept.columns.len()]),
-            slots: kept.columns.iter().map(|&column| all.slot(column)).collect(),
+            slots: kept.wanted.columns.iter().map(|&column| all.slot(column)).collect(),
+            kept,
             ranges: vec![vec![Range::default(); count]; all.columns.len()],
             rows: 0,
             filled: 0,
@@ -78,8 +79,8 @@ impl<'a> Survey<'a> {
 impl Sink for Survey<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         let kept = self.slots.iter().position(|&kept| kept == slot);
-        let value = kept.and_then(|kept| self.keep.word(kept, cell));
-        let is_time = kept.is_some_and(|kept| self.keep.wanted.is_time[kept]);
+        let value = kept.and_then(|kept| self.kept.word(kept, cell));
+        let is_time = kept.is_some_and(|kept| self.kept.wanted.is_time[kept]);
         if !is_time && value.is_none_or(f64::is_nan) {
             let range = &mut self.ranges[slot][0];
             range.words += 1;
@@ -110,12 +111,12 @@ impl Sink for Survey<'_> {
         let filled = self.ranges.par_iter_mut().enumerate().map(of_column).max();
         self.filled = self.filled.max(filled.unwrap_or_default());
         self.rows += parts.iter().map(|part| part.0.first().map_or(0, Vec::len)).sum::<usize>();
-        self.keep.extend(parts, |slot| self.slots[slot]);
+        self.kept.extend(parts, |slot| self.slots[slot]);
         parts.iter_mut().for_each(RowsPart::clear);
     }
 
     fn held_bytes(&self) -> u64 {
-        self.keep.held_bytes()
+        self.kept.held_bytes()
     }
 }
 
@@ -138,12 +139,12 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let all = Wanted::new(&values, &[]);
     let plans = [plan(&layout)];
     let kept = Wanted::of(&plans, &layout);
-    let mut survey = Survey::of(&layout, &all, &kept);
+    let columns = vec![HeldColumn::default(); kept.columns.len()];
+    let mut survey = Survey::of(&all, Table::new(&layout, &plans, &kept, columns));
     let ending = rows::read(text, &layout, &all, &mut survey, request)
         .map_err(|error| row_error(request, (&layout, &all), error))?;
-    let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
+    let Survey { kept: table, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
-    let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };
     let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|refusal| {
         issues.push(ClockFinding::Refused(refusal.beside("")).into());
         ListedClock::default()

@@ -37,16 +37,17 @@ fn input(rows: &[u8], ahead: usize) -> Text {
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
     let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
-    let mut keep = Keep::new(&wanted, vec![HeldColumn::default(); 3]);
-    let end = read_by(input(rows, ahead), (layout, &wanted), &mut keep, sizes, &|_| ());
+    let empty = || Table::new(layout, &[], &wanted, vec![HeldColumn::default(); 3]);
+    let mut table = empty();
+    let end = read_by(input(rows, ahead), (layout, &wanted), &mut table, sizes, &|_| ());
     let kept = match end {
         Ok(end) => {
-            let columns: Vec<_> = keep.columns.iter().map(HeldColumn::values).collect();
-            format!("{end:?} {columns:?} {:?}", keep.stamps)
+            let columns: Vec<_> = table.columns.iter().map(HeldColumn::values).collect();
+            format!("{end:?} {columns:?} {:?}", table.stamps)
         }
         Err(error) => format!("{error:?}"),
     };
-    let mut survey = Survey::of(layout, &wanted, &wanted);
+    let mut survey = Survey::of(&wanted, empty());
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
     [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {survey:?}"))]
 }
@@ -163,8 +164,8 @@ fn rows_before_a_failure_to_read_are_looked_at_first() {
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {
         let mut text = input(b"", 0);
         text.rest = Lines::of(Box::new(Broken(Cursor::new(rows.into_bytes()))));
-        let mut keep = Keep::new(&wanted, vec![HeldColumn::default(); 3]);
-        let error = read_by(text, (&layout, &wanted), &mut keep, sizes, &|_| ()).unwrap_err();
+        let mut table = Table::new(&layout, &[], &wanted, vec![HeldColumn::default(); 3]);
+        let error = read_by(text, (&layout, &wanted), &mut table, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");
     }

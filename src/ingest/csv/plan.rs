@@ -12,6 +12,7 @@ use crate::data::{ChannelSpec, RowsOf, Source};
 use std::path::Path;
 
 /// What one channel takes from the table.
+#[derive(Debug)]
 pub(super) struct ColumnPlan {
     pub column: usize,
     pub time_column: Option<usize>,

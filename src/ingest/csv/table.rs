@@ -4,6 +4,7 @@ use super::columns::HeldColumn;
 use super::even::Even;
 use super::layout::Layout;
 use super::plan::{self, ColumnPlan};
+use super::rows::{RowsPart, Sink};
 use super::sensors;
 use super::stamp::Stamps;
 use super::time_column;
@@ -15,13 +16,16 @@ use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use rayon::prelude::*;
 
-/// The wanted columns of a table, with what is said of them.
+/// The wanted columns of a table, kept whole, with what is said of them.
+#[derive(Debug)]
 pub(super) struct Table<'a> {
     pub layout: &'a Layout,
     pub plans: &'a [ColumnPlan],
     pub wanted: &'a Wanted,
     pub columns: Vec<HeldColumn>,
     pub stamps: Stamps,
+    /// Of columns that bear out others.
+    other_stamps: Stamps,
 }
 
 /// Why the times of a channel are refused.
@@ -37,7 +41,53 @@ enum Base<'a> {
     Each(ChannelTimes<'a>),
 }
 
-impl Table<'_> {
+impl Sink for Table<'_> {
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.wanted.is_sensor[slot] {
+            return Some(sensors::value(cell, b'.'));
+        }
+        if self.wanted.is_witness[slot] {
+            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
+        }
+        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
+    }
+
+    fn append(&mut self, parts: &mut [RowsPart]) {
+        self.extend(parts, |slot| slot);
+        parts.iter_mut().for_each(RowsPart::clear);
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.columns.iter().map(|column| 8 * column.each.len() as u64).sum()
+    }
+}
+
+impl<'a> Table<'a> {
+    /// Before the first row; the `columns` are empty.
+    pub(super) fn new(
+        layout: &'a Layout,
+        plans: &'a [ColumnPlan],
+        wanted: &'a Wanted,
+        columns: Vec<HeldColumn>,
+    ) -> Self {
+        let (stamps, other_stamps) = (Stamps::default(), Stamps::default());
+        Self { layout, plans, wanted, columns, stamps, other_stamps }
+    }
+
+    /// Takes over the rows of `parts`, in which the values of a slot lie at its `place`.
+    pub(super) fn extend(&mut self, parts: &[RowsPart], place: impl Fn(usize) -> usize + Sync) {
+        // A table of one piece is held as it is.
+        let may_keep_rule = parts.len() > 1;
+        // Most of the time the system hands out the memory, a page after the other.
+        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
+            |(slot, (column, is_time))| {
+                for part in parts {
+                    column.extend(&part.0[place(slot)], *is_time && may_keep_rule);
+                }
+            },
+        );
+    }
+
     /// Turns the times into s, and compares them with other columns of times; warnings where those do not
     /// bear them out.
     pub(super) fn settle_times(&mut self) -> Result<Vec<Finding>, Refused> {
