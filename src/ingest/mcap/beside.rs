@@ -12,23 +12,22 @@ use std::borrow::Cow;
 pub(super) struct SaidBeside<'a> {
     /// Their time, understood or not.
     pub(super) stamp: Option<&'a Value>,
-    /// A number that is their time, and its field.
-    pub(super) tick: Option<(f64, &'a Beside)>,
     pub(super) sensor: Option<(Cow<'a, str>, &'a Beside)>,
     pub(super) unit: Option<&'a str>,
     /// The nearest first, whatever their values.
     pub(super) rates: Vec<StatedRate>,
-    scale: Option<f64>,
-    offset: Option<(f64, &'a Beside)>,
-    conversion: Option<(f64, &'a Beside)>,
-    count: Option<f64>,
-    turns: Option<f64>,
+    /// What else is said by a number, the nearest first.
+    numbers: Vec<(f64, &'a Beside)>,
 }
 
 impl Slots {
     /// What the message says of the samples of `field`, the nearest of each.
     pub(super) fn beside<'a>(&'a self, field: &'a Field) -> SaidBeside<'a> {
         let mut said = SaidBeside::default();
+        let words = |slot: usize| match self.values.get(slot) {
+            Some(Value::Text(words)) => Some(words),
+            _ => None,
+        };
         for beside in &field.beside {
             match (beside.says, self.values.get(beside.slot)) {
                 (Says::Stamp, Some(stamp @ (Value::Stamp(_) | Value::BadStamp))) => {
@@ -40,7 +39,14 @@ impl Slots {
                 (Says::Sensor, Some(Value::Text(words))) => {
                     said.sensor.get_or_insert((Cow::Borrowed(words), beside));
                 }
-                (_, Some(Value::Number { value, .. })) => said.number(*value, beside, self),
+                (Says::Sensor, Some(Value::Number { value, .. })) => {
+                    said.sensor.get_or_insert_with(|| (value.to_string().into(), beside));
+                }
+                (Says::Rate { meaning, level, unit }, Some(&Value::Number { value, .. })) => {
+                    let (name, unit) = (beside.field.as_str().into(), unit.and_then(words).cloned());
+                    said.rates.push(StatedRate { name, meaning, level, value, unit });
+                }
+                (_, Some(Value::Number { value, .. })) => said.numbers.push((*value, beside)),
                 _ => {}
             }
         }
@@ -48,27 +54,14 @@ impl Slots {
     }
 }
 
-impl<'a> SaidBeside<'a> {
-    /// Takes a number.
-    fn number(&mut self, number: f64, beside: &'a Beside, slots: &Slots) {
-        match beside.says {
-            Says::Time(_) => _ = self.tick.get_or_insert((number, beside)),
-            Says::Scale => _ = self.scale.get_or_insert(number),
-            Says::Offset => _ = self.offset.get_or_insert((number, beside)),
-            Says::Conversion => _ = self.conversion.get_or_insert((number, beside)),
-            Says::Count => _ = self.count.get_or_insert(number),
-            Says::Turns => _ = self.turns.get_or_insert(number),
-            Says::Sensor => _ = self.sensor.get_or_insert((number.to_string().into(), beside)),
-            Says::Rate { meaning, level, unit } => {
-                let name = beside.field.as_str().into();
-                let unit = match unit.and_then(|slot| slots.values.get(slot)) {
-                    Some(Value::Text(unit)) => Some(unit.clone()),
-                    _ => None,
-                };
-                self.rates.push(StatedRate { name, meaning, level, value: number, unit });
-            }
-            Says::Stamp | Says::Unit => {}
-        }
+impl SaidBeside<'_> {
+    /// The number that is their time, and its field.
+    pub(super) fn tick(&self) -> Option<(f64, &Beside)> {
+        self.nearest(|says| matches!(says, Says::Time(_)))
+    }
+
+    fn nearest(&self, is_it: impl Fn(Says) -> bool) -> Option<(f64, &Beside)> {
+        self.numbers.iter().find(|(_, beside)| is_it(beside.says)).copied()
     }
 
     /// The samples as the message means them: the valid ones, value = raw · scale + offset.
@@ -76,7 +69,9 @@ impl<'a> SaidBeside<'a> {
     /// # Errors
     /// It says what is not done here.
     pub(super) fn applied(&self, mut value: Value) -> Result<Value, Refusal> {
-        if let (Some(turns), Value::Array(_)) = (self.turns.filter(|turns| *turns > 1.0), &value) {
+        let number = |says: Says| self.nearest(|own| own == says);
+        let [scale, count, turns] = [Says::Scale, Says::Count, Says::Turns].map(|s| Some(number(s)?.0));
+        if let (Some(turns), Value::Array(_)) = (turns.filter(|turns| *turns > 1.0), &value) {
             return Err(Refusal::new(
                 format!("by its layout each message holds {} signals by turns in one array", short(turns)),
                 "name one number of the array, as in `data[0]`, where a message holds one sample of each; \
@@ -85,9 +80,9 @@ impl<'a> SaidBeside<'a> {
         }
         // A factor of one changes nothing, nor does an offset of zero.
         let is_apart = |(number, _): &(f64, &Beside)| (*number - 1.0).abs() > f64::EPSILON;
-        let conversion = self.conversion.filter(is_apart);
-        let offset = self.offset.filter(|(number, _)| *number != 0.0);
-        if let (None, Some((number, beside))) = (self.scale, conversion.or(offset)) {
+        let conversion = number(Says::Conversion).filter(is_apart);
+        let offset = number(Says::Offset).filter(|(number, _)| *number != 0.0);
+        if let (None, Some((number, beside))) = (scale, conversion.or(offset)) {
             return Err(Refusal::new(
                 format!(
                     "its messages state {} = {} beside the samples, and nothing says whether these are \
@@ -99,10 +94,10 @@ impl<'a> SaidBeside<'a> {
                  scale = 1 where they are converted",
             ));
         }
-        if let (Some(count), Value::Array(samples)) = (self.count, &mut value) {
+        if let (Some(count), Value::Array(samples)) = (count, &mut value) {
             samples.truncate(as_count(count));
         }
-        if let Some(scale) = self.scale {
+        if let Some(scale) = scale {
             let offset = offset.map_or(0.0, |(number, _)| number);
             match &mut value {
                 Value::Number { value, is_narrow } => (*value, *is_narrow) = (*value * scale + offset, false),

@@ -144,7 +144,7 @@ impl Gathered {
             said.rates.iter().for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(said.stamp, message.log_time_ns);
             match said.applied(value) {
-                Ok(value) => column.take(value, time, said.tick),
+                Ok(value) => column.take(value, time, said.tick()),
                 Err(refusal) => column.refuse(refusal),
             }
         }
