@@ -97,35 +97,32 @@ pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<RosF
     let text = text.replace(['"', '\''], "_") + "\n#\n";
     let schema =
         MessageSchema::parse(name, &text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
-    let mut resolver = Resolver { of_package: HashMap::new(), of_any: HashMap::new() };
+    let mut resolver = Resolver { of_package: HashMap::new(), of_any: HashMap::new(), left };
     for spec in &schema.dependencies {
         let name = spec.name.rsplit('/').next().unwrap_or_default();
         resolver.of_package.entry((message_package(&spec.name), name)).or_insert(spec);
         resolver.of_any.entry(name).or_insert(spec);
     }
-    resolver.message(&schema.spec, DEEPEST, left)
+    resolver.message(&schema.spec, DEEPEST)
 }
 
 /// The named types, the first of a name.
 struct Resolver<'a> {
     of_package: HashMap<(Option<&'a str>, &'a str), &'a MessageSpecification>,
     of_any: HashMap<&'a str, &'a MessageSpecification>,
+    /// How many fields may still be taken.
+    left: &'a mut usize,
 }
 
 impl Resolver<'_> {
-    fn message(
-        &self,
-        spec: &MessageSpecification,
-        depth: usize,
-        left: &mut usize,
-    ) -> Result<Vec<RosField>, String> {
+    fn message(&mut self, spec: &MessageSpecification, depth: usize) -> Result<Vec<RosField>, String> {
         if depth == 0 {
             return Err(format!("its schema nests {} in itself", spec.name));
         }
         let mut fields = Vec::with_capacity(spec.fields.len());
         for field in &spec.fields {
-            *left = left.checked_sub(1).ok_or_else(|| "its schema has too many fields".to_owned())?;
-            let kind = self.kind(&field.ty, message_package(&spec.name), depth, left)?;
+            *self.left = self.left.checked_sub(1).ok_or("its schema has too many fields")?;
+            let kind = self.kind(&field.ty, message_package(&spec.name), depth)?;
             let type_name = match &field.ty {
                 Parsed::Complex(ComplexType::Absolute { package, name }) => Some(format!("{package}/{name}")),
                 _ => None,
@@ -139,38 +136,26 @@ impl Resolver<'_> {
         Ok(fields)
     }
 
-    fn kind(
-        &self,
-        ty: &Parsed,
-        package: Option<&str>,
-        depth: usize,
-        left: &mut usize,
-    ) -> Result<Type, String> {
+    fn kind(&mut self, ty: &Parsed, package: Option<&str>, depth: usize) -> Result<Type, String> {
         match ty {
             Parsed::BuiltIn(plain) => Ok(Type::plain(plain)),
             Parsed::Array { ty, size } => {
                 let length = if let ArraySize::Fixed(count) = size { Some(*count) } else { None };
-                Ok(Type::Array(Box::new(self.kind(ty, package, depth, left)?), length))
+                Ok(Type::Array(Box::new(self.kind(ty, package, depth)?), length))
             }
-            Parsed::Complex(complex) => self.named(complex, package, depth, left),
+            Parsed::Complex(complex) => self.named(complex, package, depth),
         }
     }
 
-    fn named(
-        &self,
-        complex: &ComplexType,
-        package: Option<&str>,
-        depth: usize,
-        left: &mut usize,
-    ) -> Result<Type, String> {
+    fn named(&mut self, complex: &ComplexType, package: Option<&str>, depth: usize) -> Result<Type, String> {
         let (package, name) = match complex {
             ComplexType::Absolute { package, name } => (Some(package.trim_end_matches("/msg")), name),
             ComplexType::Relative { name } => (package, name),
         };
         let is_relative = matches!(complex, ComplexType::Relative { .. });
         let of_any = || self.of_any.get(name.as_str()).filter(|_| is_relative);
-        match self.of_package.get(&(package, name.as_str())).or_else(of_any) {
-            Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
+        match self.of_package.get(&(package, name.as_str())).or_else(of_any).copied() {
+            Some(spec) => Ok(Type::Message(self.message(spec, depth - 1)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
                 RosField::number("sec", NumberType::I32),
