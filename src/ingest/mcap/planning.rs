@@ -27,71 +27,73 @@ impl Plan {
                 // An element is taken from its array once that is read.
                 plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
             }
-            let mut field = Field { asked: asked.clone(), value, beside: Vec::new() };
-            field.sensor(&mut plan, asked.sensor.as_ref());
-            for path in asked.times.iter().flatten() {
-                field.time(&mut plan, path);
-            }
-            for (level, message) in asked.path.enclosing().enumerate() {
-                let named = |name: &str| Some(message.then(name)).filter(&has);
-                let stamp =
-                    |names: &&[&str]| names.iter().fold(message.clone(), |path, name| path.then(name));
-                for path in STAMP_NAMES.iter().filter(|_| asked.times.is_none()).map(stamp).filter(&has) {
-                    field.time(&mut plan, &path);
-                }
-                field.others(&mut plan, (&message, level), &telling);
-                for path in RATE_NAMES.into_iter().filter_map(named) {
-                    field.rate(&mut plan, &path, (Meaning::Rate(1.0), level), &telling);
-                }
-                for path in UNIT_NAMES.into_iter().filter_map(named) {
-                    field.say(&mut plan, &path, (Want::Text, Says::Unit));
-                }
-            }
-            plan.fields.push(field);
+            let beside = BesideField { asked, plan: &mut plan, telling: &telling, all: Vec::new() };
+            let beside = beside.of(&has);
+            plan.fields.push(Field { asked: asked.clone(), value, beside });
         }
         plan
     }
 }
 
-impl Field {
-    fn say(&mut self, plan: &mut Plan, path: &FieldPath, (want, says): (Want, Says)) {
-        let slot = plan.slot(path, want);
-        let is_new = self.beside.iter().all(|known| (known.slot, known.says) != (slot, says));
+/// What stands beside the samples of a field, as it is planned.
+struct BesideField<'a> {
+    asked: &'a AskedField,
+    plan: &'a mut Plan,
+    telling: &'a [Telling],
+    all: Vec<Beside>,
+}
+
+impl BesideField<'_> {
+    /// All of it, the nearest first.
+    fn of(mut self, has: impl Fn(&FieldPath) -> bool) -> Vec<Beside> {
+        let asked = self.asked;
+        asked.sensor.iter().for_each(|path| self.sensor(path));
+        asked.times.iter().flatten().for_each(|path| self.time(path));
+        for (level, message) in asked.path.enclosing().enumerate() {
+            let named = |name: &str| Some(message.then(name)).filter(&has);
+            let stamp = |names: &&[&str]| names.iter().fold(message.clone(), |path, name| path.then(name));
+            for path in STAMP_NAMES.iter().filter(|_| asked.times.is_none()).map(stamp).filter(&has) {
+                self.time(&path);
+            }
+            self.others(&message, level);
+            for path in RATE_NAMES.into_iter().filter_map(named) {
+                self.rate(&path, Meaning::Rate(1.0), level);
+            }
+            for path in UNIT_NAMES.into_iter().filter_map(named) {
+                self.say(&path, Want::Text, Says::Unit);
+            }
+        }
+        self.all
+    }
+
+    fn say(&mut self, path: &FieldPath, want: Want, says: Says) {
+        let slot = self.plan.slot(path, want);
+        let is_new = self.all.iter().all(|known| (known.slot, known.says) != (slot, says));
         // The paths of others are said in refusals.
         let has_path = |says: Says| !matches!(says, Says::Stamp | Says::Unit | Says::Rate { .. });
-        let with_path = self.beside.iter().filter(|known| has_path(known.says)).count();
+        let with_path = self.all.iter().filter(|known| has_path(known.says)).count();
         if is_new && (!has_path(says) || with_path < MOST_BESIDE) {
             let name = || path.last_name().unwrap_or_default().to_owned();
             let field = if has_path(says) { path.to_string() } else { name() };
-            self.beside.push(Beside { slot, says, field });
+            self.all.push(Beside { slot, says, field });
         }
     }
 
     /// Takes the field at `path` for their time, be it a structure, words or a number.
-    pub(super) fn time(&mut self, plan: &mut Plan, path: &FieldPath) {
+    fn time(&mut self, path: &FieldPath) {
         let scale = path.last_name().map_or(Scale::Open, |name| Scale::of(name, None));
-        self.say(plan, path, (Want::Stamp, Says::Stamp));
-        self.say(plan, path, (Want::Numbers, Says::Time(scale)));
+        self.say(path, Want::Stamp, Says::Stamp);
+        self.say(path, Want::Numbers, Says::Time(scale));
     }
 
     /// Takes the field at `path` for the name or number of their sensor.
-    pub(super) fn sensor(&mut self, plan: &mut Plan, path: Option<&FieldPath>) {
-        for (path, want) in
-            path.into_iter().flat_map(|path| [Want::Text, Want::Numbers].map(|want| (path, want)))
-        {
-            self.say(plan, path, (want, Says::Sensor));
-        }
+    fn sensor(&mut self, path: &FieldPath) {
+        [Want::Text, Want::Numbers].into_iter().for_each(|want| self.say(path, want, Says::Sensor));
     }
 
     /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it:
     /// `sample_rate_unit`.
-    pub(super) fn rate(
-        &mut self,
-        plan: &mut Plan,
-        path: &FieldPath,
-        (meaning, level): (Meaning, usize),
-        telling: &[Telling],
-    ) {
+    fn rate(&mut self, path: &FieldPath, meaning: Meaning, level: usize) {
         let name = path.last_name().unwrap_or_default();
         let is_unit = |other: &&Telling| {
             let unit = other.path.last_name().and_then(|unit| unit.strip_prefix(name));
@@ -99,33 +101,29 @@ impl Field {
                 && other.path.enclosing().next() == path.enclosing().next()
                 && matches!(unit, Some("_unit" | "_units"))
         };
-        let unit = telling.iter().find(is_unit).map(|unit| plan.slot(&unit.path, Want::Text));
-        self.say(plan, path, (Want::Numbers, Says::Rate { meaning, level, unit }));
+        let unit = self.telling.iter().find(is_unit).map(|unit| self.plan.slot(&unit.path, Want::Text));
+        self.say(path, Want::Numbers, Says::Rate { meaning, level, unit });
     }
 
     /// Takes the fields of a message that encloses the samples, so many `level`s above them, that say
     /// something of them.
-    pub(super) fn others(
-        &mut self,
-        plan: &mut Plan,
-        (message, level): (&FieldPath, usize),
-        telling: &[Telling],
-    ) {
-        let is_beside = |t: &&Telling| t.message == *message && t.path != self.asked.path;
-        for Telling { path, says, .. } in telling.iter().filter(is_beside).collect::<Vec<_>>() {
+    fn others(&mut self, message: &FieldPath, level: usize) {
+        let asked = self.asked;
+        let is_beside = |t: &&Telling| t.message == *message && t.path != asked.path;
+        for Telling { path, says, .. } in self.telling.iter().filter(is_beside) {
             match says {
-                Says::Sensor if self.asked.may_be_sensor(path) => self.sensor(plan, Some(path)),
-                Says::Time(_) if self.asked.times.is_none() => self.time(plan, path),
-                Says::Rate { meaning, .. } => self.rate(plan, path, (*meaning, level), telling),
+                Says::Sensor if asked.may_be_sensor(path) => self.sensor(path),
+                Says::Time(_) if asked.times.is_none() => self.time(path),
+                Says::Rate { meaning, .. } => self.rate(path, *meaning, level),
                 Says::Sensor | Says::Time(_) | Says::Unit => {}
-                says => self.say(plan, path, (Want::Numbers, *says)),
+                says => self.say(path, Want::Numbers, *says),
             }
         }
     }
 }
 
 /// A field that says something of the samples in a message.
-pub(super) struct Telling {
+struct Telling {
     message: FieldPath,
     path: FieldPath,
     says: Says,
@@ -133,7 +131,7 @@ pub(super) struct Telling {
 
 impl Telling {
     /// Those among the leaves of a message type, the first of them.
-    pub(super) fn among(leaves: &[Leaf]) -> Vec<Self> {
+    fn among(leaves: &[Leaf]) -> Vec<Self> {
         leaves.iter().filter(|leaf| !leaf.is_array).filter_map(Self::of).take(MOST_TELLING).collect()
     }
 
