@@ -27,6 +27,7 @@ use super::{RawChannel, RawRecording, ReadRequest};
 use crate::data::{CaskFile, ChannelSpec, Finding};
 use columns::HeldColumn;
 use layout::Layout;
+use pieces::Sizes;
 use plan::ColumnPlan;
 use table::{Refused, Table};
 use wanted::Wanted;
@@ -50,7 +51,8 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let rows = layout.rows_expected(text.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| HeldColumn::with_capacity(rows)).collect();
     let mut table = Table::new(&layout, &plans, &wanted, columns);
-    let ending = rows::read(text, &layout, &wanted, &mut table, request)
+    let sizes = Sizes::of(limits, text.bytes);
+    let ending = rows::read(text, (&layout, &wanted), &mut table, sizes, request.progress)
         .map_err(|error| complaint::row_error(request, (&layout, &wanted), error))?;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
     table.drop_blank().map_err(|refusal| error::of_file(path, refusal.at("the rows")))?;

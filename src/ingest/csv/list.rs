@@ -9,6 +9,7 @@ use super::columns::HeldColumn;
 use super::complaint::{no_table, row_error};
 use super::header::TableColumn;
 use super::layout::Layout;
+use super::pieces::Sizes;
 use super::plan::ColumnPlan;
 use super::rows::{self, RowsPart, Sink};
 use super::sensors::{self, Filled};
@@ -141,7 +142,8 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let kept = Wanted::of(&plans, &layout);
     let columns = vec![HeldColumn::default(); kept.columns.len()];
     let mut survey = Survey::of(&all, Table::new(&layout, &plans, &kept, columns));
-    let ending = rows::read(text, &layout, &all, &mut survey, request)
+    let sizes = Sizes::of(limits, text.bytes);
+    let ending = rows::read(text, (&layout, &all), &mut survey, sizes, request.progress)
         .map_err(|error| row_error(request, (&layout, &all), error))?;
     let Survey { kept: table, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));

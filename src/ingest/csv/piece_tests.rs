@@ -3,7 +3,7 @@
 use super::super::lines::Lines;
 use super::list::Survey;
 use super::pieces::Sizes;
-use super::rows::{RowError, read_by};
+use super::rows::{RowError, read};
 use super::wanted::Wanted;
 use super::*;
 use proptest::prelude::*;
@@ -39,7 +39,7 @@ fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2]
     let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
     let empty = || Table::new(layout, &[], &wanted, vec![HeldColumn::default(); 3]);
     let mut table = empty();
-    let end = read_by(input(rows, ahead), (layout, &wanted), &mut table, sizes, &|_| ());
+    let end = read(input(rows, ahead), (layout, &wanted), &mut table, sizes, &|_| ());
     let kept = match end {
         Ok(end) => {
             let columns: Vec<_> = table.columns.iter().map(HeldColumn::values).collect();
@@ -48,7 +48,7 @@ fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2]
         Err(error) => format!("{error:?}"),
     };
     let mut survey = Survey::of(&wanted, empty());
-    let end = read_by(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
+    let end = read(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
     [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {survey:?}"))]
 }
 
@@ -165,7 +165,7 @@ fn rows_before_a_failure_to_read_are_looked_at_first() {
         let mut text = input(b"", 0);
         text.rest = Lines::of(Box::new(Broken(Cursor::new(rows.into_bytes()))));
         let mut table = Table::new(&layout, &[], &wanted, vec![HeldColumn::default(); 3]);
-        let error = read_by(text, (&layout, &wanted), &mut table, sizes, &|_| ()).unwrap_err();
+        let error = read(text, (&layout, &wanted), &mut table, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");
     }

@@ -1,7 +1,7 @@
 //! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
 
+use super::super::Progress;
 use super::super::lines::{self, Text};
-use super::super::{Progress, ReadRequest};
 use super::cells::{Delimiter, bare, skip};
 use super::layout::Layout;
 use super::pieces::{Cut, Sizes, TextBatch};
@@ -56,28 +56,16 @@ pub(super) enum RowError {
     TooMany,
 }
 
-/// Reads every row into `sink`; how the table ended, where it broke off.
+/// Reads every row into `sink`, by pieces and batches of any size; how the table ended, where it broke off. The
+/// sizes leave the rows, the error and the ending as they are.
 pub(super) fn read(
-    text: Text,
-    layout: &Layout,
-    wanted: &Wanted,
-    sink: &mut impl Sink,
-    request: ReadRequest,
-) -> Result<Option<TableFinding>, RowError> {
-    let sizes = Sizes::of(request.limits, text.bytes);
-    read_by(text, (layout, wanted), sink, sizes, request.progress)
-}
-
-/// The same by pieces and batches of any size; the sizes leave the rows, the error and the ending as they
-/// are.
-pub(super) fn read_by(
     mut text: Text,
     (layout, wanted): (&Layout, &Wanted),
     sink: &mut impl Sink,
     sizes: Sizes,
     progress: Progress,
 ) -> Result<Option<TableFinding>, RowError> {
-    let mut reader = RowReader::of(layout, wanted, layout.data_line - 1);
+    let mut reader = RowReader::of(layout, wanted);
     let head = text.head.split_off(layout.data_offset.min(text.head.len()));
     let (mut batch, mut next) = (TextBatch { text: head, is_last: false }, TextBatch::default());
     batch.fill(&mut text.rest, sizes).map_err(RowError::Io)?;
@@ -120,8 +108,7 @@ pub(super) fn read_by(
                 return Ok(Some(TableFinding::ZeroBytes { line: reader.line + 1 }));
             }
             let last = &batch.text[cut.end..];
-            let cut_line =
-                reader.last_line(last, layout, &mut parts[0], &mut |slot, cell| sink.word(slot, cell))?;
+            let cut_line = reader.last_line(last, &mut parts[0], &mut |slot, cell| sink.word(slot, cell))?;
             sink.append(&mut parts[..1]);
             return Ok(cut_line.map(|line| TableFinding::CutLine { line }));
         }
@@ -153,6 +140,7 @@ impl Sizes {
 }
 
 struct RowReader<'a> {
+    layout: &'a Layout,
     delimiter: Delimiter,
     decimal: u8,
     wanted: &'a Wanted,
@@ -160,24 +148,22 @@ struct RowReader<'a> {
     is_dense: bool,
     /// Whether a line without any value is a sample that is missing: no times tell that it is.
     keeps_empty: bool,
-    /// Whether the first column holds numbers or times.
-    begins_in_number: bool,
     values: Vec<f64>,
     line: u64,
 }
 
 impl<'a> RowReader<'a> {
-    /// A table of which `line` lines are behind.
-    fn of(layout: &Layout, wanted: &'a Wanted, line: u64) -> Self {
+    /// Before the first row.
+    fn of(layout: &'a Layout, wanted: &'a Wanted) -> Self {
         Self {
+            layout,
             delimiter: layout.dialect.delimiter,
             decimal: layout.dialect.decimal,
             wanted,
             is_dense: wanted.columns.iter().copied().eq(0..wanted.columns.len()),
             keeps_empty: !wanted.is_time.contains(&true),
-            begins_in_number: layout.columns[0].is_numeric,
             values: vec![f64::NAN; wanted.columns.len()],
-            line,
+            line: layout.data_line - 1,
         }
     }
 
@@ -248,7 +234,8 @@ impl<'a> RowReader<'a> {
     /// Whether the line at `at` is no row: where a number should begin it stands a remark, a sum, or the
     /// Ctrl-Z that ends a text of DOS.
     fn is_remark(&self, text: &[u8], at: usize) -> bool {
-        if !self.begins_in_number || matches!(text[at], b'0'..=b'9' | b'-' | b'+' | b'.' | b' ' | b'\n') {
+        let begins_in_number = self.layout.columns[0].is_numeric;
+        if !begins_in_number || matches!(text[at], b'0'..=b'9' | b'-' | b'+' | b'.' | b' ' | b'\n') {
             return false;
         }
         let cell = bare(&text[at..self.delimiter.end(text, at)]);
@@ -287,17 +274,11 @@ impl<'a> RowReader<'a> {
     }
 
     /// What stands after the last line break: a row, or one that broke off, whose line is given.
-    fn last_line(
-        &mut self,
-        text: &[u8],
-        layout: &Layout,
-        part: &mut RowsPart,
-        word: Word,
-    ) -> Result<Option<u64>, RowError> {
+    fn last_line(&mut self, text: &[u8], part: &mut RowsPart, word: Word) -> Result<Option<u64>, RowError> {
         if text.trim_ascii().is_empty() || self.is_remark(text, 0) {
             return Ok(None);
         }
-        let is_short = self.delimiter.cells(&lines::text(text)).len() < layout.columns.len();
+        let is_short = self.delimiter.cells(&lines::text(text)).len() < self.layout.columns.len();
         if is_short {
             return Ok(Some(self.line + 1));
         }
