@@ -115,19 +115,14 @@ impl Chunk {
     /// Unpacks and counts its records; a cut chunk unpacks to `most_of_cut` bytes at most.
     pub(super) fn unpack(&mut self, most_of_cut: u64) {
         self.unpacked.clear();
-        if self.is_bad() {
+        let Self { header: Some(header), body, unpacked, fault, .. } = self else { return };
+        if matches!(fault, Some(ChunkFault::Bad(_))) {
             return;
         }
-        let is_cut = self.fault.is_some();
-        let mut unpacked = std::mem::take(&mut self.unpacked);
-        let outcome = match (&self.header, self.packed()) {
-            (Some(header), Some(packed)) => {
-                let most = if is_cut { most_of_cut } else { header.uncompressed };
-                header.unpack(packed, most, &mut unpacked)
-            }
-            _ => Ok(()),
-        };
-        self.unpacked = unpacked;
+        let is_cut = fault.is_some();
+        let most = if is_cut { most_of_cut } else { header.uncompressed };
+        let packed = body.get(header.from..header.to).unwrap_or_default();
+        let outcome = header.unpack(packed, most, unpacked);
         let mut counts = Counts::default();
         let mut records = self.records();
         let bytes = records.0;
