@@ -124,9 +124,8 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             Type::Message(fields) => self.message(fields, node),
             Type::Array(element, length) => self.array(element, *length, node),
             Type::Number(number) => {
-                let stored = self.stored(*number)?;
+                let value = self.number(*number)?;
                 if let Some(slot) = node.and_then(|node| node.slot(Want::Numbers)) {
-                    let value = number.value(stored, !Order::IS_LITTLE);
                     self.slots.set(slot, Value::Number { value, is_narrow: !number.is_wide() });
                 }
                 Ok(())
@@ -180,13 +179,8 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     }
 
     fn number(&mut self, number: NumberType) -> Result<f64, re_cdr::Error> {
-        Ok(number.value(self.stored(number)?, !Order::IS_LITTLE))
-    }
-
-    /// The bytes of a number.
-    fn stored(&mut self, number: NumberType) -> Result<&'a [u8], re_cdr::Error> {
         self.reader.align(number.bytes())?;
-        self.reader.read_bytes(number.bytes())
+        Ok(number.value(self.reader.read_bytes(number.bytes())?, !Order::IS_LITTLE))
     }
 
     /// A string's bytes without the closing zero.
