@@ -1,12 +1,14 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
 use super::numbers::push;
+use super::path::Step;
 use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
 use super::wire::{Item, Wire};
 use crate::data::Samples;
 use prost_reflect::{FieldDescriptor, Kind, MessageDescriptor};
+use std::collections::HashMap;
 
 /// Messages nested deeper than this (or in themselves) hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
@@ -54,14 +56,14 @@ fn is_number(kind: &Kind) -> bool {
 }
 
 /// The field numbers of a time's two parts.
-fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<(u32, u32)> {
+fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<[u32; 2]> {
     let number = |names: &[&str]| {
         message
             .fields()
             .find(|field| names.contains(&field.name()) && is_number(&field.kind()) && !field.is_list())
             .map(|field| field.number())
     };
-    Some((number(&SECONDS_NAMES)?, number(&NANOSECONDS_NAMES)?))
+    Some([number(&SECONDS_NAMES)?, number(&NANOSECONDS_NAMES)?])
 }
 
 /// Decodes protobuf messages by a plan: what to do with the fields of a message.
@@ -83,18 +85,11 @@ struct ProtobufField {
 
 #[derive(Debug)]
 enum Action {
-    Numbers {
-        slot: usize,
-        elements: Vec<(usize, usize)>,
-    },
-    Text {
-        slot: usize,
-    },
-    Stamp {
-        slot: usize,
-        seconds: u32,
-        nanoseconds: u32,
-    },
+    /// Into the slot, and single elements into others.
+    Numbers(usize, Vec<(usize, usize)>),
+    Text(usize),
+    /// Into the slot, by the field numbers of seconds and nanoseconds.
+    Stamp(usize, [u32; 2]),
     Descend(Protobuf),
     /// One message of a repeated one.
     Elements(Vec<(usize, Protobuf)>),
@@ -110,11 +105,11 @@ impl Protobuf {
             };
             if let Some(action) = action(child, &field) {
                 match &action {
-                    Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
+                    Action::Numbers(slot, _) if !field.is_list() && !field.supports_presence() => {
                         let is_narrow = matches!(field.kind(), Kind::Float);
                         compiled.defaults.push((*slot, Value::Number { value: 0.0, is_narrow }));
                     }
-                    Action::Stamp { slot, .. } => compiled.defaults.push((*slot, Value::Stamp(0))),
+                    Action::Stamp(slot, _) => compiled.defaults.push((*slot, Value::Stamp(0))),
                     _ => {}
                 }
                 let (number, kind, is_list) = (field.number(), field.kind(), field.is_list());
@@ -129,18 +124,18 @@ fn action(child: &Node, field: &FieldDescriptor) -> Option<Action> {
     match field.kind() {
         Kind::Message(inner) if field.is_list() => {
             let elements = child.children.iter().filter_map(|(step, node)| match step {
-                super::path::Step::Index(index) => Some((*index, Protobuf::new(node, &inner))),
-                super::path::Step::Name(_) => None,
+                Step::Index(index) => Some((*index, Protobuf::new(node, &inner))),
+                Step::Name(_) => None,
             });
             Some(Action::Elements(elements.collect()))
         }
         Kind::Message(inner) => match (child.slot(Want::Stamp), seconds_and_nanoseconds(&inner)) {
-            (Some(slot), Some((seconds, nanoseconds))) => Some(Action::Stamp { slot, seconds, nanoseconds }),
+            (Some(slot), Some(parts)) => Some(Action::Stamp(slot, parts)),
             _ => Some(Action::Descend(Protobuf::new(child, &inner))),
         },
-        Kind::String => child.slot(Want::Text).map(|slot| Action::Text { slot }),
+        Kind::String => child.slot(Want::Text).map(Action::Text),
         kind if is_number(&kind) => {
-            child.slot(Want::Numbers).map(|slot| Action::Numbers { slot, elements: child.elements() })
+            child.slot(Want::Numbers).map(|slot| Action::Numbers(slot, child.elements()))
         }
         _ => None,
     }
@@ -152,47 +147,36 @@ impl Decode for Protobuf {
             slots.set(*slot, value.clone());
         }
         let mut wire = Wire(data);
-        let mut seen: Vec<(u32, usize)> = Vec::new();
+        let mut seen: HashMap<u32, usize> = HashMap::new();
         while let Some((number, item)) = wire.item()? {
             let Some(field) = self.fields.iter().find(|field| field.number == number) else { continue };
             let wrong_type = || format!("field {number} is not of its schema's type");
             match (&field.action, item) {
-                (Action::Numbers { slot, .. }, item) => {
+                (Action::Numbers(slot, _), item) => {
                     field.numbers(*slot, &item, slots).ok_or_else(wrong_type)?;
                 }
-                (Action::Text { slot }, Item::Bytes(bytes)) => {
-                    slots.set_text(*slot, bytes);
-                }
-                (Action::Stamp { slot, seconds, nanoseconds }, Item::Bytes(bytes)) => {
-                    slots.set(*slot, Value::Stamp(stamp_ns(bytes, *seconds, *nanoseconds)?));
+                (Action::Text(slot), Item::Bytes(bytes)) => slots.set_text(*slot, bytes),
+                (Action::Stamp(slot, parts), Item::Bytes(bytes)) => {
+                    slots.set(*slot, Value::Stamp(stamp_ns(bytes, *parts)?));
                 }
                 (Action::Descend(message), Item::Bytes(bytes)) => message.decode(bytes, slots)?,
                 (Action::Elements(elements), Item::Bytes(bytes)) => {
-                    let index = counted(&mut seen, number);
-                    if let Some((_, message)) = elements.iter().find(|(wanted, _)| *wanted == index) {
+                    let count = seen.entry(number).or_default();
+                    if let Some((_, message)) = elements.iter().find(|(wanted, _)| wanted == count) {
                         message.decode(bytes, slots)?;
                     }
+                    *count += 1;
                 }
                 _ => return Err(wrong_type()),
             }
         }
         for field in &self.fields {
-            if let Action::Numbers { slot, elements } = &field.action {
+            if let Action::Numbers(slot, elements) = &field.action {
                 slots.pick(*slot, elements);
             }
         }
         Ok(())
     }
-}
-
-/// How often field `number` came before.
-fn counted(seen: &mut Vec<(u32, usize)>, number: u32) -> usize {
-    if let Some((_, count)) = seen.iter_mut().find(|(own, _)| *own == number) {
-        *count += 1;
-        return *count;
-    }
-    seen.push((number, 0));
-    0
 }
 
 impl ProtobufField {
@@ -231,7 +215,7 @@ impl ProtobufField {
     }
 }
 
-fn stamp_ns(bytes: &[u8], seconds: u32, nanoseconds: u32) -> Result<i64, String> {
+fn stamp_ns(bytes: &[u8], [seconds, nanoseconds]: [u32; 2]) -> Result<i64, String> {
     let (mut whole, mut part) = (0, 0);
     let mut wire = Wire(bytes);
     while let Some((number, item)) = wire.item()? {
