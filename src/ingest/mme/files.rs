@@ -9,17 +9,14 @@ use crate::ingest::{Limits, RecordingFile, opened};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Cursor, Read};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 /// The folder of the index and of the channels, in any case.
 const CHANNELS: &str = "channel";
 
 /// The files of a test by their names, from the folder on that is the recording, or in the zip.
-#[derive(Debug)]
-pub(in crate::ingest) struct MmeFiles {
-    path: PathBuf,
-    in_memory: Option<Arc<[u8]>>,
+pub(in crate::ingest) struct MmeFiles<'a> {
+    pub(super) recording: RecordingFile<'a>,
     header: String,
     /// The list of the channels.
     pub(super) index: Option<String>,
@@ -28,13 +25,13 @@ pub(in crate::ingest) struct MmeFiles {
     zipped: BTreeMap<String, ZipEntry>,
 }
 
-impl MmeFiles {
+impl<'a> MmeFiles<'a> {
     /// The files of the test in a folder or zip; `None` where it holds no header, `*.mme`.
     ///
     /// # Errors
     /// It holds several tests, or two channels of one number; the operating system refuses.
-    pub(in crate::ingest) fn of(recording: RecordingFile) -> Result<Option<Self>, IngestError> {
-        let RecordingFile { path, in_memory } = recording;
+    pub(in crate::ingest) fn of(recording: RecordingFile<'a>) -> Result<Option<Self>, IngestError> {
+        let path = recording.path;
         let io = |source| error::io(path, &source);
         let is_folder = recording.is_folder();
         let zipped = if is_folder { Vec::new() } else { zip::entries(recording).map_err(io)? };
@@ -56,14 +53,7 @@ impl MmeFiles {
         };
         let stem = header.rfind('/').map_or(0, |slash| slash + 1);
         let stem = format!("{}{CHANNELS}/{}", &header[..stem], &header[stem..header.len() - "mme".len()]);
-        let mut files = Self {
-            path: path.to_owned(),
-            in_memory: in_memory.cloned(),
-            header,
-            index: None,
-            channels: BTreeMap::new(),
-            zipped,
-        };
+        let mut files = Self { recording, header, index: None, channels: BTreeMap::new(), zipped };
         for name in names {
             let lower = name.to_ascii_lowercase();
             let Some(ending) = lower.strip_prefix(&stem.to_ascii_lowercase()) else { continue };
@@ -80,10 +70,6 @@ impl MmeFiles {
         Ok(Some(files))
     }
 
-    fn recording(&self) -> RecordingFile<'_> {
-        RecordingFile { path: &self.path, in_memory: self.in_memory.as_ref() }
-    }
-
     /// The names of all: header, index, channels by number.
     pub(in crate::ingest) fn names(&self) -> impl Iterator<Item = &String> {
         [&self.header].into_iter().chain(&self.index).chain(self.channels.values())
@@ -95,15 +81,15 @@ impl MmeFiles {
     /// They unpack to more than such a zip may.
     pub(super) fn bytes(&self, limits: Limits) -> Result<u64, IngestError> {
         let bytes = self.names().map(|name| self.bytes_of(name)).sum();
-        let most_bytes = limits.unpacked_bytes(self.recording().length().unwrap_or_default());
+        let most_bytes = limits.unpacked_bytes(self.recording.length().unwrap_or_default());
         if !self.zipped.is_empty() {
-            limits.hold(&self.path, "its channels unpack to", bytes, most_bytes)?;
+            limits.hold(self.recording.path, "its channels unpack to", bytes, most_bytes)?;
         }
         Ok(bytes)
     }
 
     fn bytes_of(&self, name: &str) -> u64 {
-        let on_disk = || fs::metadata(self.path.join(name)).map_or(0, |file| file.len());
+        let on_disk = || fs::metadata(self.recording.path.join(name)).map_or(0, |file| file.len());
         self.zipped.get(name).map_or_else(on_disk, ZipEntry::bytes)
     }
 
@@ -113,29 +99,26 @@ impl MmeFiles {
     /// It is too large, damaged, or may not be read.
     pub(super) fn text(&self, name: &str, limits: Limits) -> Result<Text, IngestError> {
         // A line of two bytes becomes a sample of eight.
-        let (place, bytes, most_bytes) = (self.path.join(name), self.bytes_of(name), limits.part_bytes() / 4);
-        limits.hold(&self.path, &format!("{name} takes"), bytes, most_bytes)?;
+        let (place, bytes, most_bytes) =
+            (self.recording.path.join(name), self.bytes_of(name), limits.part_bytes() / 4);
+        limits.hold(self.recording.path, &format!("{name} takes"), bytes, most_bytes)?;
         let source: Box<dyn Read + Send> = match self.zipped.get(name) {
             None => Box::new(opened(&place).map_err(|source| error::io(&place, &source))?),
             Some(entry) => {
                 let mend = "copy the zip again, or unpack it and name the folder";
-                let damaged = |source| error::of_file(&self.path, Refusal::new(bare(&source), mend).at(name));
-                Box::new(Cursor::new(entry.unpacked(self.recording()).map_err(damaged)?))
+                let damaged =
+                    |source| error::of_file(self.recording.path, Refusal::new(bare(&source), mend).at(name));
+                Box::new(Cursor::new(entry.unpacked(self.recording).map_err(damaged)?))
             }
         };
         Text::read(&place, source, bytes, limits)
-    }
-
-    /// What is wrong in a line of a file.
-    pub(super) fn fault(&self, name: &str, line: u64, problem: String, mend: &str) -> IngestError {
-        error::of_file(&self.path, Refusal::new(problem, mend).at(&format!("{name}, line {line}")))
     }
 
     /// The refusal of a test that lacks a file.
     pub(super) fn without(&self, what: &str) -> IngestError {
         let problem = format!("beside {} there is no {what}", self.header);
         let refusal = Refusal::new(problem, "copy or export the test again, with all its files");
-        error::of_file(&self.path, refusal.at("its files"))
+        error::of_file(self.recording.path, refusal.at("its files"))
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::files::MmeFiles;
 use crate::ingest::Limits;
-use crate::ingest::error::IngestError;
+use crate::ingest::error::{self, IngestError};
 use crate::ingest::lines;
+use crate::ingest::refusal::Refusal;
 use std::io::Read;
 
 /// Lines of a header: an index has one for each channel.
@@ -20,7 +21,7 @@ pub(super) struct HeaderLine {
 
 /// A text, its header apart.
 pub(super) struct HeadedText<'a> {
-    files: &'a MmeFiles,
+    files: &'a MmeFiles<'a>,
     /// The file.
     pub name: &'a str,
     /// The lines before the first without a colon; those that state `NOVALUE` are left out.
@@ -40,11 +41,11 @@ impl<'a> HeadedText<'a> {
     ///
     /// # Errors
     /// It cannot be read, or has too long a header.
-    pub(super) fn of(files: &'a MmeFiles, name: &'a str, limits: Limits) -> Result<Self, IngestError> {
+    pub(super) fn of(files: &'a MmeFiles<'a>, name: &'a str, limits: Limits) -> Result<Self, IngestError> {
         let mut text = files.text(name, limits)?;
         let mut rest = std::mem::take(&mut text.head);
         let read = text.rest.read_to_end(&mut rest);
-        read.map_err(|source| files.fault(name, 1, source.to_string(), "copy the file again"))?;
+        read.map_err(|source| error::io(&files.recording.path.join(name), &source))?;
         let (mut header, mut at, mut above) = (Vec::new(), 0, 0);
         for line in rest.split_inclusive(|&byte| byte == b'\n') {
             let words = lines::text(line.trim_ascii());
@@ -76,7 +77,8 @@ impl<'a> HeadedText<'a> {
 
     /// What is wrong in a line.
     pub(super) fn fault(&self, line: u64, problem: String) -> IngestError {
-        self.files.fault(self.name, line, problem, "correct the line in a copy, or export the test again")
+        let refusal = Refusal::new(problem, "correct the line in a copy, or export the test again");
+        error::of_file(self.files.recording.path, refusal.at(&format!("{}, line {line}", self.name)))
     }
 }
 
