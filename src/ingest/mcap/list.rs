@@ -5,7 +5,7 @@ use super::numbers::Extent;
 use super::plan::AskedField;
 use super::scanned::Scanned;
 use super::topic::{TopicChannel, TopicSeries};
-use super::walk::walk;
+use super::walk::Walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, HashMap};
 pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     let path = request.file.path;
     let bytes = request.file.length().map_err(|source| error::io(path, &source))?;
-    let walked = walk(request, None)?;
+    let walked = Walk::of(request, None)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schemas.len(), walked.topics.by_channel.len());
     let (scanned, mut series) = walked.finish();

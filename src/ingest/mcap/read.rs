@@ -6,7 +6,7 @@ use super::path;
 use super::scanned::Scanned;
 use super::topic::TopicSeries;
 use super::topics::LOG_TIME;
-use super::walk::walk;
+use super::walk::Walk;
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::refusal::Refusal;
@@ -20,7 +20,7 @@ use std::path::Path;
 pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
     let path = request.file.path;
     let specs = &cask_file.channels;
-    let (scanned, mut series) = walk(request, Some(cask_file))?.finish();
+    let (scanned, mut series) = Walk::of(request, Some(cask_file))?.finish();
     let refused = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
     let one =
         |spec: &ChannelSpec| chosen(path, spec, &series, &scanned).map_err(|refusal| refused(spec, refusal));

@@ -23,51 +23,9 @@ const MOST_PACKED_BYTES: u64 = 16 << 20;
 /// itself.
 const MOST_UNPACKED_BYTES: u64 = 64 << 20;
 
-/// A file that was walked through.
-pub(super) struct Walked<'a> {
-    pub(super) scanned: Scanned,
-    pub(super) topics: Topics<'a>,
-    taken: Part,
-}
-
-impl Walked<'_> {
-    /// What each channel gave for each field, by topics in the order of the file.
-    pub(super) fn finish(self) -> (Scanned, Vec<TopicSeries>) {
-        (self.scanned, self.topics.finish(self.taken))
-    }
-}
-
-/// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
-/// of a cask file name; without one, for a listing, of every numeric field.
-///
-/// # Errors
-/// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
-pub(super) fn walk<'a>(request: ReadRequest, asked: Option<&'a CaskFile>) -> Result<Walked<'a>, IngestError> {
-    let ReadRequest { file: recording, limits, .. } = request;
-    let io = |source| error::io(recording.path, &source);
-    let mut file = recording.opened().map_err(io)?;
-    let length = recording.length().map_err(io)?;
-    let summary = summary::read(&mut file, length, limits.part_bytes()).map_err(io)?;
-    let topics = Topics::new(asked, limits, length);
-    let mut walk = Walk {
-        request,
-        file: BufReader::with_capacity(READ_BUFFER_BYTES, Summed::of(file, summary.as_ref())),
-        length,
-        at: mcap::MAGIC.len() as u64,
-        summary,
-        waiting: Vec::new(),
-        spare: Vec::new(),
-        claimed_bytes: 0,
-        body: Vec::new(),
-        walked: Walked { scanned: Scanned::default(), taken: topics.part(1), topics },
-    };
-    walk.run()?;
-    Ok(walk.walked)
-}
-
-/// Where the walk through the file stands.
-struct Walk<'a, 'f> {
-    request: ReadRequest<'f>,
+/// A walk through a file: where it stands, and what it found.
+pub(super) struct Walk<'a> {
+    request: ReadRequest<'a>,
     file: BufReader<Summed>,
     length: u64,
     at: u64,
@@ -80,17 +38,54 @@ struct Walk<'a, 'f> {
     claimed_bytes: u64,
     /// Re-used for the record at hand.
     body: Vec<u8>,
-    walked: Walked<'a>,
+    pub(super) scanned: Scanned,
+    pub(super) topics: Topics<'a>,
+    taken: Part,
 }
 
-impl Walk<'_, '_> {
+impl<'a> Walk<'a> {
+    /// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
+    /// of a cask file name; without one, for a listing, of every numeric field.
+    ///
+    /// # Errors
+    /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
+    pub(super) fn of(request: ReadRequest<'a>, asked: Option<&'a CaskFile>) -> Result<Self, IngestError> {
+        let ReadRequest { file: recording, limits, .. } = request;
+        let io = |source| error::io(recording.path, &source);
+        let mut file = recording.opened().map_err(io)?;
+        let length = recording.length().map_err(io)?;
+        let summary = summary::read(&mut file, length, limits.part_bytes()).map_err(io)?;
+        let topics = Topics::new(asked, limits, length);
+        let mut walk = Self {
+            request,
+            file: BufReader::with_capacity(READ_BUFFER_BYTES, Summed::of(file, summary.as_ref())),
+            length,
+            at: mcap::MAGIC.len() as u64,
+            summary,
+            waiting: Vec::new(),
+            spare: Vec::new(),
+            claimed_bytes: 0,
+            body: Vec::new(),
+            scanned: Scanned::default(),
+            taken: topics.part(1),
+            topics,
+        };
+        walk.run()?;
+        Ok(walk)
+    }
+
+    /// What each channel gave for each field, by topics in the order of the file.
+    pub(super) fn finish(self) -> (Scanned, Vec<TopicSeries>) {
+        (self.scanned, self.topics.finish(self.taken))
+    }
+
     fn run(&mut self) -> Result<(), IngestError> {
         for (opcode, body) in self.summary.iter().flat_map(Summary::records) {
             // A record that does not parse here may do so where it stands in the data.
-            let _ = self.walked.topics.announce(opcode, body, true);
+            let _ = self.topics.announce(opcode, body, true);
         }
         if self.summary.as_ref().is_some_and(|summary| summary.is_changed) {
-            self.walked.scanned.losses.push(McapFinding::SummaryChanged);
+            self.scanned.losses.push(McapFinding::SummaryChanged);
         }
         self.skip(self.at)?;
         let mut said_at = 0;
@@ -103,7 +98,7 @@ impl Walk<'_, '_> {
             }
         }
         // What was told by its place is in the sum as well.
-        let losses = &mut self.walked.scanned.losses;
+        let losses = &mut self.scanned.losses;
         if self.file.get_ref().is_changed() && losses.is_empty() {
             losses.push(McapFinding::DataChanged);
         }
@@ -144,7 +139,7 @@ impl Walk<'_, '_> {
 
     /// Whether what was read so far stays within the limits.
     fn keep_within(&self) -> Result<(), IngestError> {
-        let (Walked { scanned, topics, taken }, limits) = (&self.walked, self.request.limits);
+        let (Self { scanned, topics, taken, .. }, limits) = (self, self.request.limits);
         let unpacked = limits.unpacked_bytes(self.length);
         self.hold("the samples of the channels read take", taken.held_bytes, limits.samples_bytes())?;
         self.hold("its schemas and topics take", topics.held_bytes, limits.part_bytes())?;
@@ -157,7 +152,7 @@ impl Walk<'_, '_> {
         let (at, left) = (self.at, self.length.saturating_sub(self.at));
         if left < RECORD_HEADER_BYTES {
             self.settle()?;
-            self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside: "record" });
+            self.scanned.losses.end(FileEnd::Early { at, bytes: left, inside: "record" });
             return Ok(Break(()));
         }
         let mut header = [0; 9];
@@ -175,7 +170,7 @@ impl Walk<'_, '_> {
         if claimed > available {
             self.settle()?;
             let inside = record_name(opcode);
-            self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside });
+            self.scanned.losses.end(FileEnd::Early { at, bytes: left, inside });
             return Ok(Break(()));
         }
         self.whole_record(opcode, claimed)
@@ -188,7 +183,7 @@ impl Walk<'_, '_> {
         let is_data =
             matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE) && !is_behind_data;
         if !is_behind_data {
-            self.walked.scanned.counts.add(opcode);
+            self.scanned.counts.add(opcode);
         }
         if !is_data && !matches!(opcode, op::STATISTICS | op::FOOTER) {
             self.skip(length)?;
@@ -200,7 +195,7 @@ impl Walk<'_, '_> {
         if opcode == op::FOOTER {
             return self.end_magic();
         }
-        let (body, Walked { scanned, topics, taken }) = (&self.body, &mut self.walked);
+        let Self { body, scanned, topics, taken, .. } = self;
         let outcome = match opcode {
             op::MESSAGE => {
                 topics.look_at(body);
@@ -232,10 +227,8 @@ impl Walk<'_, '_> {
         self.file.get_mut().sum = None;
         let part_bytes = self.request.limits.part_bytes();
         self.hold("one of its chunks takes", claimed.min(available), part_bytes)?;
-        let mut chunk = self
-            .spare
-            .pop()
-            .unwrap_or_else(|| Chunk::new(self.walked.topics.part(rayon::current_num_threads())));
+        let mut chunk =
+            self.spare.pop().unwrap_or_else(|| Chunk::new(self.topics.part(rayon::current_num_threads())));
         (chunk.start, chunk.claimed) = (self.at, claimed);
         std::mem::swap(&mut self.body, &mut chunk.body);
         self.read(claimed.min(available))?;
@@ -263,8 +256,7 @@ impl Walk<'_, '_> {
     /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their
     /// messages.
     fn settle(&mut self) -> Result<(), IngestError> {
-        let Self { waiting, request: ReadRequest { limits, .. }, .. } = self;
-        let Walked { scanned, topics, taken } = &mut self.walked;
+        let Self { waiting, request: ReadRequest { limits, .. }, scanned, topics, taken, .. } = self;
         waiting.par_iter_mut().for_each(|chunk| chunk.unpack(limits.part_bytes()));
         for chunk in &*waiting {
             topics.meet(chunk, &mut scanned.losses);
@@ -281,7 +273,7 @@ impl Walk<'_, '_> {
 
     /// Adds what a chunk gave, or that it was lost.
     fn join(&mut self, chunk: &mut Chunk) {
-        let Walked { scanned, taken, .. } = &mut self.walked;
+        let Self { scanned, taken, .. } = self;
         let &mut Chunk { start: at, claimed, counts, .. } = chunk;
         let compression = chunk.compression().map(|name| if name.is_empty() { "none" } else { name });
         scanned.compressions.extend(compression.map(str::to_owned));
@@ -314,7 +306,7 @@ impl Walk<'_, '_> {
         let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
         let to = next.unwrap_or(self.length);
         let resumed = next.is_some();
-        self.walked.scanned.losses.push(McapFinding::Garbage { at, bytes: to - at, resumed });
+        self.scanned.losses.push(McapFinding::Garbage { at, bytes: to - at, resumed });
         if !resumed {
             return Ok(Break(()));
         }
@@ -328,7 +320,7 @@ impl Walk<'_, '_> {
     fn end_magic(&mut self) -> Result<ControlFlow<()>, IngestError> {
         self.read(mcap::MAGIC.len() as u64)?;
         if self.body != mcap::MAGIC {
-            self.walked.scanned.losses.end(FileEnd::InMagic { at: self.at });
+            self.scanned.losses.end(FileEnd::InMagic { at: self.at });
         }
         Ok(Break(()))
     }
