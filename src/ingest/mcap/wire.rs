@@ -1,5 +1,7 @@
 //! A protobuf message's bytes to its fields: numbers and what stands in them, no schema.
 
+use prost_reflect::prost::encoding::{WireType, decode_key, decode_varint};
+
 /// What stands in a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Item<'a> {
@@ -26,19 +28,18 @@ impl<'a> Wire<'a> {
         if self.0.is_empty() {
             return Ok(None);
         }
-        let tag = self.varint()?;
-        let number = u32::try_from(tag >> 3).map_err(|_| "a field number is too large".to_owned())?;
-        let item = match tag & 7 {
-            0 => Item::Varint(self.varint()?),
-            1 => Item::Fixed64(self.fixed()?),
-            2 => {
+        let (number, kind) = decode_key(&mut self.0).map_err(|error| error.to_string())?;
+        let item = match kind {
+            WireType::Varint => Item::Varint(self.varint()?),
+            WireType::SixtyFourBit => Item::Fixed64(self.fixed()?),
+            WireType::ThirtyTwoBit => Item::Fixed32(self.fixed()?),
+            WireType::LengthDelimited => {
                 let length = usize::try_from(self.varint()?).unwrap_or(usize::MAX);
-                let (bytes, rest) = self.0.split_at_checked(length).ok_or_else(ends)?;
+                let (bytes, rest) = self.0.split_at_checked(length).ok_or(ENDS)?;
                 self.0 = rest;
                 Item::Bytes(bytes)
             }
-            5 => Item::Fixed32(self.fixed()?),
-            other => return Err(format!("field {number} has the wire type {other}, which is not read")),
+            other => return Err(format!("field {number} has the wire type {other:?}, which is not read")),
         };
         Ok(Some((number, item)))
     }
@@ -48,16 +49,7 @@ impl<'a> Wire<'a> {
     /// # Errors
     /// The bytes end within it, or it has more than 64 bits.
     pub(super) fn varint(&mut self) -> Result<u64, String> {
-        let mut value = 0;
-        for position in 0..10 {
-            let (&byte, rest) = self.0.split_first().ok_or_else(ends)?;
-            self.0 = rest;
-            value |= u64::from(byte & 0x7f) << (7 * position);
-            if byte < 0x80 {
-                return Ok(value);
-            }
-        }
-        Err("a number has more than 64 bits".into())
+        decode_varint(&mut self.0).map_err(|_| "a number in it is cut, or has more than 64 bits".to_owned())
     }
 
     /// So many bytes.
@@ -65,15 +57,13 @@ impl<'a> Wire<'a> {
     /// # Errors
     /// There are fewer.
     pub(super) fn fixed<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        let (bytes, rest) = self.0.split_first_chunk().ok_or_else(ends)?;
+        let (bytes, rest) = self.0.split_first_chunk().ok_or(ENDS)?;
         self.0 = rest;
         Ok(*bytes)
     }
 }
 
-fn ends() -> String {
-    "the message ends within a field".into()
-}
+const ENDS: &str = "the message ends within a field";
 
 #[cfg(test)]
 mod tests {
