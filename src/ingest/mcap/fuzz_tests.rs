@@ -18,7 +18,7 @@ fn decode<D: Decode>(leaves: &[Leaf], decoder: impl FnOnce(&Plan) -> D, message:
 }
 
 pub(in super::super) fn json(bytes: &[u8]) {
-    decode(&json::Fields::of(bytes).leaves, Json::new, bytes);
+    decode(&json::Fields::of(bytes).leaves, |plan| Json(plan.root.clone()), bytes);
 }
 
 /// The length of the descriptors in two bytes, the descriptors, a message.

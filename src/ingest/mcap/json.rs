@@ -5,8 +5,8 @@
 
 use super::path::Step;
 use super::plan::{
-    Decode, LONGEST_PATH_BYTES, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots,
-    Value, Want, unix_ns,
+    Decode, LONGEST_PATH_BYTES, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, SECONDS_NAMES, Slots, Value,
+    Want, unix_ns,
 };
 use crate::data::Samples;
 use crate::ingest::number;
@@ -19,21 +19,14 @@ use std::borrow::Cow;
 /// Messages nested deeper than this hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
 
-/// Decodes JSON messages by a plan.
+/// Decodes JSON messages by the root of a plan; they need no schema.
 #[derive(Debug)]
-pub(super) struct Json {
-    root: Node,
-}
+pub(super) struct Json(pub(super) Node);
 
 impl Json {
-    /// For the fields of `plan`; JSON needs no schema.
-    pub(super) fn new(plan: &Plan) -> Self {
-        Self { root: plan.root.clone() }
-    }
-
     fn walk(&self, text: &[u8], slots: &mut Slots) -> Result<(), String> {
         let from = past_spaces(text, 0);
-        match slots.value(&self.root, &text[from..]) {
+        match slots.value(&self.0, &text[from..]) {
             Ok(used) if past_spaces(text, from + used) == text.len() => Ok(()),
             Err(Some(problem)) => Err(problem),
             // The grammar says where a text ceases to be JSON.

@@ -128,7 +128,7 @@ impl MessageType {
     /// A decoder for the fields of `plan`.
     pub(super) fn decoder(&self, plan: &Plan) -> Box<dyn Decode> {
         match self {
-            Self::Json => Box::new(Json::new(plan)),
+            Self::Json => Box::new(Json(plan.root.clone())),
             Self::Protobuf(message) => Box::new(Protobuf::new(&plan.root, message)),
             Self::Cdr(fields) => Box::new(Cdr::new(plan, fields)),
         }
