@@ -1,7 +1,7 @@
 //! Where the bytes of a recording lie, on disk or in memory, to something that reads and seeks.
 
 use std::fs::File;
-use std::io::{self, Cursor, Read, Seek};
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -68,6 +68,14 @@ pub fn opened(path: &Path) -> io::Result<File> {
         there if there.is_dir() => Err(io::Error::other("this is a directory, not a file")),
         _ => Err(io::Error::other("this is a pipe or a device, not a file; save it to a file first")),
     }
+}
+
+/// So many bytes from there on, or those up to the end.
+pub(super) fn bytes_at(file: &mut OpenFile, at: u64, count: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.seek(SeekFrom::Start(at))?;
+    file.take(count).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// All bytes of a small file.

@@ -2,7 +2,7 @@
 //! and its bytes to whether they are those that its writer summed up.
 
 use super::records::{RECORD_HEADER_BYTES, Records};
-use crate::ingest::recording_file::OpenFile;
+use crate::ingest::recording_file::{OpenFile, bytes_at};
 use mcap::records::{Record, op};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -48,26 +48,19 @@ impl Summary {
 
 /// The summary of `file`, empty where it is closed without one, `None` where it is not closed; the file is
 /// left at its start. What lies beyond `most_bytes` is left to the walk.
-pub(super) fn read(
-    file: &mut (impl Read + Seek),
-    length: u64,
-    most_bytes: u64,
-) -> std::io::Result<Option<Summary>> {
+pub(super) fn read(file: &mut OpenFile, length: u64, most_bytes: u64) -> std::io::Result<Option<Summary>> {
     let magic_bytes = mcap::MAGIC.len() as u64;
     let Some(end) = length.checked_sub(FOOTER_BYTES).filter(|&end| end >= magic_bytes) else {
         return Ok(None);
     };
-    file.seek(SeekFrom::Start(end))?;
-    let mut footer = Vec::new();
-    file.read_to_end(&mut footer)?;
+    let footer = bytes_at(file, end, FOOTER_BYTES)?;
     let mut summary = None;
     if let Some(start) = summary_start(&footer) {
         let Summary { bytes, chunk_starts, data_end, is_changed } = summary.insert(Summary::default());
         let has_summary = (magic_bytes..end).contains(&start);
         *data_end = data_end_before(file, if has_summary { start } else { end })?;
         if has_summary {
-            file.seek(SeekFrom::Start(start))?;
-            (&mut *file).take((end - start).min(most_bytes)).read_to_end(bytes)?;
+            *bytes = bytes_at(file, start, (end - start).min(most_bytes))?;
             // The sum is of the summary and of the footer up to itself.
             let stated = footer[25..].first_chunk().map_or(0, |sum| u32::from_le_bytes(*sum));
             let mut sum = crc32fast::Hasher::new();
@@ -91,11 +84,9 @@ pub(super) fn read(
 }
 
 /// The record that ends the data, if it ends at `end`.
-fn data_end_before(file: &mut (impl Read + Seek), end: u64) -> std::io::Result<Option<DataEnd>> {
+fn data_end_before(file: &mut OpenFile, end: u64) -> std::io::Result<Option<DataEnd>> {
     let Some(at) = end.checked_sub(DATA_END_BYTES) else { return Ok(None) };
-    file.seek(SeekFrom::Start(at))?;
-    let mut record = Vec::new();
-    file.take(DATA_END_BYTES).read_to_end(&mut record)?;
+    let record = bytes_at(file, at, DATA_END_BYTES)?;
     let sum = record.strip_prefix(&[op::DATA_END, 4, 0, 0, 0, 0, 0, 0, 0]).and_then(<[u8]>::first_chunk);
     Ok(sum.map(|sum| DataEnd { at, check_sum: u32::from_le_bytes(*sum) }))
 }

@@ -1,9 +1,9 @@
 //! A zip to the files in it, stored or deflated: what ISO-MME is sent in, and no more of that format
 //! (APPNOTE.TXT of PKWARE, 4.3).
 
-use crate::ingest::recording_file::{OpenFile, RecordingFile};
+use crate::ingest::recording_file::{RecordingFile, bytes_at};
 use crate::ingest::unpack;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 
 /// Lengths of a file's head before its bytes, of its entry in the list of all, and of the end behind that
 /// list: without names and remarks, of which the longest has 64 KiB.
@@ -74,12 +74,4 @@ impl ZipEntry {
 /// A number of so many bytes, the lowest first.
 fn number(bytes: &[u8], at: usize, count: usize) -> u64 {
     bytes[at..at + count].iter().rev().fold(0, |number, &byte| number << 8 | u64::from(byte))
-}
-
-/// So many bytes from there on, or those up to the end.
-fn bytes_at(file: &mut OpenFile, at: u64, count: u64) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    file.seek(SeekFrom::Start(at))?;
-    file.take(count).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
