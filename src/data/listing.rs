@@ -7,6 +7,7 @@ use super::recording::RecordingFormat;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::Path;
 
 /// One source of samples in a recording: a message path, a dataset (or its column), a CSV column.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -79,6 +80,22 @@ pub struct Listing {
     pub channels: Vec<ListedChannel>,
     /// What is wrong with the file.
     pub issues: Vec<Finding>,
+}
+
+impl Listing {
+    /// A recording of which no more is known so far.
+    pub(crate) fn of(recording: &Path, bytes: u64, format: RecordingFormat) -> Self {
+        Self {
+            schema: "dropcheck.inspect/1",
+            recording: recording.display().to_string(),
+            bytes,
+            format,
+            counts: BTreeMap::new(),
+            facts: BTreeMap::new(),
+            channels: Vec::new(),
+            issues: Vec::new(),
+        }
+    }
 }
 
 /// What a first look at a channel shows, in the recording's unit.

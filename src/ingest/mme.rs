@@ -84,14 +84,10 @@ pub(super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
         });
     }
     Ok(Listing {
-        schema: "dropcheck.inspect/1",
-        recording: path.display().to_string(),
-        bytes,
-        format: RecordingFormat::Mme,
         counts: BTreeMap::from([("channels".into(), channels.len() as u64)]),
-        facts: BTreeMap::new(),
         channels,
         issues,
+        ..Listing::of(path, bytes, RecordingFormat::Mme)
     })
 }
 

@@ -170,10 +170,6 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         }
     }
     Ok(Listing {
-        schema: "dropcheck.inspect/1",
-        recording: path.display().to_string(),
-        bytes,
-        format: RecordingFormat::Csv,
         counts: BTreeMap::from([
             ("rows".into(), rows as u64),
             ("columns".into(), layout.columns.len() as u64),
@@ -182,6 +178,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         facts: facts(&layout, encoding),
         channels,
         issues,
+        ..Listing::of(path, bytes, RecordingFormat::Csv)
     })
 }
 

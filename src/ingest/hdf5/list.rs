@@ -55,14 +55,9 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
 fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     let guard = if file.opened.is_walled { "" } else { UNGUARDED };
     let listing = Listing {
-        schema: "dropcheck.inspect/1",
-        recording: file.path.display().to_string(),
-        bytes: file.bytes,
-        format: RecordingFormat::Hdf5,
         counts: BTreeMap::from(["groups", "datasets"].map(|counted| (counted.to_owned(), 0))),
         facts: BTreeMap::from([("read with".into(), format!("{}{guard}", file.opened.library))]),
-        channels: Vec::new(),
-        issues: Vec::new(),
+        ..Listing::of(&file.path, file.bytes, RecordingFormat::Hdf5)
     };
     // No number takes fewer than four bytes once it is unpacked and turned.
     let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);

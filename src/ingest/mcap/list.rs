@@ -39,16 +39,8 @@ pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     }
     let zero_ns = series.iter().filter_map(|one| one.column.span_ns()).map(|(from, _)| from).min();
     issues.extend(unlisted);
-    let mut listing = Listing {
-        schema: "dropcheck.inspect/1",
-        recording: path.display().to_string(),
-        bytes,
-        format: RecordingFormat::Mcap,
-        counts,
-        facts: facts(&scanned, zero_ns),
-        channels: Vec::new(),
-        issues,
-    };
+    let (facts, empty) = (facts(&scanned, zero_ns), Listing::of(path, bytes, RecordingFormat::Mcap));
+    let mut listing = Listing { counts, facts, issues, ..empty };
     for of_channel in series.chunk_by_mut(TopicSeries::is_beside) {
         let is_alone = writers[&of_channel[0].topic().name] == 1;
         add(&mut listing, of_channel, is_alone, zero_ns);
