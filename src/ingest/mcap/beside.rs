@@ -57,7 +57,7 @@ impl Slots {
 impl SaidBeside<'_> {
     /// The number that is their time, and its field.
     pub(super) fn tick(&self) -> Option<(f64, &Beside)> {
-        self.nearest(|says| matches!(says, Says::Time(_)))
+        self.nearest(|says| says == Says::Time)
     }
 
     fn nearest(&self, is_it: impl Fn(Says) -> bool) -> Option<(f64, &Beside)> {

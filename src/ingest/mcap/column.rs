@@ -5,7 +5,6 @@ use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::PREFIX;
-use crate::ingest::times::Scale;
 
 mod based;
 
@@ -71,8 +70,6 @@ pub(super) struct Column {
 struct SentTimes {
     /// Their field.
     field: String,
-    /// What they count, as far as the field's name says it.
-    scale: Scale,
     /// One a message, NaN where it carries none.
     each: Vec<f64>,
 }
@@ -132,9 +129,8 @@ impl Column {
             None => {}
         }
         if let Some((tick, beside)) = tick {
-            let (field, scale) = (&beside.field, beside.scale());
-            let ticks =
-                self.ticks.get_or_insert_with(|| SentTimes { field: field.clone(), scale, each: Vec::new() });
+            let none = || SentTimes { field: beside.field.clone(), each: Vec::new() };
+            let ticks = self.ticks.get_or_insert_with(none);
             ticks.each.resize(place, f64::NAN);
             ticks.each.push(tick);
         }

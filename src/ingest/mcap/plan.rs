@@ -4,7 +4,6 @@
 use super::path::{FieldPath, Step};
 use crate::data::Samples;
 use crate::ingest::statement::Statement;
-use crate::ingest::times::Scale;
 use crate::ingest::vocabulary::Meaning;
 use std::sync::Arc;
 
@@ -96,8 +95,8 @@ impl Node {
 pub(super) enum Says {
     /// Their time, as a structure or in words.
     Stamp,
-    /// Their time, as a number that counts so.
-    Time(Scale),
+    /// Their time, as a number.
+    Time,
     /// By what they are to be multiplied.
     Scale,
     /// What is to be added to them.
@@ -123,13 +122,6 @@ pub(super) struct Beside {
     pub(super) says: Says,
     /// Its path in the message; of a stamp, a unit or a rate its name alone.
     pub(super) field: String,
-}
-
-impl Beside {
-    /// What numbers in it count, where it is a time.
-    pub(super) fn scale(&self) -> Scale {
-        if let Says::Time(scale) = self.says { scale } else { Scale::Open }
-    }
 }
 
 /// A field that is asked for, with what the cask file says of it.

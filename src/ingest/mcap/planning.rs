@@ -3,7 +3,6 @@
 use super::path::{FieldPath, Step};
 use super::plan::{AskedField, Beside, Field, Leaf, Plan, RATE_NAMES, STAMP_NAMES, Says, UNIT_NAMES, Want};
 use crate::ingest::hdf5::names::{AttributeRole, role};
-use crate::ingest::times::Scale;
 use crate::ingest::vocabulary::{self, Meaning};
 
 /// So many fields are heeded for one signal besides stamps, units and rates: no message says more of its
@@ -81,9 +80,8 @@ impl BesideField<'_> {
 
     /// Takes the field at `path` for their time, be it a structure, words or a number.
     fn time(&mut self, path: &FieldPath) {
-        let scale = path.last_name().map_or(Scale::Open, |name| Scale::of(name, None));
         self.say(path, Want::Stamp, Says::Stamp);
-        self.say(path, Want::Numbers, Says::Time(scale));
+        self.say(path, Want::Numbers, Says::Time);
     }
 
     /// Takes the field at `path` for the name or number of their sensor.
@@ -113,9 +111,9 @@ impl BesideField<'_> {
         for Telling { path, says, .. } in self.telling.iter().filter(is_beside) {
             match says {
                 Says::Sensor if asked.may_be_sensor(path) => self.sensor(path),
-                Says::Time(_) if asked.times.is_none() => self.time(path),
+                Says::Time if asked.times.is_none() => self.time(path),
                 Says::Rate { meaning, .. } => self.rate(path, *meaning, level),
-                Says::Sensor | Says::Time(_) | Says::Unit => {}
+                Says::Sensor | Says::Time | Says::Unit => {}
                 says => self.say(path, Want::Numbers, *says),
             }
         }
@@ -150,7 +148,7 @@ impl Telling {
             _ => {}
         }
         // The stamp of a header is known by its name.
-        says = says.filter(|says| !matches!(says, Says::Time(_)) || message.len() + 1 == path.0.len());
+        says = says.filter(|says| *says != Says::Time || message.len() + 1 == path.0.len());
         Some(Self { message: FieldPath(message.to_vec()), says: says?, path })
     }
 }
@@ -162,7 +160,7 @@ impl Says {
             _ if vocabulary::is_sensor(name) => Self::Sensor,
             _ if !is_signal && (name.ends_with("_unit") || name.ends_with("_units")) => Self::Unit,
             _ if is_signal && vocabulary::is_named_time(name) && !STAMP_NAMES.contains(&&[name][..]) => {
-                Self::Time(Scale::Open)
+                Self::Time
             }
             // Outside of NWB nothing defines it.
             _ if ["gain", "conversion"].contains(&name) => Self::Conversion,

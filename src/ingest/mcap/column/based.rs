@@ -4,10 +4,11 @@
 use super::{Column, SentTimes, StatedRate, seconds_from};
 use crate::data::{Finding, ListedChannel, McapFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
+use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, Uniform};
-use crate::ingest::times::{self, Carrier};
+use crate::ingest::times::{self, Carrier, Scale};
 use crate::numerics::as_f64;
 
 impl Column {
@@ -95,7 +96,7 @@ impl Column {
     /// # Errors
     /// Nothing says their unit.
     pub(crate) fn settle_ticks(&mut self, source: &str, cask_hz: Option<f64>) -> Result<(), Refusal> {
-        let Some(SentTimes { field, scale, mut each }) = self.ticks.take() else { return Ok(()) };
+        let Some(SentTimes { field, mut each }) = self.ticks.take() else { return Ok(()) };
         let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.times_ns.len()) else { return Ok(()) };
         each.resize(count, f64::NAN);
         if !times::rise(&each) {
@@ -106,6 +107,9 @@ impl Column {
         let samples_each = as_f64(samples) / as_f64(count);
         let stated = || Some(self.rates.first()?.statement(f64::NAN)?.rate_hz);
         let stated_hz = cask_hz.or_else(stated);
+        let path = FieldPath::parse(&field);
+        let name = path.as_ref().and_then(FieldPath::last_name);
+        let scale = name.map_or(Scale::Open, |name| Scale::of(name, None));
         let place = format!("the field {field} beside {source}");
         let (logged_s, counted) = (seconds_from(to_ns, from_ns), (scale, Carrier::Field(&place)));
         let unit_s = times::seconds_a_tick(&each, samples_each, logged_s, counted, stated_hz)?;
