@@ -14,41 +14,36 @@ pub(super) struct Scanned {
     pub(super) compressions: BTreeSet<String>,
     /// Number of messages that the file's own statistics claim.
     pub(super) claimed_messages: Option<u64>,
-    pub(super) losses: Losses,
-}
-
-/// So many places of damage are told one by one, the rest as a count: a damaged gigabyte may hold millions.
-const MOST_LOSSES: usize = 20;
-
-/// What could not be read, in the order of the file.
-#[derive(Debug, Default)]
-pub(super) struct Losses {
-    first: Vec<McapFinding>,
-    /// Those that no longer fit in `first`.
-    more: u64,
+    /// What could not be read, in the order of the file.
+    losses: Vec<McapFinding>,
+    /// Those that no longer fit there.
+    more_losses: u64,
     bad_records: u64,
     /// The first of them; its count is not yet that of all.
     first_bad_record: Option<McapFinding>,
 }
 
-impl Losses {
-    /// Takes one more.
-    pub(super) fn push(&mut self, loss: McapFinding) {
+/// So many places of damage are told one by one, the rest as a count: a damaged gigabyte may hold millions.
+const MOST_LOSSES: usize = 20;
+
+impl Scanned {
+    /// Takes one more loss.
+    pub(super) fn lose(&mut self, loss: McapFinding) {
         // How the file ends is told in any case.
-        if matches!(loss, McapFinding::Truncated { .. }) || self.first.len() < MOST_LOSSES {
-            self.first.push(loss);
+        if matches!(loss, McapFinding::Truncated { .. }) || self.losses.len() < MOST_LOSSES {
+            self.losses.push(loss);
         } else {
-            self.more += 1;
+            self.more_losses += 1;
         }
     }
 
     /// Whether nothing was lost so far.
-    pub(super) fn is_empty(&self) -> bool {
-        self.first.is_empty() && self.bad_records == 0
+    pub(super) fn is_whole(&self) -> bool {
+        self.losses.is_empty() && self.bad_records == 0
     }
 
     /// Takes `count` records whose body does not parse, or messages that belong to no channel.
-    pub(super) fn push_records(&mut self, opcode: u8, at: u64, count: u64, why: &'static str) {
+    pub(super) fn lose_records(&mut self, opcode: u8, at: u64, count: u64, why: &'static str) {
         self.bad_records += count;
         let kind = record_name(opcode);
         self.first_bad_record.get_or_insert(McapFinding::BadRecords { count, kind, at, why });
@@ -56,19 +51,17 @@ impl Losses {
 
     /// Takes that the file ends before its time.
     pub(super) fn end(&mut self, end: FileEnd) {
-        self.push(McapFinding::Truncated { end, kept_s: None });
+        self.lose(McapFinding::Truncated { end, kept_s: None });
     }
-}
 
-impl Scanned {
     /// What was lost, bad records and what is too much to tell summed up; the last message kept begins at
     /// `last_kept_s`.
     pub(super) fn findings(&self, last_kept_s: Option<f64>) -> Vec<Finding> {
-        let Losses { first, more, bad_records, first_bad_record } = &self.losses;
-        let mut found = first.clone();
-        found.extend((*more > 0).then_some(McapFinding::MoreDamage { places: *more }));
-        if let Some(McapFinding::BadRecords { kind, at, why, .. }) = *first_bad_record {
-            found.push(McapFinding::BadRecords { count: *bad_records, kind, at, why });
+        let mut found = self.losses.clone();
+        let places = self.more_losses;
+        found.extend((places > 0).then_some(McapFinding::MoreDamage { places }));
+        if let Some(McapFinding::BadRecords { kind, at, why, .. }) = self.first_bad_record {
+            found.push(McapFinding::BadRecords { count: self.bad_records, kind, at, why });
         }
         let messages = self.counts.messages();
         if let (true, Some(claimed)) = (found.is_empty(), self.claimed_messages.filter(|&n| n != messages)) {

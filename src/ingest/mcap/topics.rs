@@ -6,7 +6,7 @@ use super::json;
 use super::message_type::{MessageType, MessageTypes};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
-use super::scanned::Losses;
+use super::scanned::Scanned;
 use super::topic::{Gathered, Message, Part, Topic, TopicSeries};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
@@ -187,13 +187,13 @@ impl<'a> Topics<'a> {
 
     /// Takes from an unpacked chunk what its messages need to be taken: schemas, channels, and which fields
     /// messages in JSON have.
-    pub(super) fn meet(&mut self, chunk: &Chunk, losses: &mut Losses) {
+    pub(super) fn meet(&mut self, chunk: &Chunk, scanned: &mut Scanned) {
         if chunk.counts.has_channels() {
             for (opcode, body) in chunk.records() {
                 if let Err(why) = self.announce(opcode, body, false)
                     && !chunk.is_bad()
                 {
-                    losses.push_records(opcode, chunk.start, 1, why);
+                    scanned.lose_records(opcode, chunk.start, 1, why);
                 }
             }
         }

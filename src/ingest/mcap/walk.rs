@@ -85,7 +85,7 @@ impl<'a> Walk<'a> {
             let _ = self.topics.announce(opcode, body, true);
         }
         if self.summary.as_ref().is_some_and(|summary| summary.is_changed) {
-            self.scanned.losses.push(McapFinding::SummaryChanged);
+            self.scanned.lose(McapFinding::SummaryChanged);
         }
         self.skip(self.at)?;
         let mut said_at = 0;
@@ -98,9 +98,8 @@ impl<'a> Walk<'a> {
             }
         }
         // What was told by its place is in the sum as well.
-        let losses = &mut self.scanned.losses;
-        if self.file.get_ref().is_changed() && losses.is_empty() {
-            losses.push(McapFinding::DataChanged);
+        if self.file.get_ref().is_changed() && self.scanned.is_whole() {
+            self.scanned.lose(McapFinding::DataChanged);
         }
         Ok(())
     }
@@ -152,7 +151,7 @@ impl<'a> Walk<'a> {
         let (at, left) = (self.at, self.length.saturating_sub(self.at));
         if left < RECORD_HEADER_BYTES {
             self.settle()?;
-            self.scanned.losses.end(FileEnd::Early { at, bytes: left, inside: "record" });
+            self.scanned.end(FileEnd::Early { at, bytes: left, inside: "record" });
             return Ok(Break(()));
         }
         let mut header = [0; 9];
@@ -170,7 +169,7 @@ impl<'a> Walk<'a> {
         if claimed > available {
             self.settle()?;
             let inside = record_name(opcode);
-            self.scanned.losses.end(FileEnd::Early { at, bytes: left, inside });
+            self.scanned.end(FileEnd::Early { at, bytes: left, inside });
             return Ok(Break(()));
         }
         self.whole_record(opcode, claimed)
@@ -215,7 +214,7 @@ impl<'a> Walk<'a> {
             },
         };
         if let Err(why) = outcome {
-            scanned.losses.push_records(opcode, start, 1, why);
+            scanned.lose_records(opcode, start, 1, why);
         }
         Ok(Continue(()))
     }
@@ -259,7 +258,7 @@ impl<'a> Walk<'a> {
         let Self { waiting, request: ReadRequest { limits, .. }, scanned, topics, taken, .. } = self;
         waiting.par_iter_mut().for_each(|chunk| chunk.unpack(limits.part_bytes()));
         for chunk in &*waiting {
-            topics.meet(chunk, &mut scanned.losses);
+            topics.meet(chunk, scanned);
         }
         let most_held = limits.samples_bytes().saturating_sub(taken.held_bytes);
         waiting.par_iter_mut().for_each(|chunk| take(chunk, topics, most_held));
@@ -283,19 +282,19 @@ impl<'a> Walk<'a> {
             Some(ChunkFault::Bad(reason)) => {
                 scanned.counts.unpacked_bytes += counts.unpacked_bytes;
                 let lasts_s = chunk.lasts_s();
-                scanned.losses.push(McapFinding::BadChunk { at, reason, messages, lasts_s });
+                scanned.lose(McapFinding::BadChunk { at, reason, messages, lasts_s });
                 return;
             }
             Some(ChunkFault::Cut) => {
                 let (never_closed, bytes) = (claimed == u64::MAX, chunk.packed_bytes() as u64);
-                scanned.losses.end(FileEnd::InChunk { at, never_closed, bytes, messages });
+                scanned.end(FileEnd::InChunk { at, never_closed, bytes, messages });
             }
             None => {}
         }
         scanned.counts.append(&counts);
         taken.append(&mut chunk.part);
         if let Some((count, why)) = chunk.unusable {
-            scanned.losses.push_records(op::MESSAGE, at, count, why);
+            scanned.lose_records(op::MESSAGE, at, count, why);
         }
     }
 
@@ -306,7 +305,7 @@ impl<'a> Walk<'a> {
         let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
         let to = next.unwrap_or(self.length);
         let resumed = next.is_some();
-        self.scanned.losses.push(McapFinding::Garbage { at, bytes: to - at, resumed });
+        self.scanned.lose(McapFinding::Garbage { at, bytes: to - at, resumed });
         if !resumed {
             return Ok(Break(()));
         }
@@ -320,7 +319,7 @@ impl<'a> Walk<'a> {
     fn end_magic(&mut self) -> Result<ControlFlow<()>, IngestError> {
         self.read(mcap::MAGIC.len() as u64)?;
         if self.body != mcap::MAGIC {
-            self.scanned.losses.end(FileEnd::InMagic { at: self.at });
+            self.scanned.end(FileEnd::InMagic { at: self.at });
         }
         Ok(Break(()))
     }
