@@ -67,6 +67,14 @@ pub(super) fn alike(one: &str, other: &str) -> f64 {
     strsim::jaro_winkler(&one, &other)
 }
 
+/// The first words of several.
+pub(super) fn handful(words: &[impl AsRef<str>]) -> String {
+    /// More no longer fit a terminal's few lines.
+    const MOST: usize = 8;
+    let first: Vec<&str> = words.iter().take(MOST).map(AsRef::as_ref).collect();
+    first.join(", ") + if words.len() > MOST { ", …" } else { "" }
+}
+
 /// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a
 /// handful.
 pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {

@@ -50,7 +50,10 @@ impl ColumnPlan {
         if let Some((header, named)) = layout.mixed(own, &taken) {
             let choice = RowsOf { column: header.to_owned(), is: named[0].to_owned() };
             return Err(Refusal::new(
-                format!("its rows are of several sensors: the column {header:?} holds {}", listed(&named)),
+                format!(
+                    "its rows are of several sensors: the column {header:?} holds {}",
+                    error::handful(&named)
+                ),
                 match own {
                     None => format!("take those of one: {choice}"),
                     Some(_) => "write the rows of each sensor into a file of its own".into(),
@@ -108,17 +111,12 @@ fn find(path: &Path, wanted: &str, layout: &Layout) -> Result<usize, Refusal> {
 /// No row is of the sensor `is`.
 pub(super) fn no_such_sensor(layout: &Layout, column: usize, is: &str) -> Refusal {
     let named = layout.sensors.iter().find(|it| it.column == column).map_or(Vec::new(), |it| it.named(None));
-    let holds = if named.is_empty() { String::new() } else { format!(", which holds {}", listed(&named)) };
+    let holds =
+        if named.is_empty() { String::new() } else { format!(", which holds {}", error::handful(&named)) };
     Refusal::new(
         format!("no row has {is:?} in the column {:?}{holds}", layout.columns[column].header),
         "write a word that stands there: where = { column = …, is = … }",
     )
-}
-
-/// The first words of several.
-fn listed(words: &[&str]) -> String {
-    const HANDFUL: usize = 8;
-    words[..words.len().min(HANDFUL)].join(", ") + if words.len() > HANDFUL { ", …" } else { "" }
 }
 
 /// That no column holds times, with the one that looks most like it.

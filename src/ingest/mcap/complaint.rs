@@ -11,8 +11,10 @@ use std::path::Path;
 
 /// No topic of the file fits the source.
 pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scanned: &Scanned) -> Refusal {
-    let wanted = match &spec.source {
-        Source::Path(text) | Source::TopicField { topic: text, .. } => text,
+    let (wanted, meant) = match &spec.source {
+        // The part before the first dot is most likely the topic that was meant.
+        Source::Path(text) => (text, text.split('.').next().unwrap_or(text)),
+        Source::TopicField { topic, .. } => (topic, topic.as_str()),
     };
     if topics.is_empty() {
         let problem = format!("the recording holds no topics, so none for {}", spec.source);
@@ -27,11 +29,6 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
             ),
         );
     }
-    // The part before the first dot of a path is most likely the topic that was meant.
-    let meant = match &spec.source {
-        Source::Path(text) => text.split('.').next().unwrap_or(text),
-        Source::TopicField { topic, .. } => topic,
-    };
     let mend = with_loss(scanned, &error::near_names(path, meant, "topic", topics));
     Refusal::new(format!("the recording has no topic for the source {}", spec.source), mend)
 }
@@ -43,12 +40,6 @@ pub(super) fn several(
     topic: &str,
     (numbers, rows): (BTreeSet<u16>, Vec<&RowsOf>),
 ) -> Refusal {
-    /// More no longer fit a terminal's few lines.
-    const HANDFUL: usize = 8;
-    let listed = |words: Vec<String>| {
-        let more = if words.len() > HANDFUL { " …" } else { "" };
-        words.into_iter().take(HANDFUL).collect::<Vec<_>>().join(", ") + more
-    };
     let source = &spec.source;
     let field = path::field_in(source, topic).unwrap_or_default();
     let asked = match (source, &spec.rows) {
@@ -56,7 +47,8 @@ pub(super) fn several(
         (Source::TopicField { channel: Some(_), .. }, _) => format!("there are no samples of {source} alone"),
         _ => format!("{source} holds the samples of several sensors, which are never one signal"),
     };
-    let channels = listed(numbers.iter().map(|number| format!("channel = {number}")).collect());
+    let channels: Vec<String> = numbers.iter().map(|number| format!("channel = {number}")).collect();
+    let channels = error::handful(&channels);
     if numbers.len() > 1 {
         return Refusal::new(
             format!("{asked}: {} MCAP channels write on the topic {topic}", numbers.len()),
@@ -66,12 +58,10 @@ pub(super) fn several(
             ),
         );
     }
+    let rows: Vec<String> = rows.iter().map(ToString::to_string).collect();
     let mend = match rows[..] {
         [] => format!("its messages name no sensor: take `where` out, or name one of {channels}"),
-        _ => format!(
-            "name one in this [[channel]]: {}",
-            listed(rows.iter().map(ToString::to_string).collect())
-        ),
+        _ => format!("name one in this [[channel]]: {}", error::handful(&rows)),
     };
     Refusal::new(asked, mend)
 }
