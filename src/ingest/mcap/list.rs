@@ -68,8 +68,9 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
 /// reading would refuse; `is_alone` where no other writes on its topic.
 fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, zero_ns: Option<i64>) {
     let channel = of_channel[0].channel.clone();
-    let TopicChannel { topic, number, has_sensors, gathered } = &*channel;
+    let TopicChannel { topic, number, gathered } = &*channel;
     let (messages, issues) = (gathered.messages, &mut listing.issues);
+    let has_sensors = of_channel.iter().any(|one| one.rows != of_channel[0].rows);
     let (mut said_units, mut said) = (false, Vec::new());
     for one in of_channel {
         let unit = one.unit();
@@ -102,7 +103,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
             issues.push(drift.on(&source));
         }
         let mut channel = ListedChannel {
-            rows: one.rows.clone().filter(|_| *has_sensors),
+            rows: one.rows.clone().filter(|_| has_sensors),
             samples: Some(samples as u64),
             messages: Some(messages),
             unit,

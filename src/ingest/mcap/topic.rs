@@ -71,8 +71,6 @@ struct Sensor {
 pub(super) struct TopicChannel {
     pub(super) topic: Rc<Topic>,
     pub(super) number: u16,
-    /// Whether its messages name several.
-    pub(super) has_sensors: bool,
     pub(super) gathered: Gathered,
 }
 
@@ -220,7 +218,7 @@ impl Gathered {
         let has_further = self.has_further;
         let mut fields: Vec<Option<Field>> = topic.plan.fields.iter().cloned().map(Some).collect();
         fields.resize(fields.len().max(1), None);
-        let channel = Rc::new(TopicChannel { topic, number, has_sensors: sensors.len() > 1, gathered: self });
+        let channel = Rc::new(TopicChannel { topic, number, gathered: self });
         let mut all = Vec::with_capacity(sensors.len() * fields.len());
         for Sensor { rows, mut columns } in sensors {
             columns.resize_with(fields.len(), || Column::new(is_listed));
