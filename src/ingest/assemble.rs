@@ -139,7 +139,7 @@ fn channel(
 }
 
 /// The same issue, its times counted from `first_s`.
-fn shifted(mut issue: Finding, first_s: f64) -> Finding {
+pub(super) fn shifted(mut issue: Finding, first_s: f64) -> Finding {
     issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
     issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
     issue

@@ -19,6 +19,7 @@ use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
 };
 use crate::ingest::ReadRequest;
+use crate::ingest::assemble::shifted;
 use crate::numerics::{as_f64, extent};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -237,11 +238,7 @@ impl ListedClock {
         let uniform = table.uniforms(&own_rows).remove(0)?;
         let count = uniform.samples.len();
         let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
-        issues.extend(uniform.issues.into_iter().map(|issue| Finding {
-            from_s: issue.from_s.map(|t| t - first_s),
-            to_s: issue.to_s.map(|t| t - first_s),
-            ..issue
-        }));
+        issues.extend(uniform.issues.into_iter().map(|issue| shifted(issue, first_s)));
         let of_rate = as_f64(count.saturating_sub(1)) / uniform.sample_rate_hz;
         Ok(Self {
             sample_rate_hz: Some(uniform.sample_rate_hz),
