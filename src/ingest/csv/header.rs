@@ -35,8 +35,9 @@ pub(super) struct Header {
     pub interval: Option<String>,
 }
 
-/// The header above the rows, with the row of units where there is one.
-pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Option<Header> {
+/// The header above the rows, with the row of units where there is one; else why the line that looks most like
+/// it is none, in brackets, or nothing.
+pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Result<Header, String> {
     let filled = (0..above.len()).rev().filter(|&line| !above[line].text.trim().is_empty());
     let cells = |line: usize| (line, header_cells(&above[line].text, delimiter));
     let mut nearest: Vec<(usize, Vec<String>)> = filled.clone().take(MOST_LINES).map(cells).collect();
@@ -65,32 +66,26 @@ pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> O
             if vocabulary::titles_units(&units[0]) {
                 units[0].clear();
             }
-            return Some(Header { line: *line, cells, units: Some(units), interval });
+            return Ok(Header { line: *line, cells, units: Some(units), interval });
         }
     }
     // A line that does not fit is no reason to take one above it, unless it is a remark.
     let named = nearest.iter().find(|(_, cells)| is_names(cells));
     let titled = titled(vocabulary::titles_names);
     let mut found = titled.iter().chain(named).chain(nearest.first());
-    found.find_map(|(line, cells)| {
+    let header = found.find_map(|(line, cells)| {
         Some(Header { line: *line, cells: fitting(cells)?, units: of_title.clone(), interval: None })
-    })
+    });
+    header.ok_or_else(|| unfit(&nearest, delimiter, judged.columns))
 }
 
-/// Why the line that looks most like a header is none.
-pub(super) fn unfit(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Option<String> {
-    let columns = judged.columns;
-    let filled = above.iter().enumerate().rev().filter(|(_, line)| !line.text.trim().is_empty());
-    let mut named = filled.take(MOST_LINES).map(|(at, line)| (at, header_cells(&line.text, delimiter)));
-    let (at, cells) = named.find(|(_, cells)| cells.len() > 1 && is_names(cells, columns))?;
+fn unfit(nearest: &[(usize, Vec<String>)], delimiter: Delimiter, columns: usize) -> String {
+    let mut named = nearest.iter().filter(|(_, cells)| cells.len() > 1 && is_names(cells, columns));
+    let Some((at, cells)) = named.next() else { return String::new() };
     let is_twofold = delimiter.0 == b',' && columns == 2 * cells.len();
     let twofold = ": the comma is the decimal mark too; export it again with semicolons between the cells";
-    Some(format!(
-        "line {} has {} cells, the rows {columns}{}",
-        at + 1,
-        cells.len(),
-        if is_twofold { twofold } else { "" }
-    ))
+    let why = if is_twofold { twofold } else { "" };
+    format!(" (line {} has {} cells, the rows {columns}{why})", at + 1, cells.len())
 }
 
 /// Whether cells may name columns: no "Minimum;1,5;-5", no "Kommentar: von Hand", no "Bemerkung;;".

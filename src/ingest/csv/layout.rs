@@ -15,10 +15,8 @@ pub(super) struct Layout {
     pub dialect: Dialect,
     /// The columns.
     pub columns: Vec<TableColumn>,
-    /// Line of the header, from 1; 0 without one.
-    pub header_line: u64,
-    /// Why a line that looks like a header is none, in brackets; empty without such a line.
-    pub unfit: String,
+    /// Line of the header, from 1; else why a line that looks like one is none, in brackets, or nothing.
+    pub header: Result<u64, String>,
     /// Lines before the header (or the rows).
     pub preamble_lines: u64,
     /// Line of the first row, from 1.
@@ -46,7 +44,7 @@ impl Layout {
             begin + rows.clone().position(|line| dialect.is_row(&delimiter.cells(&line.text), &judged))?;
         let rows: Vec<Vec<&str>> = lines[first..].iter().map(|line| delimiter.cells(&line.text)).collect();
         let header = header::header(&lines[..first], delimiter, &judged);
-        let mut columns = header::columns(header.as_ref(), &judged, &rows[0]);
+        let mut columns = header::columns(header.as_ref().ok(), &judged, &rows[0]);
         for (index, column) in columns.iter_mut().enumerate().filter(|(_, column)| !column.is_numeric) {
             let mut cells = rows.iter().filter_map(|cells| cells.get(index));
             let grouped = cells.find(|cell| number::is_grouped(cell, Some(dialect.decimal)));
@@ -61,12 +59,12 @@ impl Layout {
         while columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
             columns.pop();
         }
-        let is_nameless = header.is_none() || columns[0].header.is_empty();
+        let is_nameless = header.is_err() || columns[0].header.is_empty();
         for (index, column) in columns.iter_mut().enumerate().filter(|(_, column)| column.header.is_empty()) {
             column.header = (index + 1).to_string();
         }
         let above = header.as_ref().map_or(first, |header| header.line);
-        let interval = header.as_ref().and_then(|header| header.interval.as_deref());
+        let interval = header.as_ref().ok().and_then(|header| header.interval.as_deref());
         let preamble = Preamble::of(&lines[..first], delimiter, interval);
         let times = time_column::find(
             &columns,
@@ -76,13 +74,11 @@ impl Layout {
         );
         let is_time = |column| times.taken == Some(column) || times.sure.contains(&column);
         let sensors = sensors::find(&columns, is_time, &rows);
-        let unfit = if header.is_some() { None } else { header::unfit(&lines[..first], delimiter, &judged) };
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
         Some(Self {
             dialect,
-            unfit: unfit.map_or_else(String::new, |unfit| format!(" ({unfit})")),
-            header_line: header.as_ref().map_or(0, |header| header.line as u64 + 1),
+            header: header.map(|header| header.line as u64 + 1),
             preamble_lines: above as u64,
             data_line: first as u64 + 1,
             data_offset: lines[first].offset,

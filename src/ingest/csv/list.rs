@@ -306,10 +306,9 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         _ => "blanks",
     };
     let decimal = if layout.dialect.decimal == b',' { "comma" } else { "point" };
-    let header = if layout.header_line > 0 {
-        format!("line {}", layout.header_line)
-    } else {
-        format!("none: columns count 1, 2, …{}", layout.unfit)
+    let header = match &layout.header {
+        Ok(line) => format!("line {line}"),
+        Err(unfit) => format!("none: columns count 1, 2, …{unfit}"),
     };
     let time = layout
         .times

@@ -89,15 +89,13 @@ fn find(path: &Path, wanted: &str, layout: &Layout) -> Result<usize, Refusal> {
     match found.as_slice() {
         [one] => Ok(*one),
         [] => Err(Refusal::new(
-            if layout.header_line > 0 {
-                format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
-            } else {
-                format!(
-                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have{}; \
-                     its columns count 1, 2, …",
-                    layout.columns.len(),
-                    layout.unfit
-                )
+            match &layout.header {
+                Ok(line) => format!("no column is headed {wanted:?} (the header is line {line})"),
+                Err(unfit) => format!(
+                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows \
+                     have{unfit}; its columns count 1, 2, …",
+                    layout.columns.len()
+                ),
             },
             error::near_names(path, wanted, "column", &layout.names()),
         )),

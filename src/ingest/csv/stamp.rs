@@ -9,6 +9,7 @@
 use crate::ingest::times::dated;
 use jiff::civil::Date;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 const SECOND_NS: i64 = 1_000_000_000;
 const DAY_NS: i64 = 86_400 * SECOND_NS;
@@ -26,13 +27,13 @@ enum Spelling {
 pub(super) struct Stamps {
     zeros_ns: [Option<i64>; 3],
     is_absolute: bool,
-    columns: Vec<Running>,
+    /// By their slots.
+    columns: BTreeMap<usize, Running>,
 }
 
 /// One column so far.
 #[derive(Debug, Clone, Copy)]
 struct Running {
-    slot: usize,
     kind: Spelling,
     /// The last date as it stands there, and its day from 1970.
     date: [i16; 3],
@@ -48,12 +49,8 @@ impl Stamps {
     /// in its column, `slot`.
     pub(super) fn seconds(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         let stamp = Stamp::of(cell)?;
-        let place = self.columns.iter().position(|column| column.slot == slot);
-        let place = place.unwrap_or(self.columns.len());
-        if place == self.columns.len() {
-            self.columns.push(Running::from(slot, &stamp));
-        }
-        let at_ns = self.columns[place].follow(&stamp)?;
+        let column = self.columns.entry(slot).or_insert_with(|| Running::from(&stamp));
+        let at_ns = column.follow(&stamp)?;
         let zero_ns = &mut self.zeros_ns[stamp.kind as usize];
         if stamp.kind == Spelling::Iso && zero_ns.is_none() {
             self.is_absolute = stamp.is_absolute;
@@ -73,14 +70,14 @@ impl Stamps {
 
     /// Whether the column holds stamps.
     pub(super) fn are_in(&self, slot: usize) -> bool {
-        self.columns.iter().any(|column| column.slot == slot)
+        self.columns.contains_key(&slot)
     }
 }
 
 impl Running {
-    fn from(slot: usize, stamp: &Stamp) -> Self {
+    fn from(stamp: &Stamp) -> Self {
         let day = readings(stamp.date).into_iter().flatten().next().map_or(0, day);
-        Self { slot, kind: stamp.kind, date: stamp.date, day, last_ns: stamp.at_ns, passed_ns: 0 }
+        Self { kind: stamp.kind, date: stamp.date, day, last_ns: stamp.at_ns, passed_ns: 0 }
     }
 
     /// Nanoseconds on a clock that goes on past midnight.

@@ -86,7 +86,9 @@ impl BesideField<'_> {
 
     /// Takes the field at `path` for the name or number of their sensor.
     fn sensor(&mut self, path: &FieldPath) {
-        [Want::Text, Want::Numbers].into_iter().for_each(|want| self.say(path, want, Says::Sensor));
+        for want in [Want::Text, Want::Numbers] {
+            self.say(path, want, Says::Sensor);
+        }
     }
 
     /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it:

@@ -165,7 +165,8 @@ impl Gathered {
         }
         self.has_further |= other.has_further;
         for more in &mut other.sensors {
-            let at = self.sensor(|own| *own == more.rows, || more.rows.clone());
+            let known = self.sensors.iter().position(|own| own.rows == more.rows);
+            let at = known.unwrap_or_else(|| self.add(more.rows.clone()));
             let own = &mut self.sensors[at];
             let known = own.columns.len().min(more.columns.len());
             own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
@@ -173,17 +174,10 @@ impl Gathered {
         }
     }
 
-    /// The place of the sensor that `is_it`, which is added where it is not there yet.
-    fn sensor(
-        &mut self,
-        is_it: impl Fn(&Option<RowsOf>) -> bool,
-        rows: impl FnOnce() -> Option<RowsOf>,
-    ) -> usize {
-        if let Some(at) = self.sensors.iter().position(|sensor| is_it(&sensor.rows)) {
-            return at;
-        }
+    /// Adds a sensor, or takes the last for it where there is no room; its place.
+    fn add(&mut self, rows: Option<RowsOf>) -> usize {
         if self.sensors.len() < MOST_SENSORS {
-            self.sensors.push(Sensor { rows: rows(), columns: Vec::new() });
+            self.sensors.push(Sensor { rows, columns: Vec::new() });
         } else {
             self.has_further = true;
         }
@@ -197,10 +191,11 @@ impl Gathered {
         field: usize,
         is_listed: bool,
     ) -> &mut Column {
-        let is_it = |rows: &Option<RowsOf>| rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
+        let is = named.map(|(is, _)| &**is);
+        let known = self.sensors.iter().position(|own| own.rows.as_ref().map(|rows| &*rows.is) == is);
         let rows =
             |(is, beside): &(Cow<str>, &Beside)| RowsOf { column: beside.field.clone(), is: is.to_string() };
-        let at = self.sensor(is_it, || named.map(rows));
+        let at = known.unwrap_or_else(|| self.add(named.map(rows)));
         let columns = &mut self.sensors[at].columns;
         if columns.len() <= field {
             columns.resize_with(field + 1, || Column::new(is_listed));
