@@ -35,8 +35,8 @@ pub(super) struct Header {
     pub interval: Option<String>,
 }
 
-/// The header above the rows, with the row of units where there is one; else why the line that looks most like
-/// it is none, in brackets, or nothing.
+/// The header above the rows, with the row of units where there is one; else why the line that looks most
+/// like it is none, in brackets, or nothing.
 pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Result<Header, String> {
     let filled = (0..above.len()).rev().filter(|&line| !above[line].text.trim().is_empty());
     let cells = |line: usize| (line, header_cells(&above[line].text, delimiter));

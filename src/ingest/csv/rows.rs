@@ -56,8 +56,8 @@ pub(super) enum RowError {
     TooMany,
 }
 
-/// Reads every row into `sink`, by pieces and batches of any size; how the table ended, where it broke off. The
-/// sizes leave the rows, the error and the ending as they are.
+/// Reads every row into `sink`, by pieces and batches of any size; how the table ended, where it broke off.
+/// The sizes leave the rows, the error and the ending as they are.
 pub(super) fn read(
     mut text: Text,
     (layout, wanted): (&Layout, &Wanted),

@@ -44,8 +44,8 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Reads a file from start to end: how it is made, and what its messages gave of the fields that the channels
-    /// of a cask file name; without one, for a listing, of every numeric field.
+    /// Reads a file from start to end: how it is made, and what its messages gave of the fields that the
+    /// channels of a cask file name; without one, for a listing, of every numeric field.
     ///
     /// # Errors
     /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
