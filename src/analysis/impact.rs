@@ -64,7 +64,7 @@ impl Impact {
         let usual = condition::Reach::of(&file.cask, drop);
         let farthest = if farther { usual.longest() } else { usual };
         let last_within_s =
-            |reach: condition::Reach| changes.last_s(&event, (drop.impact_velocity_m_s, reach.after_s));
+            |reach: condition::Reach| changes.last_s(&event, drop.impact_velocity_m_s, reach.after_s);
         let last_s = last_within_s(farthest);
         let goes_on = last_within_s(farthest.longest()) > last_s;
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));

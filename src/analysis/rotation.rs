@@ -22,7 +22,7 @@ pub(super) fn measured(
 fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit) -> Option<MeasuredRotation> {
     let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
     let usual_s = condition::Reach::of(&file.cask, &file.drop).before_s;
-    condition::measured_rotation((channel, spec.rate?), usual_s, events, flight)
+    condition::measured_rotation(channel, spec.rate?, usual_s, events, flight)
 }
 
 /// What is wrong with a channel beside the accelerometers, where it is an angular-rate sensor.

@@ -109,7 +109,7 @@ impl SecondImpact {
         let slap_down = measured.events.slap_down?;
         let turning_rad_s = motion.separation.angular_velocity_rad_s;
         let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;
-        let signals = motion::mirrored(recorded, before, turning_rad_s, (first.length_m, first.cog_m));
+        let signals = motion::mirrored(recorded, before, turning_rad_s, first.length_m, first.cog_m);
         let integrated = Integrated::over(&signals, slap_down.time_s).into_owned();
         let (left, flight) = told(&in_mirror(file, &setup), &integrated)?;
         let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };

@@ -53,7 +53,8 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
 /// A sensor's rotation, by `usual_s` of the fall where its release is not seen; `None` where the sensor does
 /// not show fall and flight.
 pub fn measured_rotation(
-    (channel, spec): (&Channel, RateSpec),
+    channel: &Channel,
+    spec: RateSpec,
     usual_s: f64,
     events: &Events,
     flight: &FlightFit,

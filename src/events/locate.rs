@@ -97,7 +97,7 @@ impl<'a> Changes<'a> {
 
     /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a
     /// notable share of its largest change there, s: what lies far beyond it needs no fine work.
-    pub fn last_s(&self, event: &CoarseEvent, (v0_m_s, after_s): (f64, f64)) -> Option<f64> {
+    pub fn last_s(&self, event: &CoarseEvent, v0_m_s: f64, after_s: f64) -> Option<f64> {
         let of_channel = |changing: &Changing| {
             let changes = &changing.changes_m_s;
             let from = (0..changes.len()).find(|&i| changing.end_s(i) > event.near_s)?;
@@ -226,7 +226,7 @@ mod tests {
         let v0_m_s = 13.29;
         let changes = Changes::of(&channels);
         let event = changes.locate(v0_m_s).expect("an impact");
-        let last_s = changes.last_s(&event, (v0_m_s, 1.0)).expect("a change");
+        let last_s = changes.last_s(&event, v0_m_s, 1.0).expect("a change");
         // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies
         // beyond what is asked for.
         assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");

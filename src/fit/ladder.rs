@@ -101,7 +101,7 @@ pub fn ladder(measured: &FitData, plain: Option<&FlightFit>, reconstruct: Recons
                 (widened, why) = (by_length, "a wrong length would explain the second impact's rotation");
             }
         }
-        let step = |propagated| by_joint(propagated, fit.chi_square, closures.len(), (widened, why));
+        let step = |propagated| by_joint(propagated, fit.chi_square, closures.len(), widened, why);
         steps.extend(model.propagate(fit, widened).map(step));
     }
     let taken = taken(&steps);
@@ -196,7 +196,8 @@ fn by_joint(
     propagated: Propagated,
     chi_square: f64,
     degrees: usize,
-    (widened, why): (f64, &'static str),
+    widened: f64,
+    why: &'static str,
 ) -> RungStep {
     let noun = if degrees == 1 { "observable" } else { "observables" };
     let mut residual = format!("χ² = {chi_square:.1} for {degrees} {noun}");

@@ -90,7 +90,8 @@ pub fn mirrored(
     signals: &[Signal],
     fit: &FlightFit,
     turning_rad_s: f64,
-    (length_m, cog_m): (f64, f64),
+    length_m: f64,
+    cog_m: f64,
 ) -> Vec<Signal> {
     let mirror = |signal: &Signal| {
         let flown = signal.cut(signal.index_from(fit.from_s), usize::MAX);

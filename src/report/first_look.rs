@@ -101,7 +101,7 @@ impl<'a> FirstLook<'a> {
         let chart_bytes = PAGE_BYTES / self.drawn.len() - DRAWING_BYTES;
         let unit = self.drawn[number].unit.clone().unwrap_or_default();
         let look = read.map(|(channel, look)| {
-            self.pictures.extend(recorded(&channel, &look, (&place, &tail(&name, 60)), chart_bytes));
+            self.pictures.extend(recorded(&channel, &look, &place, &tail(&name, 60), chart_bytes));
             look
         });
         self.shown.push(ShownSource { name, place: format!("#{place}"), unit, look });

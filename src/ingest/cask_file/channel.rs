@@ -114,7 +114,8 @@ fn without_meaning(table: &Section, keys: &[&str], [beside, why]: [&str; 2]) -> 
 fn only_with(
     table: &Section,
     key: &str,
-    (with, is_with): (&str, bool),
+    with: &str,
+    is_with: bool,
     [add, delete]: [&str; 2],
 ) -> Result<(), IngestError> {
     let other = with.split(' ').next().unwrap_or(with);
@@ -226,7 +227,7 @@ fn unit(table: &Section) -> Result<Option<Unit>, IngestError> {
     ];
     let unit = table.word("unit", &words, UNITS)?;
     let is_voltage = matches!(unit, Some(Unit::Volt { .. } | Unit::Millivolt { .. }));
-    only_with(table, "sensitivity", ("unit = \"V\" or \"mV\"", is_voltage), MENDS)?;
+    only_with(table, "sensitivity", "unit = \"V\" or \"mV\"", is_voltage, MENDS)?;
     Ok(unit)
 }
 
@@ -259,7 +260,7 @@ pub(crate) fn coupling(table: &Section) -> Result<Coupling, IngestError> {
         "write coupling = \"ac\" if the channel is AC-coupled; else delete time_constant_s",
     ];
     let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);
-    only_with(table, "time_constant_s", ("coupling = \"ac\"", is_ac), MENDS)?;
+    only_with(table, "time_constant_s", "coupling = \"ac\"", is_ac, MENDS)?;
     let constant_s = table.given("time_constant_s")?;
     Ok(constant_s.map_or(Coupling::Dc, |time_constant_s| Coupling::Ac { time_constant_s }))
 }

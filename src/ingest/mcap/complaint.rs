@@ -35,11 +35,7 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
 
 /// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that
 /// are asked for.
-pub(super) fn several(
-    spec: &ChannelSpec,
-    topic: &str,
-    (numbers, rows): (BTreeSet<u16>, Vec<&RowsOf>),
-) -> Refusal {
+pub(super) fn several(spec: &ChannelSpec, topic: &str, numbers: &BTreeSet<u16>, rows: &[&RowsOf]) -> Refusal {
     let source = &spec.source;
     let field = path::field_in(source, topic).unwrap_or_default();
     let asked = match (source, &spec.rows) {

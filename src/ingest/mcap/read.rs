@@ -94,8 +94,8 @@ fn chosen(
         series[open[0]].column.heeded()?;
     }
     let numbers = open.iter().map(|&at| series[at].channel.number).collect();
-    let rows = open.iter().filter_map(|&at| series[at].rows.as_ref()).collect();
-    Err(complaint::several(spec, &series[longest].topic().name, (numbers, rows)))
+    let rows: Vec<_> = open.iter().filter_map(|&at| series[at].rows.as_ref()).collect();
+    Err(complaint::several(spec, &series[longest].topic().name, &numbers, &rows))
 }
 
 /// Whether a channel may mean these samples by the number of an MCAP channel and the sensor that it states.

@@ -38,7 +38,7 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     let mut channels: Vec<SyntheticChannel> =
         seated(scene).iter().enumerate().map(|(i, seat)| channel(scene, seat, i, &drive)).collect();
     let rates = scene.extras.rates.iter().zip(channels.len()..);
-    channels.extend(rates.map(|(sensor, index)| rate(scene, (motion, drive.end_s), sensor, index)));
+    channels.extend(rates.map(|(sensor, index)| rate(scene, motion, drive.end_s, sensor, index)));
     let earliest_s = channels.iter().map(|c| c.start_s).reduce(f64::min).unwrap_or(0.0);
     for channel in &mut channels {
         channel.start_s -= earliest_s;
@@ -107,7 +107,8 @@ fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop)
 /// What the recorder writes of an angular-rate sensor, until so long after first contact.
 fn rate(
     scene: &Scene,
-    (motion, end_s): (&SimulatedMotion, f64),
+    motion: &SimulatedMotion,
+    end_s: f64,
     sensor: &RateSensor,
     index: usize,
 ) -> SyntheticChannel {

@@ -24,10 +24,11 @@ const STEPS_A_DECADE: f64 = 80.0;
 pub(crate) fn recorded(
     channel: &Channel,
     look: &ChannelLook,
-    (name, title): (&str, &str),
+    name: &str,
+    title: &str,
     chart_bytes: usize,
 ) -> [Picture; 2] {
-    [curve(channel, look, (name, title), chart_bytes), spectrum(channel, look, name, title)]
+    [curve(channel, look, name, title, chart_bytes), spectrum(channel, look, name, title)]
 }
 
 /// The unit, or other words where none is stated.
@@ -50,7 +51,7 @@ fn stretch_words(channel: &Channel, stretch: &Range<usize>) -> String {
     format!("from {from} to {to}")
 }
 
-fn curve(channel: &Channel, look: &ChannelLook, (name, title): (&str, &str), chart_bytes: usize) -> Picture {
+fn curve(channel: &Channel, look: &ChannelLook, name: &str, title: &str, chart_bytes: usize) -> Picture {
     let count = channel.samples.len();
     // Half of a chart that is thinned is for the whole record, half for every sample where most happens.
     let (each, near, note) = if count * EVEN_BYTES <= chart_bytes {
@@ -131,7 +132,7 @@ mod tests {
             fall_s: None,
             impact_s: None,
         };
-        let pictures = recorded(&channel, &look, ("a", "A"), 22_000);
+        let pictures = recorded(&channel, &look, "a", "A", 22_000);
         assert_eq!(pictures.iter().map(|p| &p.name[..]).collect::<Vec<_>>(), ["a", "a-spectrum"]);
         let chart: serde_json::Value = serde_json::from_str(&pictures[0].live).unwrap();
         assert!(chart["note"].as_str().is_some_and(|note| note.starts_with("Thinned: ")));
