@@ -189,14 +189,16 @@ pub(super) fn moment(time_s: f64) -> String {
     format!("{} ms", plain(time_s * 1e3, 7))
 }
 
-/// `text` with a true minus sign before each number that has a hyphen for one.
+/// `text` with a true minus sign before each number that has a hyphen for one; what stands between backticks
+/// is to be pasted and stays.
 pub(super) fn true_minus(text: &str) -> String {
-    let mut before = ' ';
+    let (mut before, mut is_code) = (' ', false);
     let behind = text.chars().skip(1).chain([' ']);
     let letter = |(letter, next): (char, char)| {
         let begins = before.is_whitespace() || before == '(';
         before = letter;
-        if letter == '-' && begins && next.is_ascii_digit() { '−' } else { letter }
+        is_code ^= letter == '`';
+        if letter == '-' && begins && !is_code && next.is_ascii_digit() { '−' } else { letter }
     };
     text.chars().zip(behind).map(letter).collect()
 }
@@ -285,6 +287,7 @@ mod tests {
             "−0.8 % of A1-2 (−3), slap-down, 1e-3"
         );
         assert_eq!(sentence("off by -1"), "Off by −1.");
+        assert_eq!(sentence("reads -1: set `polarity = -1`"), "Reads −1: set `polarity = -1`.");
     }
 
     #[test]

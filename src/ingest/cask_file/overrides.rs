@@ -1,5 +1,6 @@
 //! A cask file and what a table of tests states instead of some of its keys to the cask file of one test.
 
+use super::section::with_ascii_minus;
 use super::{CASK_FILE, no_cask_file, of_bytes, read, text};
 use crate::data::CaskFile;
 use crate::data::keys::{CHANNEL, INNER_TABLES, Key, TABLES, Takes};
@@ -46,7 +47,9 @@ pub fn with_columns(path: &Path, columns: &[(String, String)]) -> Result<CaskFil
     }
     let own = text(path, &bytes, &CASK_FILE)?;
     // What is no TOML the parser of the cask file says better.
-    let Ok(mut document) = DocumentMut::from_str(own) else { return of_bytes(path, &bytes, photos) };
+    let Ok(mut document) = DocumentMut::from_str(&with_ascii_minus(own)) else {
+        return of_bytes(path, &bytes, photos);
+    };
     for (column, words) in columns {
         let mend = "mend the cell, or leave it empty: then the cask file's own value holds";
         set(&mut document, column, words).map_err(|problem| no_cask_file(path, &problem, mend))?;
@@ -93,8 +96,8 @@ fn value(key: &Key, words: &str) -> Value {
 mod tests {
     use super::*;
 
-    const CASK: &str = "# ours\n[cask]\nmass_kg = 10.0\nlength_m = 2.0 # measured\n[drop]\nheight_m = \
-                        1\nangle_deg = 5.0\n[[channel]]\nname = \"A1\"\nend = \"first\"\naxis = \
+    const CASK: &str = "# ours\n[cask]\nmass_kg = 10.0\nlength_m = 2.0 # measured\nheight_m = 0.4\n[drop]\n\
+                        height_m = 1\nangle_deg = 5.0\n[[channel]]\nname = \"A1\"\nend = \"first\"\naxis = \
                         \"transverse\"\nsource = \"a\"\nposition_m = 0.1\n";
 
     fn with(columns: &[(&str, &str)]) -> Result<CaskFile, IngestError> {

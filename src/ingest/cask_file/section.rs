@@ -5,6 +5,7 @@ use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use crate::data::keys::{self, Key, KeyTable};
 use crate::ingest::IngestError;
 use miette::NamedSource;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -44,7 +45,23 @@ fn titled(name: &str) -> String {
 pub(crate) struct Document<'a> {
     kind: &'static Kind,
     path: &'a Path,
-    text: &'a str,
+    text: Cow<'a, str>,
+}
+
+/// The text with U+2212, which reports print before numbers, as the minus that TOML knows. Every other byte
+/// keeps its place.
+#[must_use]
+pub fn with_ascii_minus(text: &str) -> Cow<'_, str> {
+    const PRINTED: &str = "−";
+    let mut text = Cow::Borrowed(text);
+    loop {
+        let refused = DeTable::parse(&text).err().and_then(|error| error.span());
+        let Some(at) = refused.map(|span| span.start) else { return text };
+        if !text.get(at..).is_some_and(|rest| rest.starts_with(PRINTED)) {
+            return text;
+        }
+        text.to_mut().replace_range(at..at + PRINTED.len(), "  -");
+    }
 }
 
 /// A table of the file whose keys are all known.
@@ -57,12 +74,12 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Document<'a> {
     pub(crate) fn new(kind: &'static Kind, path: &'a Path, text: &'a str) -> Self {
-        Self { kind, path, text }
+        Self { kind, path, text: with_ascii_minus(text) }
     }
 
     /// The file's top level.
     pub(crate) fn root(&'a self) -> Result<Section<'a>, IngestError> {
-        match DeTable::parse(self.text) {
+        match DeTable::parse(&self.text) {
             Ok(table) => self.section("", table.into_inner(), 0..0),
             Err(error) => Err(self.syntax(&error)),
         }
@@ -90,7 +107,7 @@ impl<'a> Document<'a> {
         let line = line_of(self.text.as_bytes(), start);
         let path = self.path.display().to_string();
         Box::new(WrongLine {
-            text: NamedSource::new(&path, self.text.to_owned()),
+            text: NamedSource::new(&path, self.text.to_string()),
             path,
             line,
             message,
@@ -142,7 +159,7 @@ impl<'a> Section<'a> {
     }
 
     /// Where a key's value stands; where it is left out, its table.
-    fn place(&self, key: &str) -> Range<usize> {
+    pub(super) fn place(&self, key: &str) -> Range<usize> {
         self.value(key).map_or_else(|| self.span.clone(), Spanned::span)
     }
 
@@ -151,7 +168,7 @@ impl<'a> Section<'a> {
     }
 
     /// A diagnostic at `span`.
-    fn wrong(&self, span: Range<usize>, message: String, mend: &str) -> IngestError {
+    pub(super) fn wrong(&self, span: Range<usize>, message: String, mend: &str) -> IngestError {
         self.document.wrong(span, message, mend.to_owned())
     }
 

@@ -1,6 +1,7 @@
 //! A cask file and what its recording says to every key with its value, in the file's own units, and where
 //! that is from.
 
+use super::section::with_ascii_minus;
 use crate::data::keys::{self, Key, TABLES};
 use crate::data::{CaskFile, Contact, OtherSpec, Recording, TOLERANCES};
 use serde_json::{Map, Value, json};
@@ -10,7 +11,8 @@ use serde_json::{Map, Value, json};
 /// null.
 #[must_use]
 pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
-    let stated: toml::Table = file.text.trim_start_matches('\u{feff}').parse().unwrap_or_default();
+    let text = with_ascii_minus(file.text.trim_start_matches('\u{feff}'));
+    let stated: toml::Table = text.parse().unwrap_or_default();
     let stated_table = |table: &str| stated.get(table).and_then(toml::Value::as_table);
     let single =
         TABLES.iter().filter(|table| table.name != "channel" && !keys::INNER_TABLES.contains(&table.name));
