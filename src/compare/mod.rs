@@ -2,12 +2,8 @@
 
 use crate::data::{
     Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, ModelCandidate, ModelChoice, Prediction,
-    Quantities, Rung,
+    Quantities, Rung, UNSTATED_INERTIA,
 };
-
-/// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even
-/// spread (5 %).
-const U_INERTIA_DEFAULT: f64 = 0.05;
 
 /// A rung of the analytical models as a function, such as `predict::predict_by`.
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
@@ -167,14 +163,11 @@ impl Comparing<'_> {
 
     /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
     fn by_inertia_m_s(&self, rung: Rung, k: f64) -> f64 {
-        let stated = self.body.model == BodyModel::Body
-            && !self.file.defaults.iter().any(|default| default == "cask.inertia_kg_m2");
-        let (rung, body, share) = match rung {
-            Rung::Rod => (Rung::Body, self.rod, U_INERTIA_DEFAULT),
-            rung if stated => (rung, self.body, self.file.tolerances.inertia / 2.0),
-            rung => (rung, self.body, U_INERTIA_DEFAULT),
+        let (rung, body, inertia) = match rung {
+            Rung::Rod => (Rung::Body, self.rod, UNSTATED_INERTIA),
+            rung => (rung, self.body, self.file.tolerances.inertia),
         };
-        let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
+        let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + inertia / 2.0), ..*body };
         let speed = |body: &Body| self.speed_m_s(rung, body, &self.drop, k);
         speed(&heavier).zip(speed(body)).map_or(0.0, |(heavier, as_it_is)| heavier - as_it_is)
     }

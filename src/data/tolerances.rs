@@ -146,9 +146,10 @@ tolerances! {
     horizontal_velocity_m_s: "horizontal_velocity_m_s" in MetresPerSecond, 0.1,
         "sideways velocity at first contact", "sideways velocity as the first end strikes";
     /// Centre of gravity, m.
-    cog_m: "cog_m" in Metres, 0.01, "centre of gravity", "centre of gravity";
+    cog_m: "cog_m" in Metres, 0.01 ("0.01; 8 % of `length_m` where `cog_m` is left out", "0.01"),
+        "centre of gravity", "centre of gravity";
     /// Inertia, as a share of it.
-    inertia: "inertia_percent" in Percent, 2.0 ("2; 10 where `inertia_kg_m2` is left out", "2.0"),
+    inertia: "inertia_percent" in Percent, 2.0 ("2; 15 where `inertia_kg_m2` is left out", "2.0"),
         "inertia", "";
     /// Friction of the first contact, as a share of it: of the stated coefficient, or of what sticking needs.
     friction: "friction_percent" in Percent, 20.0,
@@ -157,16 +158,21 @@ tolerances! {
     clock: "clock_percent" in Percent, 0.05, "recorder's clock", "rate of the recorder's clock";
 }
 
-/// Inertia that is only a homogeneous block's, as a share: casks carry their mass off the even spread.
-const INERTIA_OF_BLOCK: f64 = 0.1;
+/// Half-width of an unstated centre of gravity, as a share of the length: those of casks lie at 42 to 58 %.
+const UNSTATED_COG: f64 = 0.08;
+/// Half-width of an unstated inertia, as a share of a block's: casks carry their mass off the even spread.
+pub const UNSTATED_INERTIA: f64 = 0.15;
 
 impl Tolerances {
-    /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's
-    /// alone.
-    pub fn of(left_out: &[String]) -> Self {
+    /// The defaults for a cask of this length, where its file leaves these keys out, as "table.key".
+    pub fn of(left_out: &[String], length_m: f64) -> Self {
         let usual = Self::default();
-        let is_block = left_out.iter().any(|key| key == "cask.inertia_kg_m2");
-        Self { inertia: if is_block { INERTIA_OF_BLOCK } else { usual.inertia }, ..usual }
+        let is_left_out = |key: &str| left_out.iter().any(|left_out| left_out == key);
+        Self {
+            cog_m: if is_left_out("cask.cog_m") { UNSTATED_COG * length_m } else { usual.cog_m },
+            inertia: if is_left_out("cask.inertia_kg_m2") { UNSTATED_INERTIA } else { usual.inertia },
+            ..usual
+        }
     }
 }
 

@@ -65,7 +65,7 @@ pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedIm
 pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
     CaskFile {
         path: PathBuf::from("synthetic.toml"),
-        tolerances: Tolerances::of(&defaults),
+        tolerances: Tolerances::of(&defaults, cask.length_m),
         defaults,
         ..CaskFile::plain(cask, drop, contact)
     }

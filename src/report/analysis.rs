@@ -126,6 +126,9 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         tail(&result.input.cask, 24)
     );
     let cause = cause(result).map(|said| ChapterPart::text(sentence(&said)));
+    let assumed = record::assumed(file, &result.budget).map(|words| {
+        ChapterPart::text(format!("The cask file does not state, and the intervals cover: {words}."))
+    });
     let limits = defaults_that_weigh(result, file).map(|words| ChapterPart::text(sentence(&words)));
     let untested = untested(result).map(|[named, remedies]| {
         ChapterPart::text(format!("Nothing in this recording tests {named}. To test them: {remedies}."))
@@ -142,7 +145,9 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
             .only(Medium::Page),
         )
         .with(PartContent::Figures(figures(result)))
-        .with_all([cause, limits, untested].into_iter().flatten().map(|part| part.only(Medium::Page)))
+        .with_all(
+            [cause, assumed, limits, untested].into_iter().flatten().map(|part| part.only(Medium::Page)),
+        )
         .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
 }
 

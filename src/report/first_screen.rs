@@ -145,6 +145,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         ("Speed of corner", corner, 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
         ("Predicted speed", compared(result), 1),
+        ("Assumed", super::record::assumed(file, &result.budget), 2),
         ("Interval", Some(interval_by).filter(|_| is_number), 3),
         ("Limits", Some(limits.collect::<Vec<_>>().join(", ")), 1),
     ];

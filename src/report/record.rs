@@ -205,13 +205,45 @@ fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
 }
 
+/// What the numbers take for granted since the cask file does not state it, with the interval that it has in
+/// them; `None` where there is nothing or no number.
+pub(super) fn assumed(file: &CaskFile, budget: &[Contribution]) -> Option<String> {
+    let (cask, known) = (&file.cask, &file.tolerances);
+    let is_input = |key: &str| budget.iter().any(|input| input.tolerance == Some(key));
+    let is_left_out = |key: &str| file.defaults.iter().any(|default| default == key);
+    let cog = format!("centre of gravity {} ± {} m", plain(cask.cog_m, 4), plain(known.cog_m, 2));
+    let inertia = plain(100.0 * known.inertia, 2);
+    let all = [
+        (is_input("cog_m") && is_left_out("cask.cog_m"), cog),
+        (
+            is_input("inertia_percent") && is_left_out("cask.inertia_kg_m2"),
+            format!("inertia of a uniform block ± {inertia} %"),
+        ),
+        (
+            is_input("friction_percent") && file.contact == Contact::Unknown,
+            "friction anywhere from none to sticking".to_owned(),
+        ),
+    ];
+    let all: Vec<String> = all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words).collect();
+    (!all.is_empty()).then(|| all.join(", "))
+}
+
 /// The default that an input of the budget rests on, as a cask file states it, such as "[tolerance]
 /// `angle_deg` = 0.4"; `None` where it rests on none.
 pub(super) fn to_state(file: &CaskFile, input: &Contribution) -> Option<String> {
     let key = input.tolerance?;
-    // Nobody knows a part of a friction that nobody states.
-    if key == "friction_percent" && file.contact == Contact::Unknown {
-        return Some("[contact] friction".to_owned());
+    // Nobody knows a part of what nobody states.
+    let unstated = match key {
+        "friction_percent" if file.contact == Contact::Unknown => Some(("contact", "friction")),
+        "cog_m" => Some(("cask", "cog_m")),
+        "inertia_percent" => Some(("cask", "inertia_kg_m2")),
+        _ => None,
+    };
+    let is_left_out = |(table, key): &(&str, &str)| {
+        *table == "contact" || file.defaults.iter().any(|default| *default == format!("{table}.{key}"))
+    };
+    if let Some((table, key)) = unstated.filter(is_left_out) {
+        return Some(format!("[{table}] {key}"));
     }
     let row = TOLERANCES.iter().find(|row| row.key == key && is_default(file, key))?;
     Some(format!("[tolerance] {key} = {}", plain(row.in_file(file.tolerances, &file.cask), 3)))

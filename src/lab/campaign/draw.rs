@@ -64,7 +64,7 @@ fn is_as_wished(truth: &Truth, wish: &Wish) -> bool {
 fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene, CaskFile) {
     let mut defaults = vec!["drop.gravity_m_s2".to_owned()];
     let stated = cask(chance, &mut defaults);
-    let tolerances = Tolerances::of(&defaults);
+    let tolerances = Tolerances::of(&defaults, stated.length_m);
     let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
     let stated_contact = wish.contact.unwrap_or(if is_said { drawn } else { Contact::Unknown });
