@@ -64,7 +64,7 @@ pub fn cask_file(kind: Kind) -> CaskFile {
         )
     };
     let text = format!(
-        "[cask]\nname = \"bench\"\nmass_kg = 4466.0\nlength_m = 5.5\n\
+        "[cask]\nname = \"bench\"\nmass_kg = 4466.0\nlength_m = 5.5\nheight_m = 0.8\n\
          [drop]\nheight_m = 9.0\nangle_deg = 15.0\n{}{}",
         channel("a1", "first", 0.15),
         channel("a2", "second", 5.35)

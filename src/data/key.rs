@@ -37,6 +37,8 @@ pub enum Allowed {
     AboveZero,
     /// From the first to the second; the text says what lies beyond, or what the key means.
     Within(f64, f64, &'static str),
+    /// 0, or as [`Allowed::Within`].
+    ZeroOrWithin(f64, f64, &'static str),
 }
 
 impl Allowed {
@@ -47,6 +49,7 @@ impl Allowed {
             Self::FromZero => number >= 0.0,
             Self::AboveZero => number > 0.0,
             Self::Within(least, most, _) => (least..=most).contains(&number),
+            Self::ZeroOrWithin(least, most, _) => number == 0.0 || (least..=most).contains(&number),
         }
     }
 
@@ -57,6 +60,7 @@ impl Allowed {
             Self::FromZero => "0 or more".into(),
             Self::AboveZero => "a number above 0".into(),
             Self::Within(least, most, _) => format!("{} to {}", short(least), short(most)),
+            Self::ZeroOrWithin(least, most, _) => format!("0, or {} to {}", short(least), short(most)),
         }
     }
 }

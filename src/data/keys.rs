@@ -38,6 +38,10 @@ pub static TABLES: [KeyTable; 16] = [
 
 /// Five times the impact of a limiter; a body that turns at 5 rad/s comes down in that.
 pub const LONGEST_CONTACT_S: f64 = 0.2;
+/// A tenth of the impact of steel on steel. The steps of a prediction grow as its inverse.
+pub const SHORTEST_CONTACT_S: f64 = 1e-5;
+/// The lowest cut-off of a low-pass, Hz: a drop lasts a tenth of a second. Its tails grow as the inverse.
+const LOWEST_CUTOFF_HZ: f64 = 1.0;
 
 keys! {
 /// Keys of `[test]`.
@@ -108,12 +112,12 @@ CASK {
     "length_m": REQUIRED,
         within(0.01, 100.0, "a model of a centimetre to more than any cask, in metres: 5512 mm are 5.512"),
         ask "5.512", "along the axis, between the two ends that strike";
-    "height_m": "0", FROM_ZERO, "0.8", "cross-section in the plane of the drop; left out: a thin rod";
+    "height_m": REQUIRED, FROM_ZERO, ask "0.8", "section in the plane of the drop; 0 states a thin rod";
     "width_m": "–", ABOVE_ZERO, "0.8", "across that plane, reported only";
     "cog_m": "`length_m` / 2", ABOVE_ZERO, "2.5",
-        "centre of gravity from the first end; left out: length_m / 2";
+        "centre of gravity from the first end; left out: length_m / 2, and wider intervals";
     "inertia_kg_m2": "m (l² + h²)/12", ABOVE_ZERO, "2100.0",
-        "about the centre of gravity; left out: m (l² + h²) / 12";
+        "about the centre of gravity; left out: m (l² + h²) / 12, and wider intervals";
     "scale": "–", within(0.01, 1.0, "length of the model over that of its prototype: 0.5 of a half-scale \
          model; all other keys are the model's own"), "0.5", "of a scale model, over its prototype";
 }
@@ -149,14 +153,17 @@ CONTACT {
     "friction": "`\"unknown\"`", TextOrNumber, r#""unknown""#,
         r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown": all that lies between"#;
     "duration_s": "–",
-        within(0.0, LONGEST_CONTACT_S, "how long the first end's impact lasts, in seconds: 20 ms are 0.02"),
+        Takes::Number(Allowed::ZeroOrWithin(SHORTEST_CONTACT_S, LONGEST_CONTACT_S,
+            "how long the first end's impact lasts, in seconds: 20 ms are 0.02, and 0 is an impulse")),
         "0.02", "how long the first impact lasts, for `predict`; `analyze` measures it";
 }
 
 /// Keys of `[filter]`.
 FILTER {
-    "cfc": "", ABOVE_ZERO, "180", "a channel frequency class of SAE J211 / ISO 6487";
-    "cutoff_hz": "", ABOVE_ZERO, "400.0", "a −3 dB cut-off";
+    "cfc": "", within(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the class, such as 60, 180 or 600"), "180",
+        "a channel frequency class of SAE J211 / ISO 6487";
+    "cutoff_hz": "", within(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the −3 dB cut-off, in Hz"), "400.0",
+        "a −3 dB cut-off";
 }
 
 /// Keys of `[recording]`.

@@ -1,5 +1,6 @@
 //! A cask file (TOML) to a checked [`CaskFile`], or to one diagnostic that shows the line.
 
+mod blanks;
 mod body;
 pub(crate) mod channel;
 pub(super) mod fault;
@@ -22,6 +23,7 @@ use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::WrongLine;
 pub use overrides::{key_of_column, with_columns};
+pub use section::with_ascii_minus;
 use section::{CASK_FILE, Document, Kind, Section};
 pub use settings::settings;
 use sha2::{Digest, Sha256};
@@ -137,7 +139,9 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
 pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, IngestError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
+    blanks::require_no_blanks(&root)?;
     let cask_table = root.required_table("cask")?;
+    cask_table.required_number("height_m")?;
     let cask = cask(&cask_table, path)?;
     let scale = cask_table.given("scale")?;
     let contact_table = root.table("contact")?;

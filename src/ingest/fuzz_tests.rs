@@ -42,7 +42,8 @@ fn cask_of(sources: &[&str]) -> CaskFile {
              '{source}'\nposition_m = 0\n"
         )
     };
-    let head = "[cask]\nname = 'c'\nmass_kg = 1\nlength_m = 1\n[drop]\nheight_m = 1\nangle_deg = 1\n";
+    let head =
+        "[cask]\nname = 'c'\nmass_kg = 1\nlength_m = 1\nheight_m = 0\n[drop]\nheight_m = 1\nangle_deg = 1\n";
     let text = head.to_owned() + &sources.iter().map(channel).collect::<String>();
     cask_file::checked(Path::new("c"), &text, None).expect("a sound cask file")
 }

@@ -154,6 +154,9 @@ fn table_of_keys() -> String {
                 Takes::Number(Allowed::Within(least, most, _)) => {
                     format!("{} to {}", number(least), number(most))
                 }
+                Takes::Number(Allowed::ZeroOrWithin(least, most, _)) => {
+                    format!("0, or {} to {}", number(least), number(most))
+                }
                 _ => String::new(),
             };
             let meaning =

@@ -8,38 +8,52 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_mins(1);
 
 #[test]
-fn a_form_that_is_not_filled_in_is_refused_by_its_line() {
+fn one_message_names_every_blank_of_a_cask_file_and_the_last_one_has_an_example() {
     let folder = tempfile::tempdir().expect("a folder");
     let (recording, cask) = (fixture("anf18-json.mcap"), folder.path().join("cask.toml"));
-    let analyze = || dropcheck(words!["analyze", recording, "--cask", cask]);
     let mut form = dropcheck(words!["init", recording]).stdout;
-    let words = ["is still to be filled in", "write what it is, such as"];
-    let (number, word) = (("nan", ["is nan", "dropcheck init"]), ("\"FILL IN\"", words));
+    let refused = |form: &str| {
+        fs::write(&cask, form).expect("a cask file");
+        let answer = dropcheck(words!["analyze", recording, "--cask", cask]);
+        assert_eq!(answer.status, 2, "{}", answer.stdout);
+        answer.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+    };
+    let line = |form: &str, open: &str, nth: usize| {
+        let lines = form.lines().enumerate().filter(|(_, line)| line.starts_with(open));
+        lines.map(|(i, _)| i + 1).nth(nth).expect(open)
+    };
+    let said = refused(&form);
+    assert!(said.contains("11 values are still to be filled in: [cask] mass_kg"), "{said}");
+    let blanks = [("mass_kg", 0), ("length_m", 0), ("height_m", 0), ("height_m", 1), ("angle_deg", 0)];
+    let of_channels = ["end", "axis", "position_m"].into_iter().flat_map(|key| [(key, 0), (key, 1)]);
+    for (key, nth) in blanks.into_iter().chain(of_channels) {
+        let named = format!("{key} (line {})", line(&form, &format!("{key} = "), nth));
+        assert!(said.contains(&named), "{named}: {said}");
+    }
+    // A key that is deleted is asked for like one that is open.
+    assert!(refused(&form.replacen("mass_kg = nan", "", 1)).contains("mass_kg (missing)"));
     let answers = [
-        ("mass_kg", "4466.0", number),
-        ("length_m", "5.512", number),
-        ("height_m", "9.0", number),
-        ("angle_deg", "15.0", number),
-        ("end", "\"first\"", word),
-        ("axis", "\"transverse\"", word),
-        ("position_m", "0.156", number),
-        ("end", "\"second\"", word),
-        ("axis", "\"transverse\"", word),
-        ("position_m", "5.356", number),
+        ("mass_kg = nan", "mass_kg = 4466.0", ["is nan", "dropcheck init"]),
+        ("end = \"FILL IN\"", "end = \"first\"", ["is still to be filled in", "write what it is, such as"]),
+        ("length_m = nan", "length_m = 5.512", [""; 2]),
+        ("height_m = nan", "height_m = 0.792", [""; 2]),
+        ("height_m = nan", "height_m = 9.0", [""; 2]),
+        ("angle_deg = nan", "angle_deg = 15.0", [""; 2]),
+        ("axis = \"FILL IN\"", "axis = \"transverse\"", [""; 2]),
+        ("position_m = nan", "position_m = 0.156", [""; 2]),
+        ("end = \"FILL IN\"", "end = \"second\"", [""; 2]),
+        ("axis = \"FILL IN\"", "axis = \"transverse\"", [""; 2]),
+        ("position_m = nan", "position_m = 5.356", [""; 2]),
     ];
-    for (key, value, (left, words)) in answers {
-        fs::write(&cask, &form).expect("a cask file");
-        let answer = analyze();
-        let open = format!("{key} = {left}");
-        let line = 1 + form.lines().position(|l| l.starts_with(&open)).expect(key);
-        assert_eq!(answer.status, 2, "{key}: {}", answer.stdout);
-        for word in [format!("line {line}:"), key.to_owned()].into_iter().chain(words.map(str::to_owned)) {
-            assert!(answer.stderr.contains(&word), "{word}: {}", answer.stderr);
+    form = answers.iter().fold(form, |form, (open, value, _)| form.replacen(open, value, 1));
+    for (open, value, words) in answers.iter().take(2) {
+        let (at, said) = (line(&form, value, 0), refused(&form.replacen(value, open, 1)));
+        for word in [&format!("line {at}:")[..]].iter().chain(words) {
+            assert!(said.contains(word), "{open}: {word}: {said}");
         }
-        form = form.replacen(&open, &format!("{key} = {value}"), 1);
     }
     fs::write(&cask, form).expect("a cask file");
-    let answer = analyze();
+    let answer = dropcheck(words!["analyze", recording, "--cask", cask]);
     assert!(answer.status <= 1, "{}", answer.stderr);
 }
 
@@ -52,7 +66,8 @@ fn a_unit_that_nobody_says_is_asked_for() {
     fs::write(&recording, table).expect("a recording");
     let form = dropcheck(words!["init", recording]).stdout;
     assert!(form.contains("unit = \"FILL IN\"") && form.contains("end = \"first\""), "{form}");
-    fs::write(&cask, form.replace("= nan ", "= 1 ")).expect("a cask file");
+    let filled = form.replace("mass_kg = nan", "mass_kg = 100").replace("= nan ", "= 1 ");
+    fs::write(&cask, filled).expect("a cask file");
     let answer = dropcheck(words!["analyze", recording, "--cask", cask]);
     let told = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in ["unit is \"FILL IN\"", "is still to be filled in", "unit = \"g\", \"m/s^2\""] {

@@ -26,6 +26,7 @@ const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, IngestError> {
     let mass_kg = table.required_number("mass_kg")?;
     let length_m = table.required_number("length_m")?;
+    // A scene may leave it out: what it simulates is then a thin rod.
     let height_m = table.given("height_m")?.unwrap_or(0.0);
     if height_m > length_m {
         let message =

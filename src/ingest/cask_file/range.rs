@@ -35,7 +35,7 @@ impl Section<'_> {
         let check = format!("check the value{}", unit_of(key));
         let (must, mend) = match allowed {
             _ if allowed.holds(number) => return Ok(()),
-            Allowed::Within(_, _, why) => {
+            Allowed::Within(_, _, why) | Allowed::ZeroOrWithin(_, _, why) => {
                 let unit = if key.ends_with("_deg") { " degrees" } else { "" };
                 (format!(", outside {}{unit}", allowed.words()), why)
             }

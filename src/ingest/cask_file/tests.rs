@@ -53,7 +53,8 @@ source = { topic = "/a.b", field = "x.y" }
 position_m = 5.512
 "#;
 
-const SHORT: &str = "[cask]\nmass_kg = 120\nlength_m = 2.0\n[drop]\nheight_m = 9\nangle_deg = 30\n";
+const SHORT: &str =
+    "[cask]\nmass_kg = 120\nlength_m = 2.0\nheight_m = 0\n[drop]\nheight_m = 9\nangle_deg = 30\n";
 
 fn of(text: &str) -> Result<CaskFile, IngestError> {
     checked(Path::new("box.toml"), text, None)
@@ -166,15 +167,15 @@ fn an_inertia_about_an_end_is_refused_and_the_largest_possible_is_not() {
     let with = |value: &str| of(&SHORT.replace("[drop]", &format!("inertia_kg_m2 = {value}\n[drop]")));
     assert!((with("120").unwrap().cask.inertia_kg_m2 - 120.0).abs() < 1e-12);
     let message = told(&with("160").unwrap_err());
-    for part in ["line 4", "no cask of this mass and size", "at most 120", "not about an end", "has 40"] {
+    for part in ["line 5", "no cask of this mass and size", "at most 120", "not about an end", "has 40"] {
         assert!(message.contains(part), "{message} without {part}");
     }
     // A centre of gravity near an end leaves less: 120 · 0.2 · 1.8 = 43.2; a section adds m h²/4 = 7.5.
     let near = |rest: &str| {
-        of(&SHORT.replace("[drop]", &format!("cog_m = 0.2\ninertia_kg_m2 = 48\n{rest}\n[drop]")))
+        of(&SHORT.replace("height_m = 0\n", &format!("cog_m = 0.2\ninertia_kg_m2 = 48\nheight_m = {rest}\n")))
     };
-    assert!(told(&near("").unwrap_err()).contains("at most 43.2"));
-    assert!(near("height_m = 0.5").is_ok());
+    assert!(told(&near("0").unwrap_err()).contains("at most 43.2"));
+    assert!(near("0.5").is_ok());
 }
 
 #[test]
@@ -184,7 +185,7 @@ fn what_no_cask_and_no_drop_can_be_is_refused_with_its_range() {
         let (table, replaced) = match key {
             "mass_kg" | "length_m" => ("[cask]", Some(key)),
             "cog_m" | "inertia_kg_m2" => ("[cask]", None),
-            "height_m" => ("[drop]", Some(key)),
+            "height_m" => ("[drop]", Some("height_m = 9")),
             _ => ("[drop]", None),
         };
         let kept = SHORT.lines().filter(|line| replaced.is_none_or(|key| !line.starts_with(key)));
@@ -294,7 +295,10 @@ fn files_that_are_none_are_told_apart() {
         (b"[cask]\nname = \"Beh\xE4lter\"\n", "line 2 is not UTF-8"),
         (b"\x89HDF\r\n\x1a\n", "this is a recording"),
         (b"t;a\n0;1\n", "box.toml, line 1"),
-        (b"[cask]\nmass_kg = 1\nlength_m = 1\n", "no [drop]"),
+        (
+            b"[cask]\nmass_kg = 1\nlength_m = 1\n",
+            "[cask] height_m (missing); [drop] height_m (missing), angle_deg (missing)",
+        ),
     ] {
         let message = told_of("box.toml", content).unwrap_err();
         assert!(message.contains(part), "{message}");
@@ -304,6 +308,29 @@ fn files_that_are_none_are_told_apart() {
     assert_eq!(file.sha256.len(), 64);
     assert!(told(&parse(dir.path()).unwrap_err()).contains("directory"));
     assert!(told(&parse(&dir.path().join("none.toml")).unwrap_err()).contains("cannot be read"));
+}
+
+#[test]
+fn a_minus_that_a_report_prints_can_be_pasted() {
+    let text = FULL.replace("polarity = -1", "polarity = −1").replace("ANF-18", "ANF −18");
+    let file = of(&text).unwrap();
+    assert!((file.channels[0].polarity + 1.0).abs() < 1e-12 && file.cask.name == "ANF −18");
+    // Later lines keep their number and their place.
+    let message = told(&of(&text.replace("time_constant_s = 0.3", "time_constant_s = x")).unwrap_err());
+    assert!(message.contains("line 40"), "{message}");
+    assert!(told(&of(&FULL.replace("offset_m = -0.1", "offset_m = −")).unwrap_err()).contains("not TOML"));
+}
+
+#[test]
+fn a_low_pass_below_one_hertz_and_an_impact_below_ten_microseconds_are_refused() {
+    for (key, least, below) in
+        [("cutoff_hz", "1.0", "1e-4"), ("cfc", "1", "1e-308"), ("duration_s", "1e-5", "1e-6")]
+    {
+        let table = if key == "duration_s" { "contact" } else { "filter" };
+        let with = |value: &str| of(&format!("{SHORT}[{table}]\n{key} = {value}\n"));
+        assert!(with(least).is_ok() && told(&with(below).unwrap_err()).contains("outside"), "{key}");
+    }
+    assert!(of(&format!("{SHORT}[contact]\nduration_s = 0\n")).is_ok(), "an impulse");
 }
 
 #[test]

@@ -31,11 +31,12 @@ impl Section<'_> {
     /// What to write in place of what is no number.
     fn number_mend(&self, key: &str, value: &DeValue) -> String {
         let plain = value.as_str().unwrap_or_default().trim().replace(',', ".");
-        let is_nan = matches!(value, DeValue::Float(float) if float.as_str().ends_with("nan"));
         match number_with_unit(&plain) {
             Some((number, unit)) => unit_mend(number, unit),
             None if plain.parse::<f64>().is_ok() => format!("write it without quotes: {key} = {plain}"),
-            None if is_nan => "write what it is: `dropcheck init` leaves nan where only you know it".into(),
+            None if is_left_open(value) => {
+                "write what it is: `dropcheck init` leaves nan where only you know it".into()
+            }
             None if matches!(value, DeValue::Float(_)) => "write a finite number".into(),
             None => self.form(key),
         }
@@ -129,6 +130,14 @@ impl Section<'_> {
         let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
         let message = format!("{key} cannot be \"{text}\", but \"{}\"", known.join("\" or \""));
         Err(self.refuse(key, message, &format!("{near}{mend}")))
+    }
+}
+
+/// Whether the value is what `init` writes where only the user knows it.
+pub(super) fn is_left_open(value: &DeValue) -> bool {
+    match value {
+        DeValue::Float(float) => float.as_str().ends_with("nan"),
+        value => value.as_str() == Some(FILL_IN),
     }
 }
 

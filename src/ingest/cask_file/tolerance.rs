@@ -13,7 +13,7 @@ pub(super) fn tolerances(
     cask: &Cask,
     left_out: &[String],
 ) -> Result<Tolerances, IngestError> {
-    let mut stated = Tolerances::of(left_out);
+    let mut stated = Tolerances::of(left_out, cask.length_m);
     for tolerance in &TOLERANCES {
         let key = tolerance.key;
         let Some(given) = table.given(key)? else { continue };
@@ -41,7 +41,8 @@ mod tests {
     use super::super::checked;
     use std::path::Path;
 
-    const CASK: &str = "[cask]\nmass_kg = 1000\nlength_m = 5\n[drop]\nheight_m = 9\nangle_deg = 15\n";
+    const CASK: &str =
+        "[cask]\nmass_kg = 1000\nlength_m = 5\nheight_m = 0.8\n[drop]\nheight_m = 9\nangle_deg = 15\n";
 
     fn parsed(more: &str) -> Result<crate::data::CaskFile, String> {
         checked(Path::new("c.toml"), &format!("{CASK}{more}"), None).map_err(|e| e.to_string())
@@ -67,10 +68,10 @@ mod tests {
     #[test]
     fn nonsense_is_named_with_its_line() {
         let said = |more: &str| parsed(more).expect_err("nonsense");
-        assert!(said("[tolerance]\nangle_deg = -1\n").contains("line 8"));
+        assert!(said("[tolerance]\nangle_deg = -1\n").contains("line 9"));
         assert!(said("[tolerance]\ninertia_percent = 120\n").contains("more than the thing itself"));
         assert!(said("[tolerance]\nclock_percent = 101\n").contains("more than the thing itself"));
-        assert!(said("[tolerance]\nclock_percent = -0.1\n").contains("line 8"));
+        assert!(said("[tolerance]\nclock_percent = -0.1\n").contains("line 9"));
         assert!(said("[tolerance]\nangle = 1\n").contains("angle"));
         assert!(said("[corrections]\noffset = \"no\"\n").contains("not true or false"));
     }

@@ -27,7 +27,7 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     line(text, "name", quoted(&cask.name));
     line(text, "mass_kg", cask.mass_kg);
     line(text, "length_m", cask.length_m);
-    given(text, "height_m", stated("cask.height_m", cask.height_m));
+    line(text, "height_m", cask.height_m);
     given(text, "cog_m", stated("cask.cog_m", cask.cog_m));
     given(text, "inertia_kg_m2", stated("cask.inertia_kg_m2", cask.inertia_kg_m2));
     given(text, "width_m", cask.width_m);
