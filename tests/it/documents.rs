@@ -1,6 +1,8 @@
 //! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere,
 //! answers that are the program's.
 
+mod paper;
+
 use crate::run::{analyze, dropcheck, files_below, fixture, root};
 use dropcheck::data::CODES;
 use dropcheck::report::{CampaignColumn, campaign_columns};
