@@ -139,7 +139,7 @@ fn figures_2_to_9_stand_beside_what_is_read_off_them() {
 fn figures_12_and_13_stand_beside_a_drop_of_that_shape() {
     let folder = tempfile::tempdir().expect("a folder");
     let [drop, cask, out] = ["drop.mcap", "drop.toml", "r"].map(|name| folder.path().join(name));
-    let scene = fixtures().join("paper/scene-anf18.toml");
+    let scene = fixtures().join("reference/paper-scene.toml");
     ran("synth SCENE --out DROP", &[("SCENE", &scene), ("DROP", &drop)]);
     ran("analyze DROP --cask CASK --out OUT", &[("DROP", &drop), ("CASK", &cask), ("OUT", &out)]);
     let result: Value =
