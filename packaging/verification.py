@@ -70,7 +70,7 @@ def main(work, program, seed):
         "<p>As measured before, with damages:</p>" + written(Path("docs/measured/second-simulation.md").read_text()),
         "Readers": f"<p>The tests of the readers, with files that other programs wrote (fixtures/README.md), damaged and "
         f"cut ones.</p><pre>{html.escape(readers)}</pre>{written(Path('docs/measured/fuzzing.md').read_text())}",
-        "Published results": written(Path("docs/measured/table-3.md").read_text()),
+        "Published results": written(Path("docs/paper.md").read_text()),
         "Not in this report": "<p>Tests on a real target: by the site, with <code>dropcheck validate --reference</code>.</p>",
     }
     body = "".join(f"<h1>{name}</h1>{text}" for name, text in chapters.items())

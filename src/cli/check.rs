@@ -11,7 +11,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = include_str!("help/check.txt"))]
 pub struct Arguments {
-    /// The recording of the rest: MCAP, HDF5 or CSV, told by its content
+    /// The recording of the rest: MCAP, HDF5, CSV or ISO-MME, told by its content
     rest: PathBuf,
     /// The cask file (TOML) of the drop; `dropcheck init` writes one to fill in
     #[arg(short, long)]

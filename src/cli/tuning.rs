@@ -1,5 +1,5 @@
 //! Work to the same work with threads awake and memory kept: what the machine gains by, measured in
-//! docs/measured/performance.md.
+//! docs/measured/time-and-memory.md.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -222,7 +222,7 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Estimate, FlightRegime, example};
+    use crate::data::{CogVelocity, Estimate, FlightRegime, example};
 
     fn quantities(speed_m_s: f64) -> Quantities {
         let exactly = |value, unit| Estimate::new(value, 0.0, unit);
@@ -266,6 +266,7 @@ mod tests {
             friction_to_stick: 0.4,
             sticks: true,
             regime: FlightRegime::Free,
+            cog: CogVelocity::default(),
             closed_form_speed_m_s: None,
         };
         let body = example::body(1.0, 5.0, 0.5);

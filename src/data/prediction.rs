@@ -72,6 +72,19 @@ impl Prediction {
     }
 }
 
+/// Velocity of the centre of gravity S, m/s: the rows of \[P\] Tables 1 and 2 that are about S.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CogVelocity {
+    /// ẋ_S2, just after the first impact.
+    pub horizontal_after_impact_m_s: f64,
+    /// ż_S2, just after the first impact, positive up.
+    pub vertical_after_impact_m_s: f64,
+    /// ẋ_S*, just before R strikes.
+    pub horizontal_at_slap_down_m_s: Option<f64>,
+    /// ż_S*, just before R strikes.
+    pub vertical_at_slap_down_m_s: Option<f64>,
+}
+
 /// What one model predicts for one contact law and one k. What does not exist (no slap-down) is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
@@ -105,6 +118,9 @@ pub struct Prediction {
     pub sticks: bool,
     /// What L does between the impacts.
     pub regime: FlightRegime,
+    /// What S does, for `prediction.csv` alone.
+    #[serde(skip)]
+    pub cog: CogVelocity,
     /// For k = 0 the speed with L held on the target whatever the force, \[P\] Table 2, m/s   (11) (12);
     /// `None` for k > 0.
     pub closed_form_speed_m_s: Option<f64>,

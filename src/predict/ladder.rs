@@ -6,7 +6,7 @@ use super::path::{PathEnd, Way};
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{Fall, predict, thin_rod};
-use crate::data::{Body, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung};
+use crate::data::{Body, CogVelocity, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung};
 
 /// What `rung` says; [`predict`] is the highest one.
 ///
@@ -118,6 +118,12 @@ impl Fall {
             friction_to_stick: struck.friction_to_stick,
             sticks: struck.sticks,
             regime: outcome.regime,
+            cog: CogVelocity {
+                horizontal_after_impact_m_s: struck.after.horizontal_velocity_m_s,
+                vertical_after_impact_m_s: struck.after.vertical_velocity_m_s,
+                horizontal_at_slap_down_m_s: at.map(|s| s.horizontal_velocity_m_s),
+                vertical_at_slap_down_m_s: at.map(|s| s.vertical_velocity_m_s),
+            },
             closed_form_speed_m_s: (self.k <= 0.0 && self.drop.contact_duration_s <= 0.0)
                 .then(|| self.closed_form(&struck.after))
                 .flatten()

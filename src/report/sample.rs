@@ -3,8 +3,8 @@
 use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
-    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, Extreme,
-    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, IssueCode,
+    CogVelocity, Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
+    Extreme, Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, IssueCode,
     LazyCurves, Mode, ModelCandidate, ModelChoice, MotionCurve, OtherCurve, OtherSummary, Plateau,
     Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, SpectralLine, Unit, Verdict,
 };
@@ -218,6 +218,7 @@ fn predictions() -> Vec<Prediction> {
         friction_to_stick: 0.4,
         sticks: true,
         regime: FlightRegime::Free,
+        cog: CogVelocity::default(),
         closed_form_speed_m_s: None,
     })
     .to_vec()

@@ -2,9 +2,9 @@
 
 use super::sample;
 use crate::data::{
-    AngleCurve, Body, BodyModel, BodyPath, Contact, Criterion, CriticalAngle, FlightRegime, Ladder,
-    LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study, StudyRequest,
-    Sweep, SweepVariable, Uncertain,
+    AngleCurve, Body, BodyModel, BodyPath, CogVelocity, Contact, Criterion, CriticalAngle, FlightRegime,
+    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study,
+    StudyRequest, Sweep, SweepVariable, Uncertain,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
@@ -176,6 +176,7 @@ fn prediction(case: (BodyModel, Contact, f64), angle_deg: f64, length_m: f64) ->
         friction_to_stick: 0.624,
         sticks: contact == Contact::Rough,
         regime: if k > 0.0 || angle_deg < 40.0 { FlightRegime::Free } else { FlightRegime::Contact },
+        cog: CogVelocity::default(),
         closed_form_speed_m_s: (k <= 0.0).then(|| speed.unwrap_or(9.0) + 0.3),
     }
 }

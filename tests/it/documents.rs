@@ -1,7 +1,10 @@
 //! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere,
 //! answers that are the program's.
 
-use crate::run::{analyze, dropcheck, files_below, fixture, root};
+mod numbers;
+mod paper;
+
+use crate::run::{analyze, dropcheck, files_below, fixture, root, truth};
 use dropcheck::data::CODES;
 use dropcheck::report::{CampaignColumn, campaign_columns};
 use dropcheck::stages::{Allowed, INNER_TABLES, TABLES, Takes};
@@ -10,6 +13,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// What a newcomer reads in five minutes, words.
 const README_WORDS: usize = 1300;
@@ -85,21 +89,12 @@ fn marks(name: &str) -> [String; 2] {
     ["begin", "end"].map(|side| format!("<!-- {name}: {side} -->\n"))
 }
 
-/// A page without its generated tables.
-fn by_hand(page: &str) -> String {
-    let mut rest = page.to_owned();
-    for [begin, end] in ["codes", "keys", "columns"].map(marks) {
-        if let Some((before, (_, after))) =
-            rest.split_once(&begin).and_then(|(before, rest)| Some((before, rest.split_once(&end)?)))
-        {
-            rest = [before, after].concat();
-        }
-    }
-    rest
-}
+/// Who writes a page: tests run beside each other.
+static PAGES: Mutex<()> = Mutex::new(());
 
 /// Holds the table of a page between its marks equal to what the program has; `BLESS=1` writes it.
 fn hold(page: &str, name: &str, table: &str) {
+    let _alone = PAGES.lock().unwrap_or_else(PoisonError::into_inner);
     let path = root().join(page);
     let (written, [begin, end]) = (text(&path), marks(name));
     let (before, rest) = written.split_once(&begin).expect("the mark before the table");
@@ -204,7 +199,7 @@ fn the_table_of_checks_is_that_of_the_program_and_each_has_its_section() {
 #[test]
 fn the_pages_keep_their_budget_of_words() {
     let is_word = |word: &&str| word.contains(char::is_alphanumeric); // the bars of tables are none
-    let count = |page: &PathBuf| by_hand(&text(page)).split_whitespace().filter(is_word).count();
+    let count = |page: &PathBuf| numbers::by_hand(&text(page)).split_whitespace().filter(is_word).count();
     let readme = count(&root().join("README.md"));
     assert!(readme < README_WORDS, "the README has {readme} words, below {README_WORDS} is meant");
     let counts: Vec<(usize, PathBuf)> =
@@ -219,7 +214,7 @@ fn lines_of_prose_fit_a_window() {
     for page in written_pages().into_iter().chain(pages_beside()) {
         let text = text(&page);
         for (number, line) in lines_without_code(&text) {
-            let length = line.chars().count();
+            let length = numbers::as_shown(line).chars().count();
             if length >= WIDTH && !line.trim_start().starts_with('|') {
                 wide.push(format!("{}:{number}: {length} characters", page.display()));
             }
@@ -345,4 +340,41 @@ fn the_page_of_dependencies_names_every_direct_crate() {
             assert!(page.contains(&format!("`{name}`")), "docs/dependencies.md does not name {name}");
         }
     }
+}
+
+/// A recorded "20.62 ± 0.40" with its digits cut to two of the half-width, as reports round it.
+fn rounded(recorded: &str) -> String {
+    let numbers = recorded
+        .split_once(" ± ")
+        .and_then(|(value, u95)| value.parse::<f64>().ok().zip(u95.parse::<f64>().ok()));
+    let Some((value, u95)) = numbers else { return "–".to_owned() };
+    let decimals = (0_u8..9).find(|d| (u95 * 10_f64.powi((*d).into())).round() >= 10.0).unwrap_or(9).into();
+    format!("{value:.decimals$} ± {u95:.decimals$}")
+}
+
+/// What the program says of each example as `tests/same` records it, beside its truth.
+#[test]
+fn the_table_of_fixtures_is_that_of_the_program() {
+    let mut rows = "| recording | expect | findings | speed | true speed | k | true k |\n\
+                    |---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for line in text(&root().join("tests/same/fixtures.tsv")).lines() {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let [name, verdict, codes, speed, k, ..] = cells[..] else { continue };
+        if !root().join("fixtures/examples").join(name).exists() {
+            continue;
+        }
+        let truth = truth(name.split('.').next().expect("a stem"));
+        let known =
+            |key: &str, decimals: usize| format!("{:.decimals$}", truth[key].as_f64().expect("a truth"));
+        let _ = writeln!(
+            rows,
+            "| `{name}` | {verdict} | {codes} | {} | {} | {} | {} |",
+            rounded(speed),
+            known("speed", 2),
+            rounded(k),
+            known("k", 3)
+        );
+    }
+    hold("fixtures/README.md", "expected", &rows);
 }

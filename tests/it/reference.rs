@@ -1,7 +1,6 @@
 //! From the reference values of independent programs to their distance from what the library says.
 
-use crate::moved;
-use crate::run::{dropcheck, fixtures, number, read_json};
+use crate::run::{number, read_json};
 use dropcheck::data::{Body, BodyModel, Contact, Drop};
 use dropcheck::predict::predict;
 use dropcheck::stages::ZeroPhaseLowPass;
@@ -134,50 +133,6 @@ fn table_3_is_met_with_the_sine_and_not_with_the_cosine() {
         assert!((sine - expected).abs() <= 1e-5 * expected, "{sine} for {row}");
         assert!((cosine - expected).abs() > 1.0, "{cosine} for {row}");
     }
-}
-
-/// Casks of Table 3 by the stem of their cask files, with what the paper prints: measured, k, calculated.
-const TABLE_3: [[&str; 4]; 4] = [
-    ["esbb", "≈ 25", "> 0", "rough, k = 1: 25"],
-    ["anf10", "≈ 23", "> 0", "rough, k = 1: 25"],
-    ["anf18", "≈ 21–24", "> 0", "rough, k = 1: 25"],
-    ["vhlw", "≈ 20", "→ 0", "rough, k = 0: 20"],
-];
-
-/// Table 3 as the program predicts it beside the measured column: `docs/measured/table-3.md` is what it says,
-/// and `BLESS=1` writes it anew.
-#[test]
-fn table_3_stands_beside_what_was_measured() {
-    let speed = |stem: &str, model: &str, contact: &str, k: &str| {
-        let cask = fixtures().join(format!("paper/{stem}.toml"));
-        let words = ["predict", "--contact", contact, "--k", k, "--draws", "0", "--json", "-", "--cask"];
-        let told = dropcheck(words.map(Into::into).into_iter().chain([cask.into_os_string()])).json();
-        let row = list(&told, "predictions").iter().find(|row| row["model"] == model).cloned();
-        let row = row.unwrap_or_else(|| panic!("no {model} in {told}"));
-        // The paper's k = 0 holds the end on the target; where that would need a pull the program's speed is
-        // that of the flight.
-        let kept = number(&row, "/closed_form_speed_m_s").filter(|_| model == "rod");
-        kept.or_else(|| number(&row, "/slap_down_speed_m_s")).expect("a slap-down")
-    };
-    let mut page = "# Table 3 of the paper, predicted\n\n\
-        Slap-down speeds in m/s, 9 m, 15°, of `dropcheck predict --cask fixtures/paper/esbb.toml --contact C \
-        --k K` and so on, beside what the paper prints. The rod with k = 0 is the closed form, which holds \
-        the first end on the target.\n\n\
-        | cask | measured | k there | the paper calculates | rod, rough, that k | body, rough: k = 0, 0.5, 1 \
-        | body, μ 0.3: k = 0, 0.5, 1 |\n|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for [stem, measured, k, calculated] in TABLE_3 {
-        let rod = speed(stem, "rod", "rough", if stem == "vhlw" { "0" } else { "1" });
-        let body =
-            |contact| ["0", "0.5", "1"].map(|k| format!("{:.2}", speed(stem, "body", contact, k))).join(", ");
-        let (rough, slides) = (body("rough"), body("0.3"));
-        let row = format!("| {stem} | {measured} | {k} | {calculated} | {rod:.2} | {rough} | {slides} |\n");
-        page.push_str(&row);
-        // The paper prints whole metres per second.
-        assert!(calculated.ends_with(&format!("{rod:.0}")), "{row}");
-    }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measured/table-3.md");
-    moved::hold(&path, &page, moved::lines);
 }
 
 #[test]

@@ -1,8 +1,11 @@
 //! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times
 //! are not looked at.
 
+use crate::moved;
+use crate::run::root;
 use dropcheck::lab::data::{Campaign, CampaignRequest, TrialLimit, TrialPoint, TrialRequest};
 use dropcheck::lab::methods;
+use std::fmt::Write as _;
 
 const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
 
@@ -46,4 +49,27 @@ fn the_limits_of_ways_are_those_that_the_quick_trial_keeps() {
     let is_of_ways = |limit: &&TrialLimit| methods::WAYS.iter().any(|family| limit.name.starts_with(family));
     let of_ways: Vec<&TrialLimit> = limits.iter().filter(is_of_ways).collect();
     assert!(of_ways.len() == 11 && of_ways.iter().all(|limit| limit.is_kept()), "{of_ways:?}");
+}
+
+/// The page of the recorded full run.
+const FULL_RUN: &str = "docs/measured/trial/validation.md";
+
+/// `validate --quick` shows what the full run found: the rows of `silent.tsv` are those of the recorded page,
+/// and `BLESS=1` writes them.
+#[test]
+fn the_silent_damages_that_the_program_knows_are_those_of_the_recorded_full_run() {
+    let page = std::fs::read_to_string(root().join(FULL_RUN)).expect("the recorded page");
+    let (_, chapter) = page.split_once("### What is silent").expect("the chapter");
+    let (count, _) =
+        chapter.trim_start_matches(|c: char| !c.is_ascii_digit()).split_once(' ').expect("a count");
+    let (table, _) = chapter.split_once("\n### ").expect("the next chapter");
+    let head =
+        "# Recorded full run: a silent damage, from which size on what becomes of a drop, half-widths off.";
+    let mut rows = format!("{head}\n");
+    for row in table.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let _ = writeln!(rows, "{}\t{}\t{}", cells[0].trim_matches('`'), cells[2], cells[3]);
+    }
+    assert_eq!(Ok(rows.lines().count() - 1), count.parse(), "{rows}");
+    moved::hold(&root().join("src/lab/damage/silent.tsv"), &rows, moved::lines);
 }

@@ -7,7 +7,7 @@ mod samples;
 mod stated;
 mod wish;
 
-use super::data::{BendingMode, SyntheticRecording};
+use super::data::{BendingMode, KnownSilence, SyntheticRecording};
 use super::drawn::{DrawnDrop, DropPlan};
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
@@ -54,6 +54,14 @@ pub(super) fn growing() -> impl Iterator<Item = &'static DamageKind> {
 /// The kind of this name.
 pub(super) fn named(name: &str) -> Option<&'static DamageKind> {
     TABLE.iter().find(|kind| kind.name == name)
+}
+
+/// What the recorded full run found of the damage of this name, where it was silent.
+pub(super) fn known_silence(name: &str) -> Option<KnownSilence> {
+    let rows = include_str!("silent.tsv").lines().filter_map(|line| line.split_once('\t'));
+    let (_, cells) = rows.into_iter().find(|(own, _)| *own == name)?;
+    let (becomes, off) = cells.split_once('\t')?;
+    Some(KnownSilence { becomes, off })
 }
 
 impl DamageKind {
@@ -148,6 +156,19 @@ mod tests {
             // The quick run takes every third: it holds the first and the last.
             assert!([0, 1, 4, 7, 13].contains(&growing.len()), "{name}");
             assert!(growing.is_sorted() || growing.iter().rev().is_sorted(), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_known_to_be_silent_grows_and_says_what_to_measure() {
+        let rows: Vec<&str> = include_str!("silent.tsv").lines().skip(1).collect();
+        assert!(!rows.is_empty());
+        for row in rows {
+            let name = row.split('\t').next().expect("a name");
+            let kind = growing().find(|kind| kind.name == name).expect(name);
+            let known = known_silence(name).expect(name);
+            assert!(known.becomes.starts_with("silent from") && known.off.parse::<f64>().is_ok(), "{row}");
+            assert!(!kind.instead.is_empty(), "{name}");
         }
     }
 

@@ -99,9 +99,25 @@ pub struct TrialMap {
     pub instead: String,
     /// From harmless to gross.
     pub sizes: Vec<TrialSize>,
+    /// What the recorded full run found of a damage that it saw silent; none in a full run.
+    pub known: Option<KnownSilence>,
+}
+
+/// A row of `silent.tsv`: a damage that was silent in the recorded full run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct KnownSilence {
+    /// From which size on what becomes of a drop.
+    pub becomes: &'static str,
+    /// The largest error, in half-widths.
+    pub off: &'static str,
 }
 
 impl TrialMap {
+    /// Whether some drop of this run was silent.
+    pub fn is_seen_silent(&self) -> bool {
+        self.first(TrialFate::Silent).is_some()
+    }
+
     /// The first size at which this becomes of a drop.
     pub fn first(&self, fate: TrialFate) -> Option<&TrialSize> {
         self.sizes.iter().find(|size| size.drops.iter().any(|drop| drop.fate == fate))

@@ -32,8 +32,8 @@ pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 mod tests {
     use super::*;
     use crate::lab::data::{
-        Campaign, CampaignRequest, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap, TrialPoint,
-        TrialRequest, TrialSize,
+        Campaign, CampaignRequest, KnownSilence, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap,
+        TrialPoint, TrialRequest, TrialSize,
     };
     use crate::lab::methods::{ALL_CLASSES, WAYS};
 
@@ -62,6 +62,7 @@ mod tests {
             unit: "Hz".into(),
             told_by: vec![],
             instead: "with a gauge".into(),
+            known: None,
             sizes: vec![
                 size(100.0, TrialFate::Warned, Some(1.2)),
                 size(1e3, TrialFate::Silent, Some(3.2)),
@@ -138,6 +139,15 @@ mod tests {
         assert!(text.contains("silent from 1000, warned from 100, refused from 10000 Hz"), "{text}");
         assert!(text.contains("with a gauge") && text.contains("ACCEPTED") && !text.contains("NOT ACCEPTED"));
         assert!(text.contains("within 0.20 % of the speed") && text.contains("other ways (by hand; 5.0 ms)"));
+        // What the recorded full run saw stands there though three drops did not show it.
+        let known = Some(KnownSilence { becomes: "silent from 7 mm", off: "4.5" });
+        let unseen = TrialMap { name: "play".into(), sizes: vec![], known, ..trial.maps[0].clone() };
+        trial.maps.push(unseen);
+        let text = page(&trial);
+        for words in ["2 of 2 damages", "quick one saw 1)", "silent from 7 mm", "not seen"] {
+            assert!(text.contains(words), "{words} in {text}");
+        }
+        assert!(trial_outcome(&trial, 80).contains("2 kinds of damage"));
         for value in [Some(80.0), None, Some(f64::NAN)] {
             trial.limits[0].value = value;
             assert!(!trial.is_accepted());

@@ -76,7 +76,7 @@ fn entries<T: Serialize + Sync>(list: &[T]) -> Result<Vec<u8>, serde_json::Error
 type CsvColumn = (&'static str, fn(&PredictionRow) -> String);
 
 /// Its columns; scripts know the first fourteen, and what follows them may grow.
-const COLUMNS: [CsvColumn; 20] = [
+const COLUMNS: [CsvColumn; 24] = [
     ("angle_deg", |row| row.angle_deg.to_string()),
     ("model", |row| row.prediction.model.as_str().to_owned()),
     ("contact", |row| row.prediction.contact.to_string()),
@@ -97,6 +97,10 @@ const COLUMNS: [CsvColumn; 20] = [
     ("sticks", |row| row.prediction.sticks.to_string()),
     ("closed_form_speed_m_s", |row| number(row.prediction.closed_form_speed_m_s)),
     ("turns_over", |row| row.turns_over.to_string()),
+    ("cog_horizontal_after_impact_m_s", |row| number(Some(row.prediction.cog.horizontal_after_impact_m_s))),
+    ("cog_vertical_after_impact_m_s", |row| number(Some(row.prediction.cog.vertical_after_impact_m_s))),
+    ("cog_horizontal_at_slap_down_m_s", |row| number(row.prediction.cog.horizontal_at_slap_down_m_s)),
+    ("cog_vertical_at_slap_down_m_s", |row| number(row.prediction.cog.vertical_at_slap_down_m_s)),
 ];
 
 /// Rows that one core writes at a time: enough that handing them out costs nothing.

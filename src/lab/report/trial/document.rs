@@ -3,7 +3,7 @@
 use super::pictures::{fate_words, largest_words, pooled, reading};
 use crate::data::Program;
 use crate::lab::campaign;
-use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
+use crate::lab::data::{Trial, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
 use crate::report::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
@@ -52,11 +52,10 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
 
 const HEADING: &str = "Acceptance of dropcheck on this machine";
 
-const RUNGS: &str = "The rungs of the reconstruction read single channels, planar motion, the flight with \
-                     its modes, or fit all inputs jointly. Random sound drops whose stated values are off \
-                     within their tolerances (in the picture they are exact): what each scene, of which a \
-                     drop may be several, takes; then, for each rung taken, what every rung says of the same \
-                     drops.";
+const RUNGS: &str = "The reconstruction takes planar motion, the flight with its modes, or a joint fit of \
+                     all inputs. Random sound drops whose stated values are off within their tolerances (in \
+                     the picture they are exact): what each scene, of which a drop may be several, takes; \
+                     then, for each rung taken, what every rung says of the same drops.";
 
 const LIMITS: &str = "Recordings: of another program. Campaign: random sound drops, the 95th percentile of \
                       each error in half-widths of its interval. Map: the damages. Held: the share of \
@@ -78,10 +77,10 @@ fn banner(trial: &Trial) -> Chapter {
     let beyond: Vec<&str> = trial.limits.iter().filter(|l| !l.is_kept()).map(|l| &l.name[..]).collect();
     let (kept, all) = (trial.limits.len() - beyond.len(), trial.limits.len());
     let (style, word, words) = if trial.is_accepted() {
-        let silent = hidden(trial).len();
+        let (silent, seen) = (hidden(trial).len(), seen(trial));
         let words = format!(
-            "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed: check \
-             these on site."
+            "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed{seen}: \
+             check these on site."
         );
         (Style::Green, "ACCEPTED", words)
     } else {
@@ -107,27 +106,35 @@ fn outcome(trial: &Trial) -> Chapter {
     banner(trial).with(ChapterPart::facts("", facts)).with_all(slow)
 }
 
-/// The damages that a recording may hide.
+/// The damages that a recording may hide: those of this run, and in a quick one all of the recorded full run.
 fn hidden(trial: &Trial) -> Vec<&TrialMap> {
-    trial.maps.iter().filter(|map| map.first(TrialFate::Silent).is_some()).collect()
+    trial.maps.iter().filter(|map| map.known.is_some() || map.is_seen_silent()).collect()
 }
 
-/// The same with what to do about them.
+/// How many of them a quick run saw, in words; nothing of a full one.
+fn seen(trial: &Trial) -> String {
+    let count = trial.maps.iter().filter(|map| map.is_seen_silent()).count();
+    trial.request.either(format!(" (known from a full run; this quick one saw {count})"), String::new())
+}
+
+/// The damages that a recording may hide, with the check at the site.
 fn silent(trial: &Trial) -> [ChapterPart; 2] {
     let hidden = hidden(trial);
-    let words = match hidden.len() {
-        0 => "Nothing that was tried is silent.".to_owned(),
-        count => format!(
-            "{count} of {} damages can leave an interval wrong although the data look sound:",
-            trial.maps.len()
-        ),
-    };
+    let (count, all, seen) = (hidden.len(), trial.maps.len(), seen(trial));
+    let words =
+        format!("{count} of {all} damages can leave an interval wrong although the data look sound{seen}:");
     let table = ReportTable::of(&hidden)
         .class("many")
         .code("damage", |map| &map.name[..])
         .text("what it is", |map| &map.what[..])
-        .text("what becomes of a drop", |map| fate_words(map))
-        .number("off by, half-widths", |map| largest_words(map))
+        .text("what becomes of a drop", |map| {
+            map.known.map_or_else(|| fate_words(map), |known| known.becomes.into())
+        })
+        .number("off by, half-widths", |map| {
+            map.known.map_or_else(|| largest_words(map), |known| known.off.into())
+        })
+        .text("in this run", |map| if map.is_seen_silent() { "silent" } else { "not seen" })
+        .if_any(trial.request.quick)
         .text("at the site", |map| &map.instead[..]);
     [ChapterPart::lead(words), table.into()]
 }
