@@ -24,6 +24,8 @@ pub struct CaskFile {
     pub drop: Drop,
     /// `[contact] friction`.
     pub contact: Contact,
+    /// `[contact] duration_s`, or what replaces it: how long the first contact lasts, s; `None` where nobody says.
+    pub contact_duration_s: Option<f64>,
     /// `[filter]`.
     pub filter: FilterChoice,
     /// `[tolerance]`.
