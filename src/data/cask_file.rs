@@ -24,7 +24,7 @@ pub struct CaskFile {
     pub drop: Drop,
     /// `[contact] friction`.
     pub contact: Contact,
-    /// `[contact] duration_s`, or what replaces it: how long the first contact lasts, s; `None` where nobody says.
+    /// How long the first contact lasts, s: `[contact] duration_s`, or what replaces it; `None`: not stated.
     pub contact_duration_s: Option<f64>,
     /// `[filter]`.
     pub filter: FilterChoice,

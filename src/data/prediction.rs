@@ -71,7 +71,7 @@ impl Prediction {
         self.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg.abs() >= UPRIGHT_DEG)
     }
 
-    /// Whether R slaps down after one impact of L, without a somersault: the scope of a study's largest value.
+    /// Whether R slaps down after one impact of L, without a somersault: the scope of a study's largest.
     ///
     /// Where L strikes again the values jump from angle to angle, hundreds of times between 47° and 90° for a
     /// rough rod with k = 1, and none of them is critical.

@@ -239,8 +239,8 @@ pub struct MonteCarlo {
     pub quantiles: Vec<QuantileCurves>,
 }
 
-/// Where to drop, and how fast the slap-down is, by the richest body that the cask file describes: of all draws,
-/// and of the cases asked for.
+/// Where to drop, and how fast the slap-down is, by the richest body that the cask file describes: of all
+/// draws, and of the cases asked for.
 ///
 /// Only a [single slap-down](Prediction::is_single_slap_down) counts.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -87,8 +87,8 @@ impl Pulse<'_> {
         strike_first_end(self.body, before, Contact::Rough, -1.0).after
     }
 
-    /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is: of a flat
-    /// body at once.
+    /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is: of a
+    /// flat body at once.
     fn end(&self, start: &State, force_n: f64, has_second_end: bool) -> (State, f64) {
         let (step_s, along_m) = (self.duration_s / f64::from(self.steps), second_end_m(self.body));
         let (mut at, mut time_s) = (*start, 0.0);

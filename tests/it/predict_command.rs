@@ -352,7 +352,7 @@ fn no_headline_is_below_a_value_of_its_own_study() {
     let lengths_s = [0.002, 0.004, 0.006, 0.008, 0.01, 0.012, 0.015, 0.02, 0.03, 0.04, 0.05];
     let of_paper =
         lengths_s.iter().enumerate().map(|(i, s)| (paper[i % 4].clone(), format!("--duration {s}")));
-    // Length, section, centre of gravity, drop and angle as no test has them: 29° and shallow falls among them.
+    // Length, section, centre of gravity, drop and angle; low falls among them.
     let drawn = [(1.2, 0.3, 0.55, 0.9, 29.0), (6.5, 0.4, 3.0, 0.4, 8.0), (2.4, 1.0, 1.2, 2.0, 60.0)];
     let drawn = drawn.map(|(length_m, height_m, cog_m, drop_m, angle_deg)| {
         let cask = format!("mass_kg = 900\nlength_m = {length_m}\nheight_m = {height_m}\ncog_m = {cog_m}");

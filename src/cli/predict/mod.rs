@@ -61,8 +61,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true,
         value_parser = words::angle_tolerance)]
     angle_tolerance: Option<f64>,
-    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: the cask
-    /// file's]
+    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: the
+    /// cask file's]
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true,
         value_parser = words::geometry_tolerance)]
     geometry_tolerance: Option<f64>,

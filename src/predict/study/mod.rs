@@ -17,8 +17,8 @@ use crate::data::{
 };
 use rayon::prelude::*;
 
-/// Angles of Monte Carlo: one degree, as narrow as the angle of a drop is known; beyond the angles of drops every
-/// third.
+/// Angles of Monte Carlo: one degree, finer than a drop can be rigged; beyond [`STEEP_DEG`] every third, as
+/// drops are flatter.
 const DRAW_ANGLES: usize = 91;
 const STEEP_DEG: f64 = 30.0;
 

@@ -11,13 +11,13 @@ use rayon::prelude::*;
 /// Probabilities of the quantiles.
 const PROBABILITIES: [f64; 5] = [0.025, 0.25, 0.5, 0.75, 0.975];
 
-/// Share of the draws of each length of the contact that must lie within their band for an angle to be robust.
+/// Share of the draws of each contact length that must lie within their band for an angle to be robust.
 ///
 /// A sixth of 1000 draws gives it with a standard error of 1.2 %: of other draws 95 % then do too.
 const ROBUST_SHARE: f64 = 0.975;
 
-/// Neighbours of a largest value, degrees: off by less, it has lost less than 0.1 % where the speed falls by a
-/// fiftieth a degree.
+/// A largest value has neighbours this near, degrees: it lacks less than 0.1 % where the speed falls by a
+/// hundredth a degree.
 const FINE_DEG: f64 = 0.1;
 
 /// One draw over the angle.

@@ -25,16 +25,16 @@ pub(super) struct Sample {
     pub angle_deg: f64,
     /// In the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
     pub values: [f64; 3],
-    /// What L does on the way to a single slap-down: while that stays the same the values are continuous in the
-    /// angle. `None` where there is none.
+    /// What L does on the way to a single slap-down: while that stays the same the values are continuous in
+    /// the angle. `None` where there is none.
     pub course: Option<FlightRegime>,
 }
 
 impl Sample {
     pub fn new(fall: &Fall, angle_deg: f64, prediction: &Prediction) -> Self {
         let value = |found: Option<f64>| found.unwrap_or(f64::NEG_INFINITY);
-        // Before L has left its energy is not lost yet; what comes down more slowly than it would fall from rest
-        // was tossed up.
+        // Before L has left its energy is not lost yet; what comes down more slowly than it would fall from
+        // rest was tossed up.
         let longest_s =
             (2.0 * fall.body.length_m * angle_deg.to_radians().sin() / fall.drop.gravity_m_s2).sqrt();
         let is_driven = |time_s: f64| (fall.drop.contact_duration_s..=longest_s).contains(&time_s);

@@ -22,8 +22,8 @@ const CURVE_ANGLES: u32 = 180;
 /// How long a first contact lasts that nobody states, s: of bare metal to a soft impact limiter.
 const CONTACT_S: (f64, f64) = (0.005, 0.03);
 
-/// Lengths of the contact that draws have in turn, evenly from end to end of the range: what holds for most draws
-/// can then be asked of each length, the shortest and the longest too.
+/// Lengths of the contact that draws have in turn, evenly from end to end of the range: what holds for most
+/// draws can then be asked of each length, the shortest and the longest too.
 pub(super) const CONTACT_LENGTHS: u32 = 6;
 
 /// What a study is asked of a cask file alone: the four borderline cases at its angle, curves from 0 to 90°.
@@ -88,8 +88,8 @@ pub(super) struct Draw {
     pub angle_error_deg: f64,
 }
 
-/// The draw of this index: k and friction uniform, the contact's length in turn, all else normal. It depends on the
-/// seed and its index alone, on any machine.
+/// The draw of this index: k and friction uniform, the contact's length in turn, all else normal. It depends
+/// on the seed and its index alone, on any machine.
 pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(uncertain.seed);
     rng.set_stream(u64::from(index));

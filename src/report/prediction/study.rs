@@ -74,8 +74,8 @@ fn limits(study: &Study) -> Vec<String> {
     let lasts_s = study.cask_file.drop.contact_duration_s;
     let [stated, drawn] = [(lasts_s, lasts_s), study.advice.drawn.contact_s].map(contact_length_words);
     let first = format!(
-        "One plane, a rigid cask and a rigid target. Tables and charts: {stated}, draws: {drawn}; a pulse is a \
-         half sine, and later impacts are impulses."
+        "One plane, a rigid cask and a rigid target. Tables and charts: {stated}, draws: {drawn}; a pulse is \
+         a half sine, and later impacts are impulses."
     );
     std::iter::once(first).chain(LIMITS.lines().map(str::to_owned)).collect()
 }
