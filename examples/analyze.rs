@@ -57,16 +57,6 @@ fn request(k: f64, u95: f64) -> StudyRequest {
         sweeps: Vec::new(),
         angles_deg: (0..=180).map(|half| f64::from(half) / 2.0).collect(),
         band_percent: 5.0,
-        uncertain: Uncertain {
-            k: (k - u95, k + u95),
-            friction: None,
-            angle_deg: 1.0,
-            drop_height: 0.003,
-            size: 0.005,
-            cog: 0.01,
-            inertia: 0.02,
-            draws: 1000,
-            seed: 1,
-        },
+        uncertain: Uncertain { k: (k - u95, k + u95), draws: 1000, seed: 1, ..Uncertain::default() },
     }
 }

@@ -114,6 +114,7 @@ class Asker {
 
 // Each answers while the others work: the form is typed in while a recording is read, and its curves are drawn.
 const forForm = new Asker();
+const forPrediction = new Asker();
 const forLook = new Asker();
 const forRecording = new Asker();
 

@@ -253,24 +253,24 @@ function foretold() {
     const isOpen = form.missing().some((path) => !path.startsWith("channel."));
     try {
       const tables = { cask, drop, contact, tolerance };
-      say("prediction", isOpen ? "" : predicted(await forForm.json({ op: "predict", cask: draft(tables) })));
+      await forPrediction.stop();
+      say("prediction", isOpen ? "" : predicted(await forPrediction.json({ op: "predict", cask: draft(tables) })));
     } catch {
       say("prediction", "");
     }
   }, 400);
 }
 
-function predicted({ predictions }) {
-  const model = predictions.some((one) => one.model === "body") ? "body" : "rod";
-  const all = predictions.filter((one) => one.model === model);
-  const slapping = all.filter((one) => one.slap_down_speed_m_s !== null);
-  if (!slapping.length) return "The model predicts no slap-down of this drop.";
-  const span = (many, key) => [Math.min, Math.max].map((end) => end(...many.map((one) => one[key])));
-  const [least, most] = span(slapping, "slap_down_speed_m_s").map((speed) => speed.toFixed(1));
-  const friction = new Set(all.map((one) => one.contact)).size > 1 ? " and friction from none to sticking" : "";
-  return `Predicted slap-down speed at ${shown(all[0].angle_deg)}°: ${least} to ${most} m/s, `
-    + `for a restitution k from ${span(all, "k").join(" to ")}${friction}`
-    + `${slapping.length < all.length ? "; in a part of this range the cask does not slap down." : "."}`;
+function predicted({ advice: { own_deg, own_range_m_s, own_share, drawn } }) {
+  const at = `at ${shown(own_deg)}°`;
+  if (own_range_m_s[0] === null) return `In most of the draws the model predicts no slap-down ${at}.`;
+  const [least, most] = own_range_m_s.map((speed) => speed.toFixed(2));
+  const range = (ends) => [...new Set(ends)].join(" to ");
+  const friction = drawn.friction ? ` and a friction of ${range(drawn.friction)}` : "";
+  const lasting = range(drawn.contact_s.map((seconds) => 1e3 * seconds));
+  return `Predicted slap-down speed ${at}: ${least} to ${most} m/s in 95 % of the draws, `
+    + `for a restitution k of ${range(drawn.k)}${friction}, with a first contact of ${lasting} ms`
+    + `${own_share < 1 ? "; in a part of this range the cask does not slap down." : "."}`;
 }
 
 // The result.

@@ -24,6 +24,8 @@ pub struct CaskFile {
     pub drop: Drop,
     /// `[contact] friction`.
     pub contact: Contact,
+    /// How long the first contact lasts, s: `[contact] duration_s`, or what replaces it; `None`: not stated.
+    pub contact_duration_s: Option<f64>,
     /// `[filter]`.
     pub filter: FilterChoice,
     /// `[tolerance]`.

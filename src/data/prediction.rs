@@ -70,6 +70,14 @@ impl Prediction {
     pub fn turns_over(&self) -> bool {
         self.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg.abs() >= UPRIGHT_DEG)
     }
+
+    /// Whether R slaps down after one impact of L, without a somersault: the scope of a study's largest.
+    ///
+    /// Where L strikes again the values jump from angle to angle, hundreds of times between 47° and 90° for a
+    /// rough rod with k = 1, and none of them is critical.
+    pub fn is_single_slap_down(&self) -> bool {
+        self.slap_down_speed_m_s.is_some() && self.first_end_impacts == 1 && !self.turns_over()
+    }
 }
 
 /// Velocity of the centre of gravity S, m/s: the rows of \[P\] Tables 1 and 2 that are about S.

@@ -68,18 +68,26 @@ pub struct StudyRequest {
 }
 
 /// What is not known before a test. Half-widths hold 95 % of a normal distribution, ranges are uniform.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Uncertain {
     /// Range of k.
     pub k: (f64, f64),
     /// Range of the Coulomb coefficient; `None`: the contact law is known.
     pub friction: Option<(f64, f64)>,
+    /// Range of the length of the first contact, s; 0 is an impulse.
+    pub contact_s: (f64, f64),
     /// Half-width of the angle, degrees.
     pub angle_deg: f64,
-    /// Half-width of the drop height, share of it.
-    pub drop_height: f64,
-    /// Half-width of length and section, share of each.
-    pub size: f64,
+    /// Half-width of the impact velocity, share of it.
+    pub impact_velocity: f64,
+    /// Half-width of the rotation at first contact, degrees a second.
+    pub angular_velocity_deg_s: f64,
+    /// Half-width of the sideways velocity at first contact, m/s.
+    pub horizontal_velocity_m_s: f64,
+    /// Half-width of the length, share of it.
+    pub length: f64,
+    /// Half-width of the section, share of it.
+    pub height: f64,
     /// Half-width of the centre of gravity, share of the length.
     pub cog: f64,
     /// Half-width of the inertia, share of it.
@@ -160,11 +168,8 @@ impl Criterion {
     pub const ALL: [Self; 3] = [Self::Speed, Self::VerticalSpeed, Self::EnergyRatio];
 }
 
-/// Where a criterion is largest for one body, contact law and k among the drops in which L strikes once
-/// before R; NaN if there is none.
-///
-/// Where L strikes again the outcome hangs on every bounce and jumps from angle to angle: no angle can be
-/// called critical there.
+/// Where a criterion is largest for one body, contact law and k among
+/// [single slap-downs](Prediction::is_single_slap_down); NaN if there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CriticalAngle {
     /// Rod or body.
@@ -187,7 +192,8 @@ pub struct CriticalAngle {
     pub further_impacts: Option<(f64, f64)>,
 }
 
-/// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a slap-down.
+/// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a
+/// [single slap-down](Prediction::is_single_slap_down).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct QuantileCurves {
     /// What.
@@ -202,8 +208,7 @@ pub struct QuantileCurves {
     pub q75: Vec<f64>,
     /// 97.5 %.
     pub q975: Vec<f64>,
-    /// Share of the draws whose value at this nominal angle lies, with one impact of L, within the band of
-    /// that draw's own largest.
+    /// Share of the draws whose value at this nominal angle lies within the band of that draw's own largest.
     pub in_band: Vec<f64>,
     /// 2.5, 25, 50, 75 and 97.5 % quantile of the critical angle over the draws, degrees.
     pub critical_angle_deg: [f64; 5],
@@ -228,10 +233,34 @@ pub struct MonteCarlo {
     pub band_percent: f64,
     /// Nominal inclinations, degrees.
     pub angle_deg: Vec<f64>,
-    /// Share of the draws without a slap-down at each angle.
+    /// Share of the draws without a single slap-down at each angle.
     pub no_slap_down: Vec<f64>,
     /// One entry a criterion.
     pub quantiles: Vec<QuantileCurves>,
+}
+
+/// Where to drop, and how fast the slap-down is, by the richest body that the cask file describes: of all
+/// draws, and of the cases asked for.
+///
+/// Only a [single slap-down](Prediction::is_single_slap_down) counts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Advice {
+    /// The widest of the robust bands of the speed, without what may be flat, degrees.
+    pub band_deg: Option<(f64, f64)>,
+    /// The largest slap-down speed, m/s: no draw, case or row exceeds it. NaN if there is none.
+    pub largest_m_s: f64,
+    /// Where it is, degrees.
+    pub at_deg: f64,
+    /// The angle of the request, degrees.
+    pub own_deg: f64,
+    /// Median of the draws there, m/s; NaN where fewer than half of them slap down.
+    pub own_m_s: f64,
+    /// Their 2.5 and 97.5 % quantile, m/s.
+    pub own_range_m_s: (f64, f64),
+    /// Share of the draws that slap down there.
+    pub own_share: f64,
+    /// What was drawn from.
+    pub drawn: Uncertain,
 }
 
 /// Everything that a study found.
@@ -257,6 +286,8 @@ pub struct Study {
     pub critical: Vec<CriticalAngle>,
     /// What the uncertain inputs make of it.
     pub monte_carlo: MonteCarlo,
+    /// Where to drop.
+    pub advice: Advice,
     /// How to measure the drop at the angle of the request; of the prediction alone `None`.
     pub plan: Option<MeasuringPlan>,
 }

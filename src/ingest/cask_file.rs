@@ -145,8 +145,9 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let cask = cask(&cask_table, path)?;
     let scale = cask_table.given("scale")?;
     let contact_table = root.table("contact")?;
-    let contact_duration_s = contact_table.given("duration_s")?.unwrap_or(0.0);
-    let drop = Drop { contact_duration_s, ..drop(&root.required_table("drop")?, &cask)? };
+    let contact_duration_s = contact_table.given("duration_s")?;
+    let lasts_s = contact_duration_s.unwrap_or(0.0);
+    let drop = Drop { contact_duration_s: lasts_s, ..drop(&root.required_table("drop")?, &cask)? };
     let contact = contact(&contact_table)?;
     let filter = filter(&root.table("filter")?)?;
     let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
@@ -167,6 +168,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     Ok(CaskFile {
         path: path.to_owned(),
         scale,
+        contact_duration_s,
         filter,
         tolerances,
         corrections,

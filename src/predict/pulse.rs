@@ -15,6 +15,8 @@ const PARTS: f64 = 32.0;
 /// Rounds of the search for the force, and the rebound that ends it, m/s: one more secant follows it.
 const ROUNDS: usize = 30;
 const CLOSE_M_S: f64 = 1e-5;
+/// R lower than this above the target as L strikes strikes with it, m.
+const FLAT_M: f64 = 1e-9;
 /// A corner slower than this does not slide, m/s.
 const STOPPED_M_S: f64 = 1e-9;
 
@@ -85,10 +87,14 @@ impl Pulse<'_> {
         strike_first_end(self.body, before, Contact::Rough, -1.0).after
     }
 
-    /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is.
+    /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is: of a
+    /// flat body at once.
     fn end(&self, start: &State, force_n: f64, has_second_end: bool) -> (State, f64) {
         let (step_s, along_m) = (self.duration_s / f64::from(self.steps), second_end_m(self.body));
         let (mut at, mut time_s) = (*start, 0.0);
+        if has_second_end && start.corner(self.body, along_m).height_m <= FLAT_M {
+            return (at, time_s);
+        }
         for i in 1..=self.steps {
             let until_s = f64::from(i) * step_s;
             while time_s < until_s {
@@ -255,5 +261,53 @@ mod tests {
         }
         // A smooth corner that is thrown back at full speed for 0.2 s, four times what R needs to come down.
         assert!(none <= 1, "{none}");
+    }
+
+    /// Draws between 0 and 1, a low-discrepancy sequence for each dimension.
+    fn evenly(i: u32, irrational: f64) -> f64 {
+        (f64::from(i) * irrational).fract()
+    }
+
+    #[test]
+    fn an_impulse_is_slower_where_l_leaves_before_r_strikes() {
+        let body = cask();
+        let (mut left, mut smooth_left, mut pressed) = (0, 0, 0);
+        for i in 1..=1200 {
+            let (angle_deg, k) = (1.0 + 24.0 * evenly(i, 2_f64.sqrt()), evenly(i, 3_f64.sqrt()));
+            let drop = lasting(angle_deg, 0.005 + 0.025 * evenly(i, 5_f64.sqrt()));
+            let contact = [Contact::Rough, Contact::Coulomb(0.3), Contact::Smooth][(i % 3) as usize];
+            let at = |lasts_s| predict(&body, &Drop { contact_duration_s: lasts_s, ..drop }, contact, k);
+            let (impulse, pulse) = (at(0.0), at(drop.contact_duration_s));
+            if !impulse.is_single_slap_down() || !pulse.is_single_slap_down() {
+                continue;
+            }
+            let rises_m = body.length_m * drop.angle_rad.sin();
+            let share = drop.contact_duration_s * drop.impact_velocity_m_s / rises_m;
+            let has_left = pulse.flight_time_s >= Some(drop.contact_duration_s);
+            let gain = pulse.slap_down_speed_m_s.expect("R") / impulse.slap_down_speed_m_s.expect("R") - 1.0;
+            // The numbers of docs/physics.md, (41).
+            assert!(share > 0.6 || has_left, "{angle_deg} {share}");
+            assert!(share < 0.9 || !has_left, "{angle_deg} {share}");
+            if has_left && contact != Contact::Smooth {
+                left += 1;
+                assert!(gain > -1e-6, "{contact} {angle_deg}° {k}: {gain}");
+            } else if has_left {
+                smooth_left += 1;
+                assert!(gain > -0.008, "{angle_deg}° {k}: {gain}");
+            } else if share > 1.2 {
+                pressed += 1;
+                assert!(gain < -0.03, "{contact} {angle_deg}° {k}: {gain}");
+            }
+        }
+        assert!(left > 500 && smooth_left > 200 && pressed > 30, "{left} {smooth_left} {pressed}");
+    }
+
+    #[test]
+    fn a_flat_body_strikes_with_both_ends_at_once() {
+        let flat = predict(&cask(), &lasting(0.0, 0.02), Contact::Rough, 0.5);
+        assert_eq!(flat.flight_time_s, Some(0.0));
+        // As it falls, without rotation.
+        let fallen_m_s = lasting(0.0, 0.02).impact_velocity_m_s;
+        assert!((flat.slap_down_speed_m_s.expect("R") - fallen_m_s).abs() < 1e-9, "{flat:?}");
     }
 }

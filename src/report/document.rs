@@ -110,7 +110,7 @@ pub(crate) enum PartContent {
     /// Photographs of the test.
     Photographs(Vec<Photo>),
     /// Sentences one below the other.
-    List(Vec<&'static str>),
+    List(Vec<String>),
     /// Two columns where there is room.
     Beside([Vec<ChapterPart>; 2]),
 }

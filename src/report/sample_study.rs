@@ -2,8 +2,8 @@
 
 use super::sample;
 use crate::data::{
-    AngleCurve, Body, BodyModel, BodyPath, CogVelocity, Contact, Criterion, CriticalAngle, FlightRegime,
-    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study,
+    Advice, AngleCurve, Body, BodyModel, BodyPath, CogVelocity, Contact, Criterion, CriticalAngle,
+    FlightRegime, Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study,
     StudyRequest, Sweep, SweepVariable, Uncertain,
 };
 
@@ -81,9 +81,13 @@ fn uncertain() -> Uncertain {
     Uncertain {
         k: (0.0, 1.0),
         friction: Some((0.2, 0.6)),
+        contact_s: (0.005, 0.03),
         angle_deg: 1.0,
-        drop_height: 0.005,
-        size: 0.005,
+        impact_velocity: 0.003,
+        angular_velocity_deg_s: 1.0,
+        horizontal_velocity_m_s: 0.1,
+        length: 0.005,
+        height: 0.005,
         cog: 0.01,
         inertia: 0.05,
         draws: 2000,
@@ -126,6 +130,16 @@ fn of(request: StudyRequest) -> Study {
         critical: cases.iter().flat_map(|case| Criterion::ALL.map(|c| critical(*case, c))).collect(),
         monte_carlo: monte_carlo(&request),
         plan: None,
+        advice: Advice {
+            band_deg: Some((5.0, 19.0)),
+            largest_m_s: 25.0,
+            at_deg: 12.0,
+            own_deg: request.angle_deg,
+            own_m_s: 20.68,
+            own_range_m_s: (17.68, 23.68),
+            own_share: 1.0,
+            drawn: request.uncertain,
+        },
         request,
     }
 }

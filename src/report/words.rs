@@ -86,18 +86,6 @@ pub(super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
     if bands.is_empty() { MISSING.to_owned() } else { bands.join(", ") }
 }
 
-/// The widest of many bands, in order, for a narrow column; the rest as an ellipsis.
-pub(super) fn widest_bands_words(bands_deg: &[(f64, f64)], most: usize) -> String {
-    if bands_deg.len() <= most {
-        return bands_words(bands_deg);
-    }
-    let mut widest = bands_deg.to_vec();
-    widest.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
-    widest.truncate(most);
-    widest.sort_by(|a, b| a.0.total_cmp(&b.0));
-    format!("{}, …", bands_words(&widest))
-}
-
 /// The band that holds `angle_deg`, with an ellipsis where there are others.
 pub(super) fn band_around_words(bands_deg: &[(f64, f64)], angle_deg: f64) -> String {
     let off = |band: &(f64, f64)| (band.0 - angle_deg).max(angle_deg - band.1);
@@ -125,9 +113,10 @@ pub(super) fn range_words((from, to): (f64, f64)) -> String {
     if from == to { from } else { format!("{from} to {to}") }
 }
 
-/// A range that is drawn from evenly, or its one value.
-fn spread_words(range: (f64, f64)) -> String {
-    if range.0 < range.1 { format!("{} (uniform)", range_words(range)) } else { range_words(range) }
+/// A range that is drawn from evenly, or its one value, with its unit.
+fn spread_words(range: (f64, f64), unit: &str) -> String {
+    let evenly = if range.0 < range.1 { " (uniform)" } else { "" };
+    format!("{}{unit}{evenly}", range_words(range))
 }
 
 /// The uncertain inputs in one sentence.
@@ -135,31 +124,38 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
     let share = |value: f64| format!("± {} %", plain(value * 100.0, 3));
     let friction = u.friction.map_or_else(
         || format!("contact {}", contact_words(contact)),
-        |range| format!("μ {}", spread_words(range)),
+        |range| format!("μ {}", spread_words(range, "")),
     );
     format!(
-        "Drawn: k {}, {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity \
-         {} of the length, inertia {} (95 % of normal distributions); seed {}.",
-        spread_words(u.k),
+        "Drawn: k {}, {friction}, {}; drop angle ± {}°, impact velocity {}, rotation ± {}°/s, sideways \
+         velocity ± {} m/s, length {}, section {}, centre of gravity {} of the length, inertia {} (95 % of \
+         normal distributions); seed {}.",
+        spread_words(u.k, ""),
+        contact_length_words(u.contact_s),
         plain(u.angle_deg, 3),
-        share(u.drop_height),
-        share(u.size),
+        share(u.impact_velocity),
+        plain(u.angular_velocity_deg_s, 3),
+        plain(u.horizontal_velocity_m_s, 3),
+        share(u.length),
+        share(u.height),
         share(u.cog),
         share(u.inertia),
         u.seed
     )
 }
 
+/// How long the first contact lasts in the draws.
+pub(super) fn contact_length_words((from_s, to_s): (f64, f64)) -> String {
+    if to_s > 0.0 {
+        format!("first contact {}", spread_words((1e3 * from_s, 1e3 * to_s), " ms"))
+    } else {
+        "first contact an impulse".to_owned()
+    }
+}
+
 /// A rung of the ladder in a narrow column.
 pub(super) fn rung_short(rung: Rung) -> String {
     json_word(rung).replace('_', " ")
-}
-
-/// The value at the angle nearest to `at_deg`.
-pub(super) fn nearest(angles_deg: &[f64], values: &[f64], at_deg: f64) -> Option<f64> {
-    let off = |angle: &f64| (angle - at_deg).abs();
-    let pairs = angles_deg.iter().zip(values);
-    pairs.min_by(|a, b| off(a.0).total_cmp(&off(b.0))).map(|(_, v)| *v).filter(|v| v.is_finite())
 }
 
 #[cfg(test)]
@@ -173,8 +169,6 @@ mod tests {
         assert_eq!(bands_words(&[(15.01, 15.04)]), "15");
         assert_eq!(degrees(f64::NAN), "–");
         let bands = [(1.0, 2.0), (5.0, 9.0), (20.0, 20.0), (30.0, 40.0)];
-        assert_eq!(widest_bands_words(&bands, 2), "5–9, 30–40, …");
-        assert_eq!(widest_bands_words(&bands, 4), "1–2, 5–9, 20, 30–40");
         assert_eq!(band_around_words(&bands, 6.0), "5–9, …");
         assert_eq!(band_around_words(&bands[..1], 6.0), "1–2");
     }

@@ -175,12 +175,16 @@ def filled_in(driver, command, folder):
         typed(driver, text)
     typed(driver, Keys.TAB)
     soon("nothing is missing", lambda: told(driver, "form-word") == "Nothing is missing.")
-    sentence = "Predicted slap-down speed at 15°: 18.4 to 26.8 m/s"
+    sentence = "Predicted slap-down speed at 15°: "
     soon("a prediction in a sentence", lambda: told(driver, "prediction").startswith(sentence))
     to(driver, "save-cask")
     typed(driver, Keys.ENTER)
     soon("the cask file is saved", (folder / "cask.toml").exists)
     saved = (folder / "cask.toml").read_text()
+    words = [command, "predict", "--cask", folder / "cask.toml", "--json", "-"]
+    said = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    least, most = json.loads(said)["advice"]["own_range_m_s"]
+    held("the prediction is the command's", f" {least:.2f} to {most:.2f} m/s" in told(driver, "prediction"))
     init = [command, "init", "anf18-json.mcap"]
     hand = by_hand(subprocess.run(init, cwd=EXAMPLES, capture_output=True, text=True, check=True).stdout)
     held("the file is the one of init and a hand", saved == hand,

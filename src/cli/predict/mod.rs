@@ -34,7 +34,8 @@ pub struct Arguments {
     #[arg(long, value_name = "C", help_heading = CASES, allow_hyphen_values = true,
         value_parser = words::contact)]
     contact: Option<Contact>,
-    /// How long the first impact lasts, seconds: 20 ms are 0.02 [default: the cask file's, else an impulse]
+    /// How long the first impact lasts, seconds: 20 ms are 0.02 [default: the cask file's, else an impulse,
+    /// and 5 to 30 ms in the draws]
     #[arg(long, value_name = "S", help_heading = CASES, allow_hyphen_values = true,
         value_parser = words::duration)]
     duration: Option<f64>,
@@ -56,12 +57,12 @@ pub struct Arguments {
     #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true,
         value_parser = words::friction_range)]
     friction_range: Option<(f64, f64)>,
-    /// Tolerance of the angle, degrees [default: 1]
+    /// Tolerance of the angle, degrees [default: the cask file's]
     #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true,
         value_parser = words::angle_tolerance)]
     angle_tolerance: Option<f64>,
-    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: 0.5,
-    /// and 1 for the centre of gravity]
+    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: the
+    /// cask file's]
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true,
         value_parser = words::geometry_tolerance)]
     geometry_tolerance: Option<f64>,
@@ -83,7 +84,9 @@ pub struct Arguments {
 /// The cask file that is named, and what is asked of it.
 pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
     let mut file = crate::ingest::cask_file::parse(&arguments.cask)?;
-    file.drop.contact_duration_s = arguments.duration.unwrap_or(file.drop.contact_duration_s);
+    if let Some(lasts_s) = arguments.duration {
+        (file.contact_duration_s, file.drop.contact_duration_s) = (Some(lasts_s), lasts_s);
+    }
     let request = request::request(arguments, &file)?;
     Ok((file, request))
 }

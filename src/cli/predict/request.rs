@@ -114,10 +114,9 @@ fn curve_angles_deg(swept: &[f64]) -> Option<Vec<f64>> {
     Some(evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil()))
 }
 
-/// What Monte Carlo draws from: the cask's usual tolerances, each replaced by what the options say of it.
+/// What Monte Carlo draws from: what the cask file says, each replaced by what the options say of it.
 fn uncertain(arguments: &Arguments, usual: Uncertain) -> Uncertain {
-    let percent = |percent: f64| percent / 100.0;
-    let geometry = arguments.geometry_tolerance.map(percent);
+    let geometry = arguments.geometry_tolerance.map(|percent| percent / 100.0);
     let swept = |variable| swept(&arguments.sweep, variable).and_then(ends);
     Uncertain {
         k: arguments.k_range.or(arguments.k.map(|k| (k, k))).or(swept(SweepVariable::K)).unwrap_or(usual.k),
@@ -126,7 +125,8 @@ fn uncertain(arguments: &Arguments, usual: Uncertain) -> Uncertain {
             .or(swept(SweepVariable::Friction))
             .or(usual.friction.filter(|_| arguments.contact.is_none())),
         angle_deg: arguments.angle_tolerance.unwrap_or(usual.angle_deg),
-        size: geometry.unwrap_or(usual.size),
+        length: geometry.unwrap_or(usual.length),
+        height: geometry.unwrap_or(usual.height),
         cog: geometry.unwrap_or(usual.cog),
         draws: arguments.draws,
         seed: arguments.seed.unwrap_or(usual.seed),
@@ -212,8 +212,9 @@ mod tests {
     #[test]
     fn monte_carlo_draws_from_ranges_sweeps_and_options_in_this_order() {
         let usual = predict::default_uncertain(&file());
-        let stated = (usual.k, usual.angle_deg, usual.size, usual.cog, usual.seed);
-        assert_eq!(stated, ((0.0, 1.0), 1.0, 0.005, 0.01, 1), "--help states other defaults");
+        assert_eq!((usual.k, usual.seed), ((0.0, 1.0), 1), "--help states other defaults");
+        // The page asks by the same.
+        assert_eq!(asked("").unwrap(), predict::usual_request(&file()));
         for (options, k, friction) in [
             ("", usual.k, Some((0.3, 0.3))),
             ("--k 0.5", (0.5, 0.5), Some((0.3, 0.3))),
@@ -226,12 +227,9 @@ mod tests {
             assert_eq!((uncertain.k, uncertain.friction), (k, friction), "{options}");
         }
         let asked = asked("--angle-tolerance 2 --geometry-tolerance 3 --draws 7 --seed 9 --band 10").unwrap();
-        let Uncertain { angle_deg, size, cog, draws, seed, .. } = asked.uncertain;
-        assert_eq!((angle_deg, size, cog, draws, seed), (2.0, 0.03, 0.03, 7, 9));
-        assert_eq!(
-            (asked.uncertain.drop_height, asked.uncertain.inertia),
-            (usual.drop_height, usual.inertia)
-        );
+        let Uncertain { angle_deg, length, height, cog, inertia, draws, seed, .. } = asked.uncertain;
+        assert_eq!((angle_deg, length, height, cog, draws, seed), (2.0, 0.03, 0.03, 0.03, 7, 9));
+        assert_eq!((asked.uncertain.impact_velocity, inertia), (usual.impact_velocity, usual.inertia));
         assert!((asked.band_percent - 10.0).abs() < f64::EPSILON);
     }
 

@@ -30,9 +30,12 @@ pub fn restitution(text: &str) -> Result<f64, String> {
 }
 
 pub fn duration(text: &str) -> Result<f64, String> {
-    let range =
-        format!("the first impact lasts 0 (an impulse) to {LONGEST_CONTACT_S} seconds: 20 ms are 0.02");
-    within(text, 0.0, LONGEST_CONTACT_S, &range)
+    let range = format!(
+        "the first impact lasts 0 (an impulse), or {SHORTEST_CONTACT_S} to {LONGEST_CONTACT_S} seconds: 20 ms are \
+         0.02"
+    );
+    let duration_s = within(text, 0.0, LONGEST_CONTACT_S, &range)?;
+    if duration_s == 0.0 || duration_s >= SHORTEST_CONTACT_S { Ok(duration_s) } else { Err(range) }
 }
 
 fn within(text: &str, least: f64, most: f64, range: &str) -> Result<f64, String> {
@@ -122,7 +125,7 @@ mod tests {
         assert_eq!((restitution("0"), restitution("1")), (Ok(0.0), Ok(1.0)));
         assert_eq!(contact("0"), Ok(Contact::Coulomb(0.0)));
         assert_eq!((duration("0"), duration("0,2")), (Ok(0.0), Ok(0.2)));
-        assert!(duration("20").unwrap_err().contains("0.02"));
+        assert!(["20", "1e-6"].iter().all(|wrong| duration(wrong).unwrap_err().contains("0.02")));
         assert_eq!(contact("Rough"), Ok(Contact::Rough));
         assert_eq!((band("50"), draws("0"), draws("1000000")), (Ok(50.0), Ok(0), Ok(1_000_000)));
         assert_eq!(friction_range("0:0"), Ok((0.0, 0.0)));

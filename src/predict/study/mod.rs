@@ -1,5 +1,6 @@
 //! A cask file and a request to rows, curves, critical angles and Monte Carlo.
 
+mod advice;
 mod critical;
 mod curves;
 mod monte_carlo;
@@ -14,11 +15,12 @@ use super::{Fall, bodies, ladder, predict};
 use crate::data::{
     Body, BodyModel, BodyPath, CaskFile, Contact, Drop, Ladder, Prediction, Study, StudyRequest,
 };
-use peak::Bands;
 use rayon::prelude::*;
 
-/// Angles of Monte Carlo: one degree, as narrow as the angle of a drop is known.
+/// Angles of Monte Carlo: one degree, finer than a drop can be rigged; beyond [`STEEP_DEG`] every third, as
+/// drops are flatter.
 const DRAW_ANGLES: usize = 91;
+const STEEP_DEG: f64 = 30.0;
 
 /// All that a study of the drop angle holds, on all cores; the same for any number of them.
 ///
@@ -32,18 +34,25 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         .zip(&traced)
         .map(|(fall, predictions)| {
             let curve = curves::curve(fall, &request.angles_deg, predictions);
-            (curve, critical::critical_angles(fall, Bands::of(request), (&request.angles_deg, predictions)))
+            let over = (&request.angles_deg[..], &predictions[..]);
+            (curve, critical::critical_angles(fall, request.band_percent, over))
         })
         .unzip();
+    let (critical, rows) = (critical.concat(), rows::rows(cask_file, request));
     let drawn_deg = thinned(&request.angles_deg, DRAW_ANGLES);
+    let contact = request.contacts.first().copied().unwrap_or(cask_file.contact);
+    let base = Fall { body: richest(cask_file), drop: cask_file.drop, contact, k: 0.0 };
+    let draws = monte_carlo::traced(&base, request, &drawn_deg);
+    let monte_carlo = monte_carlo::monte_carlo(&base, request, &drawn_deg, &draws);
     Study {
-        rows: rows::rows(cask_file, request),
+        advice: advice::advice(request, (&monte_carlo, &draws), &critical, &rows),
+        rows,
         paths: paths(&falls, request.angle_deg),
         ladders: ladders(cask_file, request),
         curves,
         sections: curves::sections(cask_file, &request.angles_deg),
-        critical: critical.into_iter().flatten().collect(),
-        monte_carlo: monte_carlo::monte_carlo(cask_file, request, &drawn_deg),
+        critical,
+        monte_carlo,
         plan: None,
         cask_file: cask_file.clone(),
         request: request.clone(),
@@ -123,11 +132,11 @@ fn raised(drop: &Drop, height_m: f64) -> Drop {
 
 /// At most `most` of the angles (2 or more), evenly picked, the first and last among them.
 fn thinned(angles_deg: &[f64], most: usize) -> Vec<f64> {
-    if angles_deg.len() <= most {
-        return angles_deg.to_vec();
-    }
-    let last = angles_deg.len() - 1;
-    (0..most).map(|i| angles_deg[i * last / (most - 1)]).collect()
+    let most = most.min(angles_deg.len());
+    let last = angles_deg.len().saturating_sub(1);
+    let picked = (0..most).map(|i| (i, angles_deg[i * last / (most - 1)]));
+    let is_drawn = |&(i, angle_deg): &(usize, f64)| angle_deg <= STEEP_DEG || i % 3 == 0 || i + 1 == most;
+    picked.filter(is_drawn).map(|(_, angle_deg)| angle_deg).collect()
 }
 
 #[cfg(test)]
@@ -153,17 +162,7 @@ mod tests {
 
     /// Nothing is uncertain but k.
     pub(super) fn uncertain(k: (f64, f64), draws: u32) -> Uncertain {
-        Uncertain {
-            k,
-            friction: None,
-            angle_deg: 0.0,
-            drop_height: 0.0,
-            size: 0.0,
-            cog: 0.0,
-            inertia: 0.0,
-            draws,
-            seed: 1,
-        }
+        Uncertain { k, draws, seed: 1, ..Uncertain::default() }
     }
 
     pub(super) fn request(contacts: Vec<Contact>, ks: Vec<f64>, angles_deg: Vec<f64>) -> StudyRequest {
@@ -217,12 +216,17 @@ mod tests {
     }
 
     #[test]
-    fn thinning_keeps_both_ends() {
-        assert_eq!(thinned(&steps(180, 90.0), 181), steps(180, 90.0));
-        assert_eq!(thinned(&steps(180, 90.0), 91), steps(90, 90.0));
-        let fine = thinned(&steps(1000, 90.0), 91);
-        assert_eq!((fine.len(), fine[0], fine[90]), (91, 0.0, 90.0));
-        assert!(fine.windows(2).all(|w| w[0] < w[1]));
+    fn thinning_keeps_both_ends_and_every_third_steep_angle() {
+        let flat: Vec<f64> = thinned(&steps(180, 90.0), 91).into_iter().filter(|a| *a <= STEEP_DEG).collect();
+        assert_eq!(flat, steps(30, 30.0));
+        for angles_deg in [steps(180, 90.0), steps(1000, 90.0), steps(7, 70.0)] {
+            let thin = thinned(&angles_deg, 91);
+            assert_eq!((thin.first(), thin.last()), (angles_deg.first(), angles_deg.last()));
+            assert!(
+                thin.len() <= 52 && thin.windows(2).all(|w| w[0] < w[1] && w[1] - w[0] <= 31.0),
+                "{thin:?}"
+            );
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Values over the angle to their largest one, where it is, and the bands of angles near it.
 
-use crate::data::{FlightRegime, Prediction, StudyRequest};
+use super::Fall;
+use crate::data::{FlightRegime, Prediction};
 
 /// Width to which a jump is bracketed, degrees: the value moves by less than 1e-6 m/s over it.
 const JUMP_DEG: f64 = 1e-7;
@@ -24,48 +25,37 @@ pub(super) struct Sample {
     pub angle_deg: f64,
     /// In the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
     pub values: [f64; 3],
-    /// What L does on the way if it strikes once before R: while that stays the same the values are
-    /// continuous in the angle.
-    ///
-    /// `None` without a slap-down, where the cask turns over before R strikes, which is no slap-down of a
-    /// drop test, and where L strikes again: there the values jump from angle to angle, hundreds of times
-    /// between 47° and 90° for a rough rod with k = 1, and none of them is critical.
+    /// What L does on the way to a single slap-down: while that stays the same the values are continuous in
+    /// the angle. `None` where there is none.
     pub course: Option<FlightRegime>,
 }
 
 impl Sample {
-    pub fn new(angle_deg: f64, prediction: &Prediction) -> Self {
+    pub fn new(fall: &Fall, angle_deg: f64, prediction: &Prediction) -> Self {
         let value = |found: Option<f64>| found.unwrap_or(f64::NEG_INFINITY);
-        let comes_straight = prediction.slap_down_speed_m_s.is_some() && !prediction.turns_over();
-        let strikes_once = comes_straight && prediction.first_end_impacts == 1;
+        // Before L has left its energy is not lost yet; what comes down more slowly than it would fall from
+        // rest was tossed up.
+        let longest_s =
+            (2.0 * fall.body.length_m * angle_deg.to_radians().sin() / fall.drop.gravity_m_s2).sqrt();
+        let is_driven = |time_s: f64| (fall.drop.contact_duration_s..=longest_s).contains(&time_s);
         Self {
             angle_deg,
             values: [
                 value(prediction.slap_down_speed_m_s),
                 value(prediction.vertical_velocity_m_s.map(|v| -v)),
-                value(prediction.energy_ratio),
+                value(prediction.energy_ratio.filter(|_| prediction.flight_time_s.is_some_and(is_driven))),
             ],
-            course: strikes_once.then_some(prediction.regime),
+            course: prediction.is_single_slap_down().then_some(prediction.regime),
         }
+    }
+
+    pub fn at(fall: &Fall, angle_deg: f64) -> Self {
+        Self::new(fall, angle_deg, &fall.at(angle_deg))
     }
 
     /// A criterion where an angle can be critical; minus infinity where none can.
     pub fn critical(&self, criterion: usize) -> f64 {
         if self.course.is_some() { self.values[criterion] } else { f64::NEG_INFINITY }
-    }
-}
-
-/// How near to the largest the angles of a band are, percent of it, and how wide a band must be, degrees.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bands {
-    pub percent: f64,
-    pub least_deg: f64,
-}
-
-impl Bands {
-    /// As wide as the angle of a drop is known.
-    pub fn of(request: &StudyRequest) -> Self {
-        Self { percent: request.band_percent, least_deg: 2.0 * request.uncertain.angle_deg }
     }
 }
 
@@ -102,52 +92,19 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
     all
 }
 
-/// The largest value of one criterion over samples that hold both sides of each jump, and the bands near it.
-///
-/// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next
-/// one is taken, which no flank of it is.
-pub(super) fn peak(
-    samples: &[Sample],
-    criterion: usize,
-    at: &impl Fn(f64) -> Sample,
-    bands: Bands,
-) -> Option<Peak> {
-    let mut left = samples.to_vec();
-    loop {
-        let mut peak = highest(&left, criterion, at, bands.percent)?;
-        let own = peak.bands_deg.iter().find(|band| (band.0..=band.1).contains(&peak.angle_deg));
-        let is_narrow = |band: &(f64, f64)| band.1 - band.0 < bands.least_deg;
-        let Some((low_deg, high_deg)) = own.copied().filter(is_narrow) else {
-            peak.bands_deg.retain(|band| !is_narrow(band));
-            return Some(peak);
-        };
-        // A band may lie between two samples: then the nearest one goes.
-        let off_deg = |s: &Sample| (s.angle_deg - peak.angle_deg).abs();
-        let is_left = left.iter().filter(|s| s.course.is_some());
-        let nearest_deg = is_left.map(off_deg).fold(f64::INFINITY, f64::min);
-        let is_top = |s: &Sample| (low_deg..=high_deg).contains(&s.angle_deg) || off_deg(s) <= nearest_deg;
-        let (mut first, mut last) = (left.iter().position(is_top)?, left.iter().rposition(is_top)?);
-        let falls = |from: usize, to: usize| {
-            left.get(to).is_some_and(|s| s.course == left[from].course)
-                && left[to].critical(criterion) < left[from].critical(criterion)
-        };
-        while first > 0 && falls(first, first - 1) {
-            first -= 1;
-        }
-        while falls(last, last + 1) {
-            last += 1;
-        }
-        left[first..=last].iter_mut().for_each(|sample| sample.course = None);
-    }
-}
-
-/// The highest of all maxima.
+/// The largest value of one criterion over samples that hold both sides of each jump, and the bands within
+/// `percent` of it.
 ///
 /// Every hump of the samples that may reach the highest is followed between its neighbours by golden section.
 /// At a jump the value on the higher side counts: it is the supremum. At the border it is the border's; of a
 /// plateau its lowest sampled angle. A hump that lies between two samples without lifting either above its
-/// neighbours is not seen. `None` where L strikes once at no angle.
-fn highest(samples: &[Sample], criterion: usize, at: &impl Fn(f64) -> Sample, percent: f64) -> Option<Peak> {
+/// neighbours is not seen. `None` where there is no single slap-down at any angle.
+pub(super) fn peak(
+    samples: &[Sample],
+    criterion: usize,
+    at: &impl Fn(f64) -> Sample,
+    percent: f64,
+) -> Option<Peak> {
     let value = |i: usize| samples[i].critical(criterion);
     let highest = (0..samples.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
     let mut top = (f64::NAN, f64::NEG_INFINITY);
@@ -211,7 +168,7 @@ fn golden(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f
 
 /// Stretches in which `holds`, from marks at ascending angles; ends between two marks by bisection, on the
 /// side that holds.
-pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
     let edge = |inside: f64, outside: f64| {
         let (mut inside, mut outside) = (inside, outside);
         while (outside - inside).abs() > EDGE_DEG {
@@ -248,7 +205,7 @@ mod tests {
             Sample { angle_deg, values: [value; 3], course }
         };
         let samples: Vec<Sample> = (0..=180).map(|i| at(f64::from(i) / 2.0)).collect();
-        peak(&with_jumps(&samples, &at), 0, &at, Bands { percent: 1.0, least_deg: 0.0 })
+        peak(&with_jumps(&samples, &at), 0, &at, 1.0)
     }
 
     #[test]
@@ -259,7 +216,7 @@ mod tests {
                 impact_velocity_m_s: 13.288,
                 ..crate::data::Drop::of_height(9.0, angle_deg.to_radians())
             };
-            Sample::new(angle_deg, &crate::predict::predict(&body, &drop, crate::data::Contact::Smooth, 1.0))
+            Sample::at(&Fall { body, drop, contact: crate::data::Contact::Smooth, k: 1.0 }, angle_deg)
         };
         // About 66° it flies for two seconds and turns over twice, faster than at the 18° where it strikes on
         // its first way down.

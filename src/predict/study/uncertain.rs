@@ -1,8 +1,10 @@
-//! What is not known before a test to its default ranges, and to casks and drops drawn from them.
+//! What is not known before a test to its ranges and tolerances, and to casks and drops drawn from them.
 
-use super::{Fall, raised, resized};
+use super::super::impact::strike_first_end;
+use super::super::state::State;
+use super::{Fall, resized};
 use crate::data::shown::rounded;
-use crate::data::{CaskFile, Contact, StudyRequest, Uncertain};
+use crate::data::{CaskFile, Contact, Drop, StudyRequest, Uncertain};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -17,53 +19,65 @@ const LEAST_SHARE: f64 = 0.1;
 /// Curves are drawn at every half degree: finer than a drop can be rigged.
 const CURVE_ANGLES: u32 = 180;
 
+/// How long a first contact lasts that nobody states, s: of bare metal to a soft impact limiter.
+const CONTACT_S: (f64, f64) = (0.005, 0.03);
+
+/// Lengths of the contact that draws have in turn, evenly from end to end of the range: what holds for most
+/// draws can then be asked of each length, the shortest and the longest too.
+pub(super) const CONTACT_LENGTHS: u32 = 6;
+
 /// What a study is asked of a cask file alone: the four borderline cases at its angle, curves from 0 to 90°.
 pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
-    let usual = default_uncertain(cask_file);
-    // Rough and smooth bound the table; what is drawn has the contact of the cask file.
-    let friction = match cask_file.contact {
-        Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
-        Contact::Smooth => Some((0.0, 0.0)),
-        Contact::Rough | Contact::Unknown => usual.friction,
-    };
     StudyRequest {
         contacts: vec![Contact::Rough, Contact::Smooth],
         ks: vec![0.0, 1.0],
         angle_deg: rounded(cask_file.drop.angle_rad.to_degrees()),
         sweeps: Vec::new(),
-        angles_deg: (0..=CURVE_ANGLES)
-            .map(|i| rounded(90.0 * f64::from(i) / f64::from(CURVE_ANGLES)))
-            .collect(),
+        angles_deg: curve_angles_deg().collect(),
         band_percent: 5.0,
-        uncertain: Uncertain { friction, ..usual },
+        uncertain: default_uncertain(cask_file),
     }
 }
 
-/// Ranges and half-widths for a cask whose user states none.
+fn curve_angles_deg() -> impl Iterator<Item = f64> {
+    (0..=CURVE_ANGLES).map(|i| rounded(90.0 * f64::from(i) / f64::from(CURVE_ANGLES)))
+}
+
+/// Ranges of what a cask file leaves open, and the half-widths of its `[tolerance]`.
 pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
-    let is_uniform =
-        !cask_file.cask.is_body || cask_file.defaults.iter().any(|key| key == "cask.inertia_kg_m2");
+    let CaskFile { cask, tolerances, contact_duration_s, .. } = cask_file;
     Uncertain {
         // Unknown before a test: the borderline cases of [P].
         k: (0.0, 1.0),
-        // The contact law asked for.
-        friction: None,
-        // Inclinometer ±0.5°, and as much again for the release. It can be worse: a test of Sandia's matched
-        // at 13° for 10°.
-        angle_deg: 1.0,
-        // 2.5 cm of 9 m, as for the measured impact velocity.
-        drop_height: 0.003,
-        // 2.5 cm of 5 m: where on its rounded or padded edge an end strikes.
-        size: 0.005,
-        // 5 cm of 5 m: weighed at two points, the contents within their clearance.
-        cog: 0.01,
-        // Twice the standard uncertainties of the comparison with a test: 1 % stated, 5 % for the uniform
-        // block.
-        inertia: if is_uniform { 0.1 } else { 0.02 },
+        friction: match cask_file.contact {
+            Contact::Rough => None,
+            Contact::Smooth => Some((0.0, 0.0)),
+            Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
+            Contact::Unknown => Some((0.0, friction_that_sticks(cask_file))),
+        },
+        contact_s: contact_duration_s.map_or(CONTACT_S, |lasts_s| (lasts_s, lasts_s)),
+        angle_deg: rounded(tolerances.angle_rad.to_degrees()),
+        impact_velocity: tolerances.impact_velocity,
+        angular_velocity_deg_s: rounded(tolerances.angular_velocity_rad_s.to_degrees()),
+        horizontal_velocity_m_s: tolerances.horizontal_velocity_m_s,
+        length: tolerances.length,
+        height: tolerances.height,
+        cog: tolerances.cog_m / cask.length_m,
+        inertia: tolerances.inertia,
         // The 2.5 % quantile then has a standard error of 0.5 % in probability.
         draws: 1000,
         seed: 1,
     }
+}
+
+/// The friction with which the first end sticks at every angle   (6)
+fn friction_that_sticks(cask_file: &CaskFile) -> f64 {
+    let body = super::richest(cask_file);
+    let needed = curve_angles_deg().map(|angle_deg| {
+        let before = State::falling(&body, angle_deg.to_radians(), &cask_file.drop);
+        strike_first_end(&body, &before, Contact::Rough, 0.0).friction_to_stick
+    });
+    (needed.fold(0.0, f64::max) * 100.0).ceil() / 100.0
 }
 
 /// One cask and drop out of the uncertain ones.
@@ -74,8 +88,8 @@ pub(super) struct Draw {
     pub angle_error_deg: f64,
 }
 
-/// The draw of this index: k and friction uniform, all else normal. It depends on the seed and its index
-/// alone, on any machine.
+/// The draw of this index: k and friction uniform, the contact's length in turn, all else normal. It depends
+/// on the seed and its index alone, on any machine.
 pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(uncertain.seed);
     rng.set_stream(u64::from(index));
@@ -86,9 +100,12 @@ pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
         let z: f64 = StandardNormal.sample(&mut rng);
         half_width / SIGMAS_OF_95 * z
     };
-    let (length, height) = (normal(uncertain.size), normal(uncertain.size));
+    let (length, height) = (normal(uncertain.length), normal(uncertain.height));
     let (cog, inertia) = (normal(uncertain.cog), normal(uncertain.inertia));
-    let (drop_height, angle_error_deg) = (normal(uncertain.drop_height), normal(uncertain.angle_deg));
+    let (impact_velocity, angle_error_deg) = (normal(uncertain.impact_velocity), normal(uncertain.angle_deg));
+    let turned_rad_s = normal(uncertain.angular_velocity_deg_s).to_radians();
+    let sideways_m_s = normal(uncertain.horizontal_velocity_m_s);
+    let contact_share = f64::from(index % CONTACT_LENGTHS) / f64::from(CONTACT_LENGTHS - 1);
     let scaled = |value: f64, by: f64| value * (1.0 + by).max(LEAST_SHARE);
     let between = |(low, high): (f64, f64), share: f64| low + (high - low) * share;
     let mut body =
@@ -97,15 +114,22 @@ pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     body.inertia_kg_m2 = scaled(body.inertia_kg_m2, inertia);
     let contact =
         uncertain.friction.map_or(base.contact, |range| Contact::Coulomb(between(range, friction_share)));
-    let drop = raised(&base.drop, scaled(base.drop.height_m, drop_height));
+    let drop = Drop {
+        impact_velocity_m_s: scaled(base.drop.impact_velocity_m_s, impact_velocity),
+        angular_velocity_rad_s: base.drop.angular_velocity_rad_s + turned_rad_s,
+        horizontal_velocity_m_s: base.drop.horizontal_velocity_m_s + sideways_m_s,
+        contact_duration_s: between(uncertain.contact_s, contact_share),
+        ..base.drop
+    };
     Draw { fall: Fall { body, drop, contact, k: between(uncertain.k, k_share) }, angle_error_deg }
 }
 
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
-    use super::super::tests::{cask_file, rough_rod, uncertain};
+    use super::super::tests::{V0_M_S, cask_file, rough_rod, uncertain};
     use super::*;
+    use crate::data::Tolerances;
 
     const DRAWS: u32 = 2000;
 
@@ -121,12 +145,41 @@ mod tests {
     }
 
     #[test]
-    fn a_uniform_or_unstated_inertia_is_less_certain() {
+    fn what_the_file_states_and_tolerates_is_what_is_drawn_from() {
         let mut file = cask_file(0.792);
-        assert!((default_uncertain(&file).inertia - 0.02).abs() < 1e-15);
-        file.defaults.push("cask.inertia_kg_m2".into());
-        assert!((default_uncertain(&file).inertia - 0.1).abs() < 1e-15);
-        assert!((default_uncertain(&cask_file(0.0)).inertia - 0.1).abs() < 1e-15);
+        file.tolerances = Tolerances { angle_rad: 0.05, length: 0.02, inertia: 0.15, ..file.tolerances };
+        file.tolerances.cog_m = 0.5512;
+        let found = default_uncertain(&file);
+        let held = [found.angle_deg, found.length, found.inertia, found.cog];
+        for (held, stated) in held.into_iter().zip([0.05_f64.to_degrees(), 0.02, 0.15, 0.1]) {
+            assert!((held - stated).abs() < 1e-12, "{found:?}");
+        }
+        assert_eq!((found.friction, found.contact_s), (None, CONTACT_S));
+        file.contact_duration_s = Some(0.02);
+        file.contact = Contact::Coulomb(0.3);
+        let found = default_uncertain(&file);
+        assert_eq!((found.friction, found.contact_s), (Some((0.3, 0.3)), (0.02, 0.02)));
+    }
+
+    #[test]
+    fn an_unknown_friction_reaches_from_none_to_sticking_at_every_angle() {
+        let file = CaskFile { contact: Contact::Unknown, ..cask_file(0.0) };
+        // μ* of the rod, 3 sin φ cos φ/(1 + 3 sin² φ), is 3/4 at most, where tan φ = 1/2.
+        assert_eq!(default_uncertain(&file).friction, Some((0.0, 0.75)));
+        for angle_deg in [5.0, 26.6, 60.0] {
+            let fall = Fall { contact: Contact::Coulomb(0.75), ..rough_rod(0.5) };
+            assert!(fall.at(angle_deg).sticks, "{angle_deg}");
+        }
+    }
+
+    #[test]
+    fn every_length_of_the_contact_has_its_draws_the_ends_too() {
+        let base = rough_rod(0.0);
+        let open = Uncertain { contact_s: (0.005, 0.03), ..uncertain((0.0, 1.0), DRAWS) };
+        let lasting = |i| draw(&base, &open, i).fall.drop.contact_duration_s;
+        for (i, lasts_s) in (0..).zip([0.005, 0.01, 0.015, 0.02, 0.025, 0.03]) {
+            assert!((lasting(i) - lasts_s).abs() < 1e-12 && (lasting(i + 60) - lasts_s).abs() < 1e-12);
+        }
     }
 
     #[test]
@@ -144,10 +197,9 @@ mod tests {
             k: (0.2, 0.8),
             friction: Some((0.1, 0.3)),
             angle_deg: 1.96,
-            drop_height: 0.0196,
-            size: 0.0392,
-            cog: 0.0,
-            inertia: 0.0,
+            impact_velocity: 0.0196,
+            angular_velocity_deg_s: 1.96,
+            length: 0.0392,
             ..uncertain((0.0, 1.0), DRAWS)
         };
         let base = rough_rod(0.0);
@@ -159,7 +211,8 @@ mod tests {
             assert!((deviation / sigma - 1.0).abs() < error, "{deviation} {sigma}");
         };
         check(moments(draws.iter().map(|d| d.angle_error_deg)), 0.0, 1.0);
-        check(moments(draws.iter().map(|d| d.fall.drop.height_m)), 9.0, 0.09);
+        check(moments(draws.iter().map(|d| d.fall.drop.impact_velocity_m_s)), V0_M_S, 0.01 * V0_M_S);
+        check(moments(draws.iter().map(|d| d.fall.drop.angular_velocity_rad_s.to_degrees())), 0.0, 1.0);
         check(moments(draws.iter().map(|d| d.fall.body.length_m)), 5.512, 0.02 * 5.512);
         check(moments(draws.iter().map(|d| d.fall.k)), 0.5, 0.6 / 12.0_f64.sqrt());
         assert!(draws.iter().all(|d| (0.2..0.8).contains(&d.fall.k)));
@@ -189,10 +242,16 @@ mod tests {
 
     #[test]
     fn nonsensical_half_widths_leave_a_body() {
-        let drawn =
-            Uncertain { size: 3.0, cog: 3.0, inertia: 3.0, drop_height: 3.0, ..uncertain((0.0, 1.0), 1) };
+        let drawn = Uncertain {
+            length: 3.0,
+            cog: 3.0,
+            inertia: 3.0,
+            impact_velocity: 3.0,
+            ..uncertain((0.0, 1.0), 1)
+        };
         for Draw { fall, .. } in all(&rough_rod(0.0), &drawn) {
-            assert!(fall.body.length_m > 0.0 && fall.body.inertia_kg_m2 > 0.0 && fall.drop.height_m > 0.0);
+            assert!(fall.body.length_m > 0.0 && fall.body.inertia_kg_m2 > 0.0);
+            assert!(fall.drop.impact_velocity_m_s > 0.0);
             assert!((0.0..=fall.body.length_m).contains(&fall.body.cog_m));
         }
     }

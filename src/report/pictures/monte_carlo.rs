@@ -26,9 +26,9 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let panels = speed.map(|speed| [quantiles(study, speed), shares(study), histogram(study, speed)]);
     let caption = format!(
         "{} draws, seed {}. Above: median and quantiles of the slap-down speed over the nominal drop angle. \
-         Middle: share of the draws whose value at that angle is within {} % of their own largest; shaded \
-         where it is at least 95 % for the speed. Below: at which angle each draw's speed is largest; shaded \
-         95 % of the draws.",
+         Middle: share of the draws whose value at that angle is within {} % of their own largest, with the \
+         length of the contact that makes it least; shaded: the robust band of the speed. Below: at which \
+         angle each draw's speed is largest; shaded 95 % of the draws.",
         found.uncertain.draws,
         found.uncertain.seed,
         plain(found.band_percent, 3)

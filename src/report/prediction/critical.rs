@@ -3,11 +3,13 @@
 use super::super::document::{Chapter, ChapterPart, Medium, ReportTable, TableShape, Words};
 use super::super::rounding::{MISSING, fixed, plain};
 use super::super::words::{
-    MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, contact_words, criterion_short,
-    criterion_value, criterion_words, degrees, nearest, uncertain_words, widest_bands_words,
+    MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, contact_length_words, contact_words,
+    criterion_short, criterion_value, criterion_words, degrees, uncertain_words,
 };
 
-use crate::data::{BodyModel, Criterion, CriticalAngle, MonteCarlo, QuantileCurves, Study};
+use crate::data::{
+    Advice, BodyModel, Criterion, CriticalAngle, MonteCarlo, QuantileCurves, Study, Uncertain,
+};
 
 /// A value of the criterion, with the unit left to the head of its column.
 fn bare(criterion: Criterion, value: f64) -> String {
@@ -58,8 +60,12 @@ pub(super) fn critical(study: &Study) -> Chapter {
         .only(Medium::Page)
         .text(at("energy"), place(Criterion::EnergyRatio));
     let band = plain(study.request.band_percent, 3);
+    let lasts_s = study.cask_file.drop.contact_duration_s;
+    let lasts = contact_length_words((lasts_s, lasts_s));
     chapter
-        .with(ChapterPart::lead(format!("Where each is largest, °, and the angles within {band} % of it.")))
+        .with(ChapterPart::lead(format!(
+            "Where each is largest, °, and the angles within {band} % of it; {lasts}."
+        )))
         .with(table)
         .with_all(larger_sentence(study).map(ChapterPart::note))
         .with(picture)
@@ -91,32 +97,49 @@ pub(super) fn speeds(found: &MonteCarlo) -> Option<&QuantileCurves> {
     found.quantiles.iter().find(|q| q.criterion == Criterion::Speed).filter(has_any)
 }
 
-/// The robust bands of the speed that a drop can be rigged for: within the tolerance of the angle, a drop is
-/// as good as flat.
-pub(super) fn bands_to_drop(found: &MonteCarlo, speeds: &QuantileCurves) -> Vec<(f64, f64)> {
-    let flat_deg = found.uncertain.angle_deg;
-    let steeper = speeds.robust_bands_deg.iter().map(|band| (band.0.max(flat_deg), band.1));
-    steeper.filter(|band| band.0 < band.1).collect()
+/// Where to drop, the largest speed of all, and what the angle asked for gives.
+pub(super) fn advice(study: &Study) -> Option<String> {
+    let (found, advice) = (&study.monte_carlo, &study.advice);
+    speeds(found)?;
+    let near = format!("within {} % of that draw's largest", plain(found.band_percent, 3));
+    let drop = advice.band_deg.map(|(from_deg, to_deg)| {
+        let [from, to] = [from_deg, to_deg].map(degrees);
+        format!("Drop between {from}° and {to}°: there the slap-down speed is {near} in 95 % of the draws.")
+    });
+    let none = || {
+        let open = open_words(&advice.drawn);
+        format!("At no angle is the slap-down speed of 95 % of the draws {near}: {open} too uncertain.")
+    };
+    let flat_deg = advice.drawn.angle_deg;
+    let is_flat = advice.band_deg.is_some_and(|band| band.0 <= flat_deg);
+    let flat = format!(" At {}° or flatter both ends may strike together.", degrees(flat_deg));
+    let largest = criterion_value(Criterion::Speed, advice.largest_m_s);
+    let largest = format!(" The largest of all is {largest}, at {}°.", degrees(advice.at_deg));
+    let flat = if is_flat { flat } else { String::new() };
+    Some([drop.unwrap_or_else(none), largest, at_the_angle(advice), flat].concat())
 }
 
-/// Where to drop, and what the angle asked for gives.
-pub(super) fn advice(study: &Study) -> Option<String> {
-    let found = &study.monte_carlo;
-    let speeds = speeds(found)?;
-    let (band, largest) =
-        (plain(found.band_percent, 3), criterion_value(Criterion::Speed, speeds.largest[2]));
-    let near = format!("within {band} % of the largest, {largest}, in 95 % of the draws");
-    let (bands, flat_deg) = (bands_to_drop(found, speeds), found.uncertain.angle_deg);
-    let drop = match &bands[..] {
-        [] => format!("At no angle is the slap-down speed {near}: k or friction is too uncertain."),
-        bands => {
-            let between = bands_words(bands).replace('–', "° and ");
-            format!("Drop between {between}°: there the slap-down speed is {near}.")
-        }
-    };
-    let is_flat = bands.first().is_some_and(|band| band.0 <= flat_deg);
-    let flat = format!(" At {}° or flatter both ends may strike together.", degrees(flat_deg));
-    Some(drop + &at_the_angle(study).unwrap_or_default() + if is_flat { &flat } else { "" })
+/// What is drawn from a range, with its verb.
+fn open_words(drawn: &Uncertain) -> String {
+    let ranges = [("k", drawn.k), ("friction", drawn.friction.unwrap_or_default())];
+    let ranges = ranges.into_iter().chain([("the contact's length", drawn.contact_s)]);
+    let open: Vec<&str> = ranges.filter(|(_, range)| range.0 < range.1).map(|(name, _)| name).collect();
+    match &open[..] {
+        [] => "cask and drop are".to_owned(),
+        [one] => format!("{one} is"),
+        [most @ .., last] => format!("{} and {last} are", most.join(", ")),
+    }
+}
+
+/// What the draws say of the slap-down speed at the angle asked for.
+fn at_the_angle(advice: &Advice) -> String {
+    let (angle_deg, share) = (degrees(advice.own_deg), 1.0 - advice.own_share);
+    let [own, low, high] =
+        [advice.own_m_s, advice.own_range_m_s.0, advice.own_range_m_s.1].map(|v| fixed(v, 2));
+    let speed = format!(" Your {angle_deg}° gives {own} m/s (95 % of the draws: {low} to {high}).");
+    let none = format!(" Of the draws at {angle_deg}° {} % have no slap-down.", plain(100.0 * share, 2));
+    let said = [(advice.own_m_s.is_finite(), speed), (share > 0.0, none)];
+    said.into_iter().filter_map(|(is_so, words)| is_so.then_some(words)).collect()
 }
 
 /// What was drawn from, and what came of it.
@@ -132,8 +155,10 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     let drawn = ChapterPart::text(uncertain_words(u, found.contact));
     let chapter = if speeds(found).is_some() {
         let band = plain(found.band_percent, 3);
-        let robust =
-            format!("robust: there at least 95 % of the draws are within {band} % of their own largest.");
+        let robust = format!(
+            "robust: there, whatever the contact's length, at least 95 % of the draws are within {band} % of \
+             their own largest."
+        );
         chapter.with(drawn).with(quantiles(&found.quantiles)).with(ChapterPart::note(robust))
     } else {
         let none = ChapterPart::text("Too few draws have a slap-down.");
@@ -161,24 +186,6 @@ fn quantiles(found: &[QuantileCurves]) -> ChapterPart {
         })
         .text(Words::or("Critical angle (95 %)", "critical (95 %)"), critical)
         .text(Words::or("How large (95 %)", "how large (95 %)"), how_large)
-        .text(Words::or("Robust band, °", "robust band °"), |q| {
-            Words::or(bands_words(&q.robust_bands_deg), widest_bands_words(&q.robust_bands_deg, 3))
-        });
+        .text(Words::or("Robust band, °", "robust band °"), |q| bands_words(&q.robust_bands_deg));
     table.into()
-}
-
-/// Median of the slap-down speed at the angle asked for, and the ends of 95 % of the draws, m/s.
-pub(super) fn speeds_at_the_angle(study: &Study) -> Option<[String; 3]> {
-    let found = &study.monte_carlo;
-    let q = speeds(found)?;
-    let at = |values: &[f64]| Some(fixed(nearest(&found.angle_deg, values, study.request.angle_deg)?, 2));
-    Some([at(&q.q50)?, at(&q.q025)?, at(&q.q975)?])
-}
-
-/// What the draws say of the slap-down speed at the angle asked for.
-fn at_the_angle(study: &Study) -> Option<String> {
-    let angles_deg = &study.monte_carlo.angle_deg;
-    let angle_deg = degrees(nearest(angles_deg, angles_deg, study.request.angle_deg)?);
-    let [median, low, high] = speeds_at_the_angle(study)?;
-    Some(format!(" Your {angle_deg}° gives {median} m/s (95 % of the draws: {low} to {high})."))
 }

@@ -59,6 +59,7 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
         ("ladders", entries(&study.ladders)?),
         ("critical_angles", entries(&study.critical)?),
         ("monte_carlo", to_vec(&study.monte_carlo)?),
+        ("advice", to_vec(&study.advice)?),
         ("plan", to_vec(&study.plan)?),
     ];
     let members = members.map(|(key, value)| [format!("  \"{key}\": ").as_bytes(), &value].concat());

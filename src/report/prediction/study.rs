@@ -5,9 +5,11 @@ use super::super::document::{
 };
 use super::super::pictures::study_names;
 use super::super::record::tested;
-use super::super::rounding::{MISSING, plain};
-use super::super::words::{bands_words, contact_words, criterion_value, range_words, variable_words};
-use super::critical::{advice, bands_to_drop, critical, monte_carlo, speeds, speeds_at_the_angle};
+use super::super::rounding::{MISSING, fixed, plain};
+use super::super::words::{
+    bands_words, contact_length_words, contact_words, criterion_value, degrees, range_words, variable_words,
+};
+use super::critical::{advice, critical, monte_carlo, speeds};
 use super::models::ladders;
 use super::models::plan;
 use super::rows::{predictions, title};
@@ -16,7 +18,7 @@ use crate::data::{Criterion, Study, StudyRequest, Sweep};
 /// A longer table of predictions stands at the end of the page, not between the reader and what was found.
 const MOST_ROWS_AHEAD: usize = 40;
 
-/// What the models leave out, a sentence or two a line.
+/// What the models leave out besides, a sentence or two a line.
 const LIMITS: &str = include_str!("limits.txt");
 
 /// The whole document.
@@ -60,11 +62,22 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             ladders(study),
             study.plan.as_ref().map_or_else(|| Chapter::new(""), plan),
             of_the_paper(),
-            Chapter::new("Limits").with(PartContent::List(LIMITS.lines().collect())),
+            Chapter::new("Limits").with(PartContent::List(limits(study))),
             Chapter::new("All predictions").with_all(at_end),
             provenance(study),
         ],
     }
+}
+
+/// What the models leave out, the length of the first impact as this study has it.
+fn limits(study: &Study) -> Vec<String> {
+    let lasts_s = study.cask_file.drop.contact_duration_s;
+    let [stated, drawn] = [(lasts_s, lasts_s), study.advice.drawn.contact_s].map(contact_length_words);
+    let first = format!(
+        "One plane, a rigid cask and a rigid target. Tables and charts: {stated}, draws: {drawn}; a pulse is \
+         a half sine, and later impacts are impulses."
+    );
+    std::iter::once(first).chain(LIMITS.lines().map(str::to_owned)).collect()
 }
 
 /// The pictures over the angle, in the order of their files.
@@ -79,24 +92,17 @@ fn over_the_angle(request: &StudyRequest) -> Chapter {
 
 /// The three figures that a reader looks for first, of all that is uncertain.
 fn figures(study: &Study) -> Option<PartContent> {
-    let drawn = &study.monte_carlo;
-    let speed = speeds(drawn)?;
-    let [least, _, largest, _, most] = speed.largest.map(|value| criterion_value(Criterion::Speed, value));
-    let [at, from, to] = speeds_at_the_angle(study).unwrap_or_else(|| [MISSING; 3].map(str::to_owned));
-    let band = plain(drawn.band_percent, 3);
-    let figure = |name: &str, value, detail| [name.to_owned(), value, detail];
+    let (drawn, advice) = (&study.monte_carlo, &study.advice);
+    let median = speeds(drawn)?.largest[2];
+    let speed = |value| criterion_value(Criterion::Speed, value);
+    let ((low, high), band) = (advice.own_range_m_s, plain(drawn.band_percent, 3));
+    let near = format!("within {band} % of the draw's largest speed in 95 % of them");
+    let at = format!("at {}°; half of the draws reach {}", degrees(advice.at_deg), speed(median));
+    let own = format!("95 % of the draws {} to {}", fixed(low, 2), speed(high));
     Some(PartContent::Figures(vec![
-        figure(
-            "Where to drop, °",
-            bands_words(&bands_to_drop(drawn, speed)),
-            format!("in 95 % of the draws within {band} % of the largest speed"),
-        ),
-        figure("Largest slap-down speed", largest, format!("95 % of the draws {least} to {most}")),
-        figure(
-            &format!("At {}°", plain(study.request.angle_deg, 4)),
-            format!("{at} m/s"),
-            format!("95 % of the draws {from} to {to} m/s"),
-        ),
+        ["Where to drop, °".to_owned(), bands_words(advice.band_deg.as_slice()), near],
+        ["Largest slap-down speed".to_owned(), speed(advice.largest_m_s), at],
+        [format!("At {}°", plain(advice.own_deg, 4)), speed(advice.own_m_s), own],
     ]))
 }
 

@@ -66,12 +66,37 @@ fn every_block_has_its_figures() {
         "Monte Carlo, 2000 draws of the body",
         "12° (4.5–19.5)",
         "seed 1",
+        "Drop between 5° and 19°",
         "Your 15° gives 20.68 m/s (95 % of",
         "suffices: the simplest that no richer one moves by more than 0.1 %",
         "rod 30.10 m/s at 86°",
     ] {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
+}
+
+#[test]
+fn where_no_band_is_what_is_too_uncertain_is_said() {
+    let mut study = sample_study::study();
+    study.advice.band_deg = None;
+    let said = |study: &Study| bare(study).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said(&study).contains("largest: k, friction and the contact's length are too uncertain."));
+    (study.advice.drawn.friction, study.advice.drawn.contact_s) = (None, (0.02, 0.02));
+    (study.advice.own_share, study.advice.own_m_s) = (0.25, f64::NAN);
+    let said = said(&study);
+    assert!(said.contains("largest: k is too uncertain.") && !said.contains("Your 15°"), "{said}");
+    assert!(said.contains("Of the draws at 15° 75 % have no slap-down."), "{said}");
+}
+
+#[test]
+fn the_limits_are_those_of_the_request() {
+    let mut study = sample_study::study();
+    assert!(made(&study).contains("first contact an impulse, draws: first contact 5 to 30 ms (uniform);"));
+    study.cask_file.drop.contact_duration_s = 0.02;
+    study.advice.drawn.contact_s = (0.02, 0.02);
+    let page = made(&study);
+    assert!(page.contains("first contact 20 ms, draws: first contact 20 ms;"));
+    assert!(!page.contains("no time") && !page.contains("an impulse,"));
 }
 
 #[test]
