@@ -42,7 +42,7 @@ pub use estimate::*;
 pub use finding::*;
 pub use flight::*;
 pub use impacts::*;
-pub use keys::LONGEST_CONTACT_S;
+pub use keys::{LONGEST_CONTACT_S, SHORTEST_CONTACT_S};
 pub use ladder::*;
 pub use listing::*;
 pub use motion::*;

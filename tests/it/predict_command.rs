@@ -83,7 +83,7 @@ fn words_that_make_no_sense_are_told_what_would() {
 
 #[test]
 fn a_cask_that_cannot_be_is_told_its_key() {
-    let cases: [(&str, &str, &[&str]); 12] = [
+    let cases: [(&str, &str, &[&str]); 13] = [
         ("mass_kg = 4466", "mass_kg = -4466", &["line 3", "mass_kg is -4466", "0.001 to 1000000"]),
         ("mass_kg = 4466", "mass_kg = nan", &["line 3", "mass_kg is nan"]),
         ("length_m = 5.512", "length_m = 0", &["line 4", "length_m is 0"]),

@@ -1,7 +1,7 @@
 //! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to
 //! mend it.
 
-use crate::data::{Contact, LONGEST_CONTACT_S};
+use crate::data::{Contact, LONGEST_CONTACT_S, SHORTEST_CONTACT_S};
 
 /// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and
 /// percent.
