@@ -209,7 +209,7 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
                 photos = [\"before.png\"]\n[test.more]\nHook = 4\n";
     // Corner 18.22 ± 0.46 m/s: (18.22 − 18.0)/√(0.46² + 0.30²) = 0.40; k 0.551 ± 0.042: (0.551 −
     // 0.7)/√(0.042² + 0.030²) = −2.9.
-    let seen = "[observed]\nslap_down_speed_m_s = { value = 18.0, u95 = 0.3, by = \"video\" }\n\
+    let seen = "[observed]\nlocal_speed_m_s = { value = 18.0, u95 = 0.3, by = \"video\" }\n\
                 k = { value = 0.7, u95 = 0.03 }\n";
     let result = with(&format!("{test}{seen}")).json();
     assert_eq!(result["test"]["id"], "SD-14");
