@@ -126,7 +126,7 @@ fn silent(trial: &Trial) -> [ChapterPart; 2] {
         .class("many")
         .code("damage", |map| &map.name[..])
         .text("what it is", |map| &map.what[..])
-        .text("what becomes of a drop", |map| fate_words(map))
+        .text("what becomes of the drops tried (another cask differs)", |map| fate_words(map))
         .number("off by, half-widths", |map| largest_words(map))
         .text("at the site", |map| &map.instead[..]);
     [ChapterPart::lead(words), table.into()]
