@@ -122,6 +122,8 @@ pub(crate) struct DropPoint {
     pub(crate) cask: String,
     pub(crate) series: String,
     pub(crate) angle_deg: Option<f64>,
+    /// Half-width of the stated angle, degrees.
+    pub(crate) angle_u95_deg: f64,
     /// Of the test, as RFC 3339 writes it.
     pub(crate) date: Option<String>,
     /// Largest deceleration of the struck end, m/s², and energy absorbed, J, of both impacts.
@@ -187,6 +189,7 @@ impl DropPoint {
             cask: part(line, "/settings/cask/name/value").unwrap_or_default(),
             series: series.collect::<Value>().to_string(),
             angle_deg: part(line, "/settings/drop/angle_deg/value"),
+            angle_u95_deg: part(line, "/settings/tolerance/angle_deg/value").unwrap_or_default(),
             date: part(line, "/settings/test/date/value"),
             peaks_m_s2: of_impacts("rigid_body_deceleration/at_struck_end"),
             energies_j: of_impacts("energy_absorbed"),

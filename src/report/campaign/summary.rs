@@ -30,10 +30,10 @@ pub(super) fn oddities<'a>(series: &[DropSeries<'a>]) -> Vec<Oddity<'a>> {
     let mut found: Vec<Oddity> = Vec::new();
     for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
     {
-        for member in pool.members.iter().filter(|member| member.is_out && pool.angle_deg.is_some()) {
+        for member in pool.members.iter().filter(|member| member.is_out) {
             let e_n = member.e_n.unwrap_or_default();
             let (name, own) = (pool.quantity.words()[2], interval(pool.quantity.of(member.row).as_ref()));
-            let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
+            let place = format!("{} at {}", series.name, pool.angle_words());
             let others = match pool.members.len() {
                 2 => "the other repeat".to_owned(),
                 count => format!("the {} other repeats", count - 1),
