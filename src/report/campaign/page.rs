@@ -30,7 +30,8 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let (pass, review) = (count(Some(Verdict::Pass)), count(Some(Verdict::Review)));
     let odd = oddities(series);
     let count = batch.rows.len();
-    let worst = match (count - pass - review, review + odd.len()) {
+    let exceeded = batch.rows.iter().filter(|row| !row.exceeded.is_empty()).count();
+    let worst = match (count - pass - review + exceeded, review + odd.len()) {
         (0, 0) => Style::Green,
         (0, _) => Style::Yellow,
         _ => Style::Red,
