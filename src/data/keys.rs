@@ -27,7 +27,11 @@ pub static TABLES: [KeyTable; 16] = [
     table("corrections", "all are made; false leaves one out", &CORRECTIONS),
     table("recording", "", &RECORDING),
     table("observed", "what was seen otherwise, held against the result", &OBSERVED),
-    table("limits", "the customer's, held against the result", &LIMITS),
+    table(
+        "limits",
+        "the customer's; exceeded, and exit status 1, where the whole interval lies beyond",
+        &LIMITS,
+    ),
     table("report", "around the page report.html", &REPORT),
     table("channel", "", &CHANNEL),
     table("source", "", &SOURCE),
@@ -66,10 +70,10 @@ TEST {
 OBSERVED {
     "slap_down_speed_m_s": "–", Observation, "{ value = 20.4, u95 = 0.3 }", "slap-down speed of the rigid cask";
     "local_speed_m_s": "–", Observation, "{ value = 18.1, u95 = 0.3 }", "speed of the corner that strikes";
-    "k": "–", Observation, "{ value = 0.55, u95 = 0.05, by = \"video\" }", "coefficient of restitution";
-    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }", "angular velocity";
+    "k": "–", Observation, "{ value = 0.55, u95 = 0.05 }", "coefficient of restitution";
+    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }", "angular velocity after the first impact";
     "angle_deg": "–", Observation, "{ value = 1.0, u95 = 0.5 }", "angle at slap-down";
-    "flight_time_s": "–", Observation, "{ value = 0.056, u95 = 0.001 }", "flight time";
+    "flight_time_s": "–", Observation, "{ value = 0.056, u95 = 0.001, by = \"video\" }", "flight time";
     "impact_velocity_m_s": "–", Observation, "{ value = 13.25, u95 = 0.05 }", "impact velocity";
 }
 

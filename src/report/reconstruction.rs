@@ -279,6 +279,7 @@ mod tests {
     use super::super::document::ReportDocument;
     use super::super::{as_html, sample};
     use super::*;
+    use crate::data::FlightModelScore;
 
     fn page(chapter: Chapter) -> String {
         as_html::page(&ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }, &[])
@@ -340,5 +341,32 @@ mod tests {
             assert!(found.contains(words), "{words}: {found}");
         }
         assert!(!page(reconstruction(&sample::without_anything().result)).contains("<h2>"));
+    }
+
+    #[test]
+    fn the_number_of_modes_is_explained_by_what_decided_it() {
+        let score = |modes, bic, taken| FlightModelScore {
+            modes,
+            drift: false,
+            driven: false,
+            taken,
+            bic,
+            residual_m_s: 0.01,
+        };
+        let said = |scores: [(f64, bool); 3]| {
+            let candidates =
+                (1..).zip(scores).map(|(modes, (bic, taken))| score(modes, bic, taken)).collect();
+            flight_sentence(&FlightFit { candidates, ..FlightFit::default() })
+        };
+        let lowest = said([(-9.0, true), (-8.0, false), (-7.0, false)]);
+        assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
+        // A simpler one that does as well stands first.
+        let smallest = said([(-7.0, true), (-9.0, false), (-8.0, false)]);
+        assert!(smallest.contains("smallest fit that gives the same velocity steps"), "{smallest}");
+        // The motion contradicts the first.
+        let other = said([(-9.0, false), (-8.0, true), (-7.0, false)]);
+        assert!(other.ends_with("among those that the motion does not contradict."), "{other}");
+        let lowest = said([(-7.0, false), (-9.0, true), (-8.0, false)]);
+        assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
     }
 }
