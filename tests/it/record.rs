@@ -263,7 +263,7 @@ fn a_report_goes_to_paper_and_to_other_programs() {
             && curves.lines().nth(1).is_some_and(|row| row.contains("0,0"))
     );
     let table = fs::read_to_string(out.join("results.tex")).expect("a table");
-    assert!(table.contains("Slap-down: speed of the rigid cask & $20.62 \\pm 0.40$ m/s \\\\"), "{table}");
+    assert!(table.contains("Slap-down: speed (rigid cask) & $20.62 \\pm 0.40$ m/s \\\\"), "{table}");
     let path = std::env::var("PATH").unwrap_or_default();
     if std::env::split_paths(&path).all(|folder| !folder.join("chromium").is_file()) {
         println!("skipped: no chromium to print with");
