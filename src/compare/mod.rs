@@ -212,17 +212,18 @@ fn reason(taken: usize, candidates: &[ModelCandidate], known_m_s: f64) -> String
             format!("is the richest model, and {agrees} within both intervals ({percent:+.1} %)")
         }
     };
-    let mut said = format!("'{}' {lead}", own.rung.words());
+    let mut said = vec![format!("'{}' {lead}", own.rung.words())];
     for (i, other) in candidates.iter().enumerate().filter(|(i, _)| *i != taken) {
         let name = other.rung.words();
-        said += &match (other.predicted, other.difference_percent) {
-            (Some(m_s), Some(percent)) => format!("; '{name}' predicts {m_s:.2} m/s ({percent:+.1} %)"),
-            (Some(m_s), None) => format!("; '{name}' predicts {m_s:.2} m/s"),
-            _ => format!("; by '{name}' the second end would not strike"),
+        let predicts = match (other.predicted, other.difference_percent) {
+            (Some(m_s), Some(percent)) => format!("'{name}' predicts {m_s:.2} m/s ({percent:+.1} %)"),
+            (Some(m_s), None) => format!("'{name}' predicts {m_s:.2} m/s"),
+            _ => format!("by '{name}' the second end would not strike"),
         };
-        said += &objection(&candidates[i..], known_m_s).filter(|_| i < taken).unwrap_or_default();
+        let objection = objection(&candidates[i..], known_m_s).filter(|_| i < taken);
+        said.push(predicts + &objection.unwrap_or_default());
     }
-    said + "."
+    said.join("; ") + "."
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use dropcheck::lab::data::SceneNumber;
 use dropcheck::lab::in_memory;
 use dropcheck::{ingest, report};
 use rayon::prelude::*;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -234,9 +235,9 @@ fn an_observation_equal_to_the_reported_number_agrees_and_a_limit_takes_the_same
             else {
                 continue;
             };
-            observed += &format!("{key} = {{ value = {value:?}, u95 = 1e-6 }}\n");
+            let _ = writeln!(observed, "{key} = {{ value = {value:?}, u95 = 1e-6 }}");
             if ["slap_down_speed_m_s", "local_speed_m_s", "k"].contains(&key) {
-                limits += &format!("{key} = {{ most = {value:?} }}\n");
+                let _ = writeln!(limits, "{key} = {{ most = {value:?} }}");
             }
         }
         let stated = fs::read_to_string(&cask).expect("a cask file");
@@ -381,7 +382,7 @@ fn two_loggers_in_one_table_each_with_its_own_times_are_no_contradiction() {
     for (i, row) in rows.iter().enumerate() {
         // The second logger has every other sample, and ends half-way down the table.
         let other = rows.get(2 * i).map_or(",".to_owned(), |other| format!("{},{}", other[0], other[2]));
-        two += &format!("{},{},{other}\n", row[0], row[1]);
+        let _ = writeln!(two, "{},{},{other}", row[0], row[1]);
     }
     fs::write(&path, two).expect("room");
     let named = stated

@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn angles_farther_apart_than_their_tolerance_are_two() {
-        let rows = [15.0, 15.3, 15.6].map(|angle| row(angle.to_bits() as u32, angle, 0.5));
+        let rows = [(1, 15.0), (2, 15.3), (3, 15.6)].map(|(number, angle)| row(number, angle, 0.5));
         let series = DropSeries::all(&rows, |_, _, _| Vec::new());
         // The third lies within the tolerance of the second, but not of the first.
         assert_eq!(series[0].pools.iter().map(|pool| pool.members.len()).collect::<Vec<_>>(), [2, 1]);
