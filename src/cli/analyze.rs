@@ -9,7 +9,7 @@ use super::rerun::{self, EarlierResult};
 use super::tuning::{keep_freed_memory, keep_threads_awake};
 use crate::analysis::{read_within, take_rest};
 use crate::data::keys::CORRECTIONS;
-use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
+use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting, Verdict};
 use crate::{ingest, report};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
@@ -198,8 +198,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if let Some(why) = &not_strict {
         note(&format!("--strict: {why}"));
     }
-    let strict = if not_strict.is_some() { Ending::NeedsALook } else { Ending::Clear };
-    Ok(repeated.max(strict).max(analysis.result.verdict.into()))
+    let result = &analysis.result;
+    let is_clear = result.verdict == Verdict::Pass && !result.exceeds_a_limit() && not_strict.is_none();
+    Ok(repeated.max(Ending::of(!is_clear)))
 }
 
 /// Writes the files of `--out`, with a note where the printed report among them is not of this run.

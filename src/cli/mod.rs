@@ -27,7 +27,7 @@ pub use crate::report::message;
 pub use embedded::synthetic;
 pub use embedded::{analysis, listing, prediction, write};
 
-use crate::data::{Program, Verdict};
+use crate::data::Program;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 
@@ -91,18 +91,14 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// Of a result at which a person should look, or need not.
+    pub fn of(needs_a_look: bool) -> Self {
+        if needs_a_look { Self::NeedsALook } else { Self::Clear }
+    }
+
     /// With `--exit-zero` results that want a look end as those that do not.
     pub fn or_zero(self, exit_zero: bool) -> Self {
         if exit_zero && self == Self::NeedsALook { Self::Clear } else { self }
-    }
-}
-
-impl From<Verdict> for Ending {
-    fn from(verdict: Verdict) -> Self {
-        match verdict {
-            Verdict::Pass => Self::Clear,
-            Verdict::Review | Verdict::Fail => Self::NeedsALook,
-        }
     }
 }
 

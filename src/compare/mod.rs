@@ -45,17 +45,12 @@ pub fn compare(
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as
     // well. What all of them take from the same uncertain inputs moves them together; a test can tell them
     // apart by what it measures.
-    let told_m_s = measured.speed.map_or(0.0, |speed| speed.u95);
-    let suffices = |i: usize| {
-        let moved =
-            |c: &ModelCandidate| candidates[i].predicted.zip(c.predicted).map(|(own, c)| (c - own).abs());
-        candidates[i..].iter().all(|c| c.consistent && moved(c).is_some_and(|by_m_s| by_m_s <= told_m_s))
-    };
+    let known_m_s = measured.speed.map_or(0.0, |speed| speed.u95);
     let taken = (0..candidates.len())
-        .find(|&i| suffices(i))
-        .map(|i| &candidates[i])
-        .or_else(|| candidates.last())?
-        .clone();
+        .find(|&i| objection(&candidates[i..], known_m_s).is_none())
+        .unwrap_or(candidates.len().checked_sub(1)?);
+    let reason = reason(taken, &candidates, known_m_s);
+    let taken = candidates[taken].clone();
     let comparison = match (measured.speed, taken.predicted, taken.u95) {
         (Some(m), Some(predicted), Some(u95)) => Some(Comparison {
             predicted,
@@ -67,7 +62,6 @@ pub fn compare(
         }),
         _ => None,
     };
-    let reason = reason(&taken, &candidates);
     Some((ModelChoice { name: taken.model, rung: taken.rung, reason, candidates }, comparison))
 }
 
@@ -181,42 +175,48 @@ pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
     }
 }
 
-/// A rung as the subject of a sentence.
-fn name(rung: Rung) -> &'static str {
-    match rung {
-        Rung::Rod => "thin rod",
-        Rung::Body => "body with section, centre of gravity and inertia",
-        Rung::Friction => "body with Coulomb friction",
-        Rung::Unilateral => "body that the target only pushes",
-        Rung::FurtherImpacts => "body with further impacts of the first end",
-        Rung::FinitePulse => "body with an impact of the measured length",
+/// What keeps the first of these models, the others being richer, from being taken; `None` where nothing does.
+fn objection(models: &[ModelCandidate], known_m_s: f64) -> Option<String> {
+    let (own, richer) = models.split_first()?;
+    if !own.consistent {
+        return Some(String::new());
     }
+    if let Some(model) = richer.iter().find(|model| !model.consistent) {
+        return Some(format!(", which agrees, but the richer '{}' does not", model.rung.words()));
+    }
+    let apart_m_s = |model: &ModelCandidate| Some((own.predicted? - model.predicted?).abs());
+    let model = richer.iter().find(|model| apart_m_s(model).is_some_and(|by_m_s| by_m_s > known_m_s))?;
+    let name = model.rung.words();
+    Some(format!(", which agrees, but '{name}' lies farther from it than ±{known_m_s:.2} m/s"))
 }
 
-fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
-    let Some(percent) = taken.difference_percent else {
-        return format!("No slap-down speed was measured to choose by; the {} is shown.", name(taken.rung));
+/// What decided for the model taken, and what the others predict.
+fn reason(taken: usize, candidates: &[ModelCandidate], known_m_s: f64) -> String {
+    let own = &candidates[taken];
+    let lead = match (own.predicted, own.difference_percent) {
+        (None, _) => "is the richest model, and by it the second end would not strike".to_owned(),
+        (_, None) => "is shown: no slap-down speed was measured to choose by".to_owned(),
+        (_, Some(percent)) if own.consistent && taken + 1 < candidates.len() => format!(
+            "is the simplest model that agrees within both intervals ({percent:+.1} %) while all richer ones \
+             agree too and lie within ±{known_m_s:.2} m/s of it"
+        ),
+        (_, Some(percent)) => {
+            let agrees = if own.consistent { "agrees" } else { "does not agree" };
+            format!("is the richest model, and {agrees} within both intervals ({percent:+.1} %)")
+        }
     };
-    let others: Vec<String> = candidates
-        .iter()
-        .filter(|c| c.rung != taken.rung)
-        .map(|c| match (c.predicted, c.difference_percent) {
-            (Some(p), Some(percent)) => {
-                format!("the {} would say {p:.2} m/s ({percent:+.1} %)", name(c.rung))
-            }
-            _ => format!("by the {} the second end would not strike", name(c.rung)),
-        })
-        .collect();
-    let lead = if taken.consistent {
-        format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.rung))
-    } else {
-        format!(
-            "The measurement does not agree within both intervals; the {} is the richest model \
-             ({percent:+.1} %)",
-            name(taken.rung)
-        )
-    };
-    if others.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", others.join(", ")) }
+    let mut said = vec![format!("'{}' {lead}", own.rung.words())];
+    for (i, other) in candidates.iter().enumerate().filter(|(i, _)| *i != taken) {
+        let name = other.rung.words();
+        let predicts = match (other.predicted, other.difference_percent) {
+            (Some(m_s), Some(percent)) => format!("'{name}' predicts {m_s:.2} m/s ({percent:+.1} %)"),
+            (Some(m_s), None) => format!("'{name}' predicts {m_s:.2} m/s"),
+            _ => format!("by '{name}' the second end would not strike"),
+        };
+        let objection = objection(&candidates[i..], known_m_s).filter(|_| i < taken);
+        said.push(predicts + &objection.unwrap_or_default());
+    }
+    said.join("; ") + "."
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use super::prototype::Prototype;
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
-use super::test_record::{Limit, ObservedBeside, SensorRecord, TestRecord};
+use super::test_record::{Limit, LimitState, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The overall word on a result, in the order of their gravity.
@@ -297,6 +297,11 @@ pub struct DropResult {
 }
 
 impl DropResult {
+    /// Whether a limit of the cask file is exceeded.
+    pub fn exceeds_a_limit(&self) -> bool {
+        self.limits.iter().any(|limit| limit.state == LimitState::Exceeded)
+    }
+
     /// What holds of the prototype, where the cask is a model of this scale   (46)
     pub fn of_prototype(&self, scale: f64) -> Prototype {
         Prototype {

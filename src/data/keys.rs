@@ -27,7 +27,11 @@ pub static TABLES: [KeyTable; 16] = [
     table("corrections", "all are made; false leaves one out", &CORRECTIONS),
     table("recording", "", &RECORDING),
     table("observed", "what was seen otherwise, held against the result", &OBSERVED),
-    table("limits", "the customer's, held against the result", &LIMITS),
+    table(
+        "limits",
+        "the customer's; exceeded, and exit status 1, where the whole interval lies beyond",
+        &LIMITS,
+    ),
     table("report", "around the page report.html", &REPORT),
     table("channel", "", &CHANNEL),
     table("source", "", &SOURCE),
@@ -35,6 +39,11 @@ pub static TABLES: [KeyTable; 16] = [
     table("observation", "", &OBSERVATION),
     table("limit", "one of the two or both", &LIMIT),
 ];
+
+/// What a person calls the quantity of a key of `[observed]` or `[limits]`, one name for both tables.
+pub fn quantity_words(name: &str) -> &str {
+    OBSERVED.iter().chain(&LIMITS).find(|key| key.name == name).map_or(name, |key| key.remark)
+}
 
 /// Five times the impact of a limiter; a body that turns at 5 rad/s comes down in that.
 pub const LONGEST_CONTACT_S: f64 = 0.2;
@@ -63,11 +72,12 @@ TEST {
 
 /// Keys of `[observed]`.
 OBSERVED {
-    "slap_down_speed_m_s": "–", Observation, "{ value = 20.4, u95 = 0.3, by = \"video\" }", "slap-down speed";
+    "slap_down_speed_m_s": "–", Observation, "{ value = 20.4, u95 = 0.3 }", "slap-down speed of the rigid cask";
+    "local_speed_m_s": "–", Observation, "{ value = 18.1, u95 = 0.3 }", "speed of the corner that strikes";
     "k": "–", Observation, "{ value = 0.55, u95 = 0.05 }", "coefficient of restitution";
-    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }", "angular velocity";
+    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }", "angular velocity after the first impact";
     "angle_deg": "–", Observation, "{ value = 1.0, u95 = 0.5 }", "angle at slap-down";
-    "flight_time_s": "–", Observation, "{ value = 0.056, u95 = 0.001 }", "flight time";
+    "flight_time_s": "–", Observation, "{ value = 0.056, u95 = 0.001, by = \"video\" }", "flight time";
     "impact_velocity_m_s": "–", Observation, "{ value = 13.25, u95 = 0.05 }", "impact velocity";
 }
 
@@ -80,7 +90,8 @@ OBSERVATION {
 
 /// Keys of `[limits]`.
 LIMITS {
-    "slap_down_speed_m_s": "–", Observation, "{ most = 25.0 }", "slap-down speed";
+    "slap_down_speed_m_s": "–", Observation, "{ most = 25.0 }", "slap-down speed of the rigid cask";
+    "local_speed_m_s": "–", Observation, "{ most = 25.0 }", "speed of the corner that strikes";
     "k": "–", Observation, "{ least = 0.2, most = 0.8 }", "coefficient of restitution";
     "rigid_body_deceleration_g": "–", Observation, "{ most = 300.0 }", "rigid-body deceleration";
     "force_mn": "–", Observation, "{ most = 12.0 }", "vertical force";

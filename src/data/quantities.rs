@@ -188,9 +188,9 @@ quantities! {
         time,
         /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s
         /// (44)
-        local_speed: ("speed of its corner", "with ringing and swinging"),
+        local_speed: ("speed (corner)", "with ringing and swinging"),
         /// Magnitude of R's velocity just before it strikes, m/s   (24)
-        speed: "m/s", ("speed", "just before the second end strikes") =>
+        speed: "m/s", ("speed (rigid cask)", "just before the second end strikes") =>
             |m| m.second_end_m_s.map(|(x, z)| x.hypot(z));
         /// Its vertical part, negative down, m/s.
         vertical_velocity: "m/s", ("vertical velocity", "up positive") =>

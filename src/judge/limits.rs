@@ -2,28 +2,34 @@
 
 use crate::data::{DropResult, Estimate, ImpactTable, Limit, LimitState, STANDARD_GRAVITY_M_S2 as G};
 
-/// A limit beside what was measured; of what both impacts have, that which may be the larger.
+/// A limit beside what was measured, with a guard band of one half-width (JCGM 106:2012, 8.3): exceeded where
+/// the whole interval lies beyond the limit, kept where all of it lies within, else undecided.
 pub fn beside_limit(limit: &Limit, result: &DropResult) -> Limit {
-    let larger = |of: fn(&ImpactTable) -> Option<Estimate>| {
-        let [first, second] = result.impacts.each_ref().map(of);
-        let larger = |(a, b): (Estimate, Estimate)| if a.value + a.u95 > b.value + b.u95 { a } else { b };
-        first.zip(second).map(larger)
-    };
-    let (measured, scale, unit) = match limit.name {
-        "slap_down_speed_m_s" => (result.slap_down.speed, 1.0, "m/s"),
-        "rigid_body_deceleration_g" => (larger(|of| of.rigid_body_deceleration.at_cog), G, "g"),
-        "force_mn" => (larger(|of| of.numbers.force_peak), 1e6, "MN"),
-        "crush_mm" => (larger(|of| of.numbers.crush), 1e-3, "mm"),
-        "energy_kj" => (larger(|of| of.numbers.energy_absorbed), 1e3, "kJ"),
-        _ => (result.k, 1.0, "1"),
-    };
-    let measured = measured.map(|of| Estimate::new(of.value / scale, of.u95 / scale, unit));
-    let [low, high] = measured.map_or([f64::NAN; 2], |of| [of.value - of.u95, of.value + of.u95]);
     let (least, most) = (limit.least.unwrap_or(f64::NEG_INFINITY), limit.most.unwrap_or(f64::INFINITY));
-    let state = match () {
-        () if low > most || high < least => LimitState::Exceeded,
-        () if low >= least && high <= most => LimitState::Kept,
-        () => LimitState::Undecided,
+    let [low, high] = [|e: &Estimate| e.value - e.u95, |e: &Estimate| e.value + e.u95];
+    // One impact beyond the limit is enough, whatever the other one was.
+    let larger = |of: fn(&ImpactTable) -> Option<Estimate>, scale: f64, unit: &'static str| {
+        let scaled = |e: Estimate| Estimate::new(e.value / scale, e.u95 / scale, unit);
+        let impacts = result.impacts.each_ref().map(|impact| of(impact).map(scaled));
+        let largest = |among: [Option<Estimate>; 2]| {
+            among.into_iter().flatten().max_by(|a, b| high(a).total_cmp(&high(b)))
+        };
+        largest(impacts.map(|e| e.filter(|e| low(e) > most)))
+            .or_else(|| largest(impacts).filter(|_| impacts.iter().all(Option::is_some)))
+    };
+    let measured = match limit.name {
+        "slap_down_speed_m_s" => result.slap_down.speed,
+        "local_speed_m_s" => result.slap_down.local_speed,
+        "rigid_body_deceleration_g" => larger(|of| of.rigid_body_deceleration.at_cog, G, "g"),
+        "force_mn" => larger(|of| of.numbers.force_peak, 1e6, "MN"),
+        "crush_mm" => larger(|of| of.numbers.crush, 1e-3, "mm"),
+        "energy_kj" => larger(|of| of.numbers.energy_absorbed, 1e3, "kJ"),
+        _ => result.k,
+    };
+    let state = match measured {
+        Some(of) if low(&of) > most || high(&of) < least => LimitState::Exceeded,
+        Some(of) if low(&of) >= least && high(&of) <= most => LimitState::Kept,
+        _ => LimitState::Undecided,
     };
     Limit { measured, state, ..*limit }
 }

@@ -216,8 +216,8 @@ fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, length_m: f64) ->
 pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
     let (first, second) = (&result.first_impact, &result.slap_down);
     let (of, unit) = match seen.name {
-        // What is seen of the corner rings and swings.
-        "slap_down_speed_m_s" => (second.local_speed.or(second.speed), "m/s"),
+        "slap_down_speed_m_s" => (second.speed, "m/s"),
+        "local_speed_m_s" => (second.local_speed, "m/s"),
         "angular_velocity_rad_s" => (first.angular_velocity, "rad/s"),
         "angle_deg" => (second.angle, "deg"),
         "flight_time_s" => (second.flight_time, "s"),

@@ -4,11 +4,11 @@ use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
     TableShape, Tone, Words,
 };
-use super::first_screen::{agreement, cause, of_corner, untested};
+use super::first_screen::{RIGID, agreement, built_in, by_measured, cause, of_corner, untested};
 use super::impacts::{impacts, prototype};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
-use super::record::{self, TOLD, others, tested};
+use super::record::{self, GUARD_BAND, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::text::{
     Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
@@ -56,7 +56,10 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let hash = input.recording_sha256.get(..16).unwrap_or_default();
     ReportDocument {
         page: Frame {
-            title: format!("{heading} – {}", verdict_word(result.verdict)),
+            title: format!(
+                "{heading} – {}",
+                verdict_word(result.verdict, result.k.or(result.slap_down.speed))
+            ),
             product: "Drop test report",
             foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
             heading,
@@ -82,7 +85,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             quantities(result),
             impacts(result).with_all(pictures(&["impacts", "crush"])),
             prototype(result, file),
-            comparison(result),
+            comparison(result, file),
             record::observed(&result.observed),
             record::limits(&result.limits),
             quality(&result.quality).only(Medium::Page),
@@ -125,57 +128,53 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         json_word(result.input.format),
         tail(&result.input.cask, 24)
     );
-    let cause = cause(result).map(|said| ChapterPart::text(sentence(&said)));
-    let assumed = record::assumed(file, &result.budget).map(|words| {
-        ChapterPart::text(format!("The cask file does not state, and the intervals cover: {words}."))
-    });
-    let limits = defaults_that_weigh(result, file).map(|words| ChapterPart::text(sentence(&words)));
+    let cause = cause(result).map(|said| sentence(&said));
+    let assumed = record::assumed(file, &result.budget)
+        .map(|words| format!("The cask file does not state, and the intervals cover: {words}."));
+    let interval_by = defaults_that_weigh(result, file).map(|words| sentence(&words));
     let untested = untested(result).map(|[named, remedies]| {
-        ChapterPart::text(format!("Nothing in this recording tests {named}. To test them: {remedies}."))
+        format!("Nothing in this recording tests {named}. To test them: {remedies}.")
     });
+    let banner = |style, word: &str, sentence| PartContent::Banner(Tone(style, word.to_owned()), sentence);
+    let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
+    let verdict = banner(verdict_style(result.verdict), word, verdict_sentence(result));
+    let limits = limits_said(&result.limits, usize::MAX).map(|said| format!("{said}. {GUARD_BAND}."));
+    let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
+    let alarm = alarm.map(|said| banner(Style::Red, LIMIT_EXCEEDED, said));
+    let banners = alarm.into_iter().chain([verdict]).map(ChapterPart::from);
+    let said = [limits.map(|said| format!("Limits: {said}")), cause, assumed, interval_by, untested];
+    let said = said.into_iter().flatten().map(ChapterPart::text);
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
         .with(ChapterPart::line(files).only(Medium::Terminal))
         .with_all(record::line(&result.test))
-        .with(
-            ChapterPart::from(PartContent::Banner(
-                Tone(verdict_style(result.verdict), verdict_word(result.verdict).to_owned()),
-                verdict_sentence(result),
-            ))
-            .only(Medium::Page),
-        )
-        .with(PartContent::Figures(figures(result)))
-        .with_all(
-            [cause, assumed, limits, untested].into_iter().flatten().map(|part| part.only(Medium::Page)),
-        )
+        .with_all(banners.map(|part| part.only(Medium::Page)))
+        .with(PartContent::Figures(figures(result, file)))
+        .with_all(said.map(|part| part.only(Medium::Page)))
         .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
 }
 
-fn figures(result: &DropResult) -> Vec<[String; 3]> {
-    let speed = result.slap_down.speed.as_ref();
-    let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
+fn figures(result: &DropResult, file: &CaskFile) -> Vec<[String; 3]> {
+    let corner = of_corner(result).map_or_else(String::new, |corner| format!("; of the corner {corner}"));
+    let model = result.model.as_ref().map_or("no model taken", |model| model.rung.words());
     let compared = result.comparison.as_ref();
-    let figure = |name: &str, value: Option<String>, detail: String| {
-        [name.to_owned(), determined(value.unwrap_or_else(|| MISSING.to_owned())), detail]
-    };
-    vec![
-        figure(
-            "Slap-down speed, measured",
-            Some(interval(speed)),
-            of_corner(result).map_or_else(String::new, |local| format!("of the rigid cask; {local}")),
-        ),
-        figure(
+    let predicted = compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s"));
+    let by = compared.map(|_| format!("{model}, {}", by_measured(result, file)));
+    let figures = [
+        ("Slap-down speed, measured", interval(result.slap_down.speed.as_ref()), format!("{RIGID}{corner}")),
+        (
             "Slap-down speed, predicted",
-            compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s")),
-            compared.map_or_else(String::new, |_| format!("{model}; takes the measured k")),
+            predicted.unwrap_or_else(|| MISSING.to_owned()),
+            by.unwrap_or_default(),
         ),
-        figure(
+        (
             "Measured against predicted",
-            compared.map(|c| percent(c.difference_percent)),
+            percent(compared.map(|c| c.difference_percent)),
             compared.map_or("", |c| agreement(c.agrees)).to_owned(),
         ),
-        figure("Coefficient of restitution k", Some(interval(result.k.as_ref())), String::new()),
-    ]
+        ("Coefficient of restitution k", interval(result.k.as_ref()), String::new()),
+    ];
+    figures.map(|(name, value, detail)| [name.to_owned(), determined(value), detail]).into()
 }
 
 /// First impact, slap-down and k, each with its interval or with the reason why it is missing.
@@ -208,13 +207,13 @@ fn estimates(
 
 /// The measured speed beside the predicted one, the model taken and why, and all that were held against the
 /// measurement.
-fn comparison(result: &DropResult) -> Chapter {
+fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(
         || ChapterPart::text(format!("{MISSING} not compared: {}", reason(result, &SLAP_DOWN_CODES))),
         |c| {
-            let by = taken.map_or_else(String::new, |m| format!("{}; takes the measured k", m.rung.words()));
-            let style = if c.agrees { Style::Green } else { Style::Yellow };
+            let (style, by) =
+                (if c.agrees { Style::Green } else { Style::Yellow }, by_measured(result, file));
             let facts = vec![
                 Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),
                 Fact::number("predicted", pair(c.predicted, c.predicted_u95, "m/s")).note(by),
@@ -227,8 +226,9 @@ fn comparison(result: &DropResult) -> Chapter {
     let model = taken.map(|model| {
         let candidates = ReportTable::of(&model.candidates)
             .caption(
-                "The ladder of analytical models with the measured k, the simplest first; rungs that \
-                      change nothing are left out",
+                "The analytical models with the measured k, the simplest first, without those that change \
+                 nothing. Taken: the first that agrees, all richer ones agreeing too and none farther from it \
+                 than the measured speed is known; else the richest.",
             )
             .chosen(|c| c.rung == model.rung)
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
@@ -236,7 +236,8 @@ fn comparison(result: &DropResult) -> Chapter {
             .number("± 95 %, m/s", |c| optional(c.u95, 2))
             .number("Measured against predicted", |c| percent(c.difference_percent))
             .text("Within both intervals", |c| yes(c.consistent));
-        let words = format!("Model: {}. {}", model.rung.words(), sentence(&model.reason));
+        let built_in = built_in(result).map_or_else(String::new, |words| format!(" The agreement is partly {words}."));
+        let words = format!("Model: {}. {}{built_in}", model.rung.words(), sentence(&model.reason));
         [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]
     });
     Chapter::new("Measured beside predicted")

@@ -49,6 +49,8 @@ pub struct BatchRow {
     pub slap_down_speed: Option<Estimate>,
     /// Coefficient of restitution.
     pub k: Option<Estimate>,
+    /// The limits that are exceeded, by their keys.
+    pub exceeded: Vec<String>,
     /// The model taken.
     pub model: Option<String>,
     /// Measured beside predicted.
@@ -122,6 +124,8 @@ pub(crate) struct DropPoint {
     pub(crate) cask: String,
     pub(crate) series: String,
     pub(crate) angle_deg: Option<f64>,
+    /// Half-width of the stated angle, degrees.
+    pub(crate) angle_u95_deg: f64,
     /// Of the test, as RFC 3339 writes it.
     pub(crate) date: Option<String>,
     /// Largest deceleration of the struck end, m/s², and energy absorbed, J, of both impacts.
@@ -135,9 +139,11 @@ fn part<T: DeserializeOwned>(line: &Value, place: &str) -> Option<T> {
 }
 
 impl BatchRow {
-    /// Why it was not analysed, or what was found.
+    /// Why it was not analysed, or which limits are exceeded and what was found.
     fn why(&self) -> String {
-        self.error.clone().unwrap_or_else(|| self.codes.join(", "))
+        let exceeded = self.exceeded.iter().map(|key| format!("exceeds its limit of {key}"));
+        let found = exceeded.chain(self.codes.iter().cloned());
+        self.error.clone().unwrap_or_else(|| found.collect::<Vec<_>>().join(", "))
     }
 
     /// The row of a line.
@@ -149,16 +155,20 @@ impl BatchRow {
             let all = line["quality"].as_array().into_iter().flatten();
             all.filter(move |found| found["severity"] == severity).filter_map(|found| found["code"].as_str())
         };
+        let limits = line["limits"].as_array().into_iter().flatten();
+        let exceeded = limits.filter(|limit| limit["state"] == "exceeded");
+        let exceeded: Vec<String> = exceeded.filter_map(|limit| part(limit, "/name")).collect();
         let grave: Vec<&str> = codes("error").chain(codes("warning")).collect();
         Self {
             id: part(line, "/id").unwrap_or_default(),
             recording: part(line, "/campaign/recording").unwrap_or_default(),
             cask: part(line, "/campaign/cask"),
             report: verdict.and(folder).map(|folder| format!("{folder}/report.html")),
-            exit: verdict.map_or(2, |verdict| u8::from(verdict != Verdict::Pass)),
+            exit: verdict.map_or(2, |it| u8::from(it != Verdict::Pass || !exceeded.is_empty())),
             verdict,
             slap_down_speed: part(line, "/slap_down/speed"),
             k: part(line, "/k"),
+            exceeded,
             model: part(line, "/model/name"),
             comparison: part(line, "/comparison"),
             findings: grave.len(),
@@ -187,6 +197,7 @@ impl DropPoint {
             cask: part(line, "/settings/cask/name/value").unwrap_or_default(),
             series: series.collect::<Value>().to_string(),
             angle_deg: part(line, "/settings/drop/angle_deg/value"),
+            angle_u95_deg: part(line, "/settings/tolerance/angle_deg/value").unwrap_or_default(),
             date: part(line, "/settings/test/date/value"),
             peaks_m_s2: of_impacts("rigid_body_deceleration/at_struck_end"),
             energies_j: of_impacts("energy_absorbed"),

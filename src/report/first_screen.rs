@@ -2,12 +2,16 @@
 //! what limits them, and what nothing in the recording tests.
 
 use super::reconstruction::{defaults_that_weigh, largest, weighty_defaults};
-use super::rounding::{interval, pair, percent, significant};
+use super::record::{LIMIT_EXCEEDED, limits_said};
+use super::rounding::{fixed, interval, pair, percent, significant};
 use super::text::{
     Style, clamped, counted, determined, distinct, dropped, json_word, printable, sentence, styled,
-    styled_lines, tail, verdict_sentence, verdict_style, verdict_word,
+    styled_lines, tail, true_minus, verdict_sentence, verdict_style, verdict_word,
 };
-use crate::data::{Analysis, DropResult, Estimate, Finding, IssueCode, LimitState, Severity, Untested};
+use crate::data::{
+    Analysis, CaskFile, ClosureKind, Contact, DropResult, Estimate, Finding, IssueCode, LimitState,
+    ReconstructionRung, Rung, Severity, Untested,
+};
 
 /// Columns that the name of a row takes.
 const NAME_WIDTH: usize = 16;
@@ -71,13 +75,38 @@ fn by_channels<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     kinds.into_iter().map(words).collect()
 }
 
-/// Measured beside predicted, in one sentence; the prediction is no second witness of k.
-pub(super) fn compared(result: &DropResult) -> Option<String> {
+/// Measured beside predicted, in one sentence: the prediction is no second witness of what it takes from the
+/// recording.
+fn compared(result: &DropResult, file: &CaskFile) -> Option<String> {
     let c = result.comparison.as_ref()?;
     let predicted = pair(c.predicted, c.predicted_u95, "m/s");
     let agrees = if c.agrees { "agrees" } else { "disagrees" };
-    Some(format!("{predicted} by the measured k; {}: {agrees}", percent(c.difference_percent)))
+    let built_in = built_in(result).map_or("", |_| ", partly built in (the fit ties rotation to impulse)");
+    let (by, percent) = (by_measured(result, file), percent(c.difference_percent));
+    Some(format!("{predicted} {by}; {percent}: {agrees}{built_in}"))
 }
+
+/// What the prediction takes from the recording that it is held against: "by the measured k, friction".
+pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
+    let rung = result.model.as_ref().map_or(Rung::Rod, |model| model.rung);
+    let is_friction = file.contact == Contact::Unknown && rung >= Rung::Friction;
+    let friction = if is_friction { ", friction" } else { "" };
+    let time = if rung == Rung::FinitePulse { ", contact time" } else { "" };
+    format!("by the measured k{friction}{time}")
+}
+
+/// What makes measurement and prediction agree by itself, and by how much: a joint fit turns the cask by the
+/// impulse of the first impact, as the prediction does.
+pub(super) fn built_in(result: &DropResult) -> Option<String> {
+    result.comparison.filter(|comparison| comparison.agrees)?;
+    let choice = result.reconstruction.as_ref().filter(|c| c.rung == ReconstructionRung::Joint)?;
+    let tie = choice.closures.iter().find(|closure| closure.kind == ClosureKind::Turning)?;
+    let (miss, in_u) = (true_minus(&tie.miss), fixed(tie.miss_in_u.abs(), 1));
+    Some(format!("built in: the fit ties the rotation to the impulse ({miss}, {in_u} u without)"))
+}
+
+/// Whose speed the slap-down speed is.
+pub(super) const RIGID: &str = "of the rigid cask";
 
 /// Whether measured and predicted speed agree.
 pub(super) fn agreement(agrees: bool) -> &'static str {
@@ -115,7 +144,7 @@ fn row(name: &str, words: &str, width: usize, most: usize) -> String {
 pub(super) fn of_corner(result: &DropResult) -> Option<String> {
     let (local, rigid) = result.slap_down.local_speed.zip(result.slap_down.speed)?;
     let is_apart = (local.value - rigid.value).abs() > rigid.u95;
-    is_apart.then(|| interval(Some(&local)) + " of the end that strikes, ringing included")
+    is_apart.then(|| interval(Some(&local)) + " as it strikes, ringing included")
 }
 
 /// The first screen, in at most 16 lines of 80 columns; `report` is where the page was written.
@@ -123,42 +152,41 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let recording = tail(&result.input.recording, 40);
     let title = format!("{} · {} · {recording}", file.cask.name, dropped(&file.drop));
-    let word = verdict_word(result.verdict);
-    let cause = cause(result).map(|said| sentence(&said)).unwrap_or_default();
-    // Where nothing else is to be said the cause has room for its remedy.
-    let most = if result.untested.is_empty() { 7 } else { 3 };
-    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, most);
-    let head = styled_lines(Style::Bold, &clamped(&title, width, 0, 1))
-        + &format!("{}{}", styled(verdict_style(result.verdict), word), &said[word.len()..]);
+    let title = styled_lines(Style::Bold, &clamped(&title, width, 0, 1));
+    let limits = limits_said(&result.limits, 3);
+    let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
+    let alarm = alarm.map_or_else(String::new, |said| row(LIMIT_EXCEEDED, &said, width, 4));
     let speed = result.slap_down.speed.as_ref();
-    let corner = of_corner(result);
-    let holds = match (speed, &corner) {
-        (None, _) => "",
-        (_, None) => "  (± holds 95 %)",
-        (_, Some(_)) => " of the rigid cask (± holds 95 %)",
-    };
+    let holds = speed.map_or_else(String::new, |_| format!(" {RIGID} (± holds 95 %)"));
     let interval_by = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
     let is_number = result.k.is_some() || speed.is_some();
-    let limits = result.limits.iter().map(|l| format!("{} {}", l.name, json_word(l.state)));
     let rows = [
-        ("Slap-down speed", Some(determined(interval(speed)) + holds), 1),
-        ("Speed of corner", corner, 1),
+        ("Slap-down speed", Some(determined(interval(speed)) + &holds), 1),
+        ("Speed of corner", of_corner(result), 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
-        ("Predicted speed", compared(result), 1),
+        ("Predicted speed", compared(result, file), 2),
         ("Assumed", super::record::assumed(file, &result.budget), 2),
-        ("Interval", Some(interval_by).filter(|_| is_number), 3),
-        ("Limits", Some(limits.collect::<Vec<_>>().join(", ")), 1),
+        ("Interval", Some(interval_by).filter(|_| is_number), if result.limits.is_empty() { 3 } else { 1 }),
+        ("Limits", limits, 4),
     ];
     let said = rows.into_iter().filter_map(|(name, words, most)| Some((name, words?, most)));
     let numbers = said.filter(|(_, words, _)| !words.is_empty());
-    let before =
-        head + &numbers.map(|(name, words, most)| row(name, &words, width, most)).collect::<String>();
+    let numbers: String = numbers.map(|(name, words, most)| row(name, &words, width, most)).collect();
     let foot = row("Findings", &findings(result), width, 1)
         // A path is whole, however long.
         + &report.map_or_else(String::new, |page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
-    let tested = untested(result).map_or_else(String::new, |[named, remedies]| {
+    let lines = |text: &str| text.lines().count();
+    // Where nothing else is to be said the cause has room for its remedy.
+    let (untested, most) = (untested(result), if result.untested.is_empty() { 7 } else { 3 });
+    let others = lines(&alarm) + lines(&numbers) + lines(&foot) + if untested.is_some() { 3 } else { 1 };
+    let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
+    let cause = cause(result).map(|said| sentence(&said)).unwrap_or_default();
+    let most = most.min(MOST_LINES.saturating_sub(others).max(1));
+    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, most);
+    let verdict = styled(verdict_style(result.verdict), word) + &said[word.len()..];
+    let before = title + &styled_lines(Style::Red, &alarm) + &verdict + &numbers;
+    let tested = untested.map_or_else(String::new, |[named, remedies]| {
         let named = format!("± covers tolerances; larger errors show nowhere: {named}");
-        let lines = |text: &str| text.lines().count();
         let left = MOST_LINES.saturating_sub(lines(&before) + lines(&foot)).max(2);
         let free = left.saturating_sub(lines(&row("", &named, width, left)));
         let remedies = row("To test them", &remedies, width, free.max(2).min(left - 1));

@@ -111,12 +111,14 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         _ => "free",
     };
     let candidates = ReportTable::of(&fit.candidates)
-        .caption("Candidates that were tried; BIC: the lower the better")
+        .caption(
+            "Candidates that were tried. Criterion: BIC and, for a drift, −2 ln of the odds of its shifts",
+        )
         .chosen(|c| c.taken)
         .text("Modes", |c| format!("{}{}", c.modes, taken_mark(c.taken)))
         .text("Phases", |c| phases(c.driven, c.modes))
         .text("Drift", |c| yes(c.drift))
-        .number("BIC", |c| fixed(c.bic, 1))
+        .number("Criterion", |c| fixed(c.bic, 1))
         .number("Residual, m/s", |c| significant(c.residual_m_s, 2));
     let plateaus = ReportTable::of(&fit.plateaus)
         .caption("Plateaus")
@@ -132,15 +134,19 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
 
 fn flight_sentence(fit: &FlightFit) -> String {
     let drift = if fit.drift { ", with a drift (zero shift)" } else { ", without drift" };
-    let among = if fit.candidates.first().is_none_or(|c| c.taken) {
-        "."
-    } else {
-        " of those with which the second end is on the target as it strikes and the cask turns as the first \
-         impact has it."
+    let lowest = fit.candidates.iter().map(|c| c.bic).fold(f64::INFINITY, f64::min);
+    // A simpler one that does as well stands before that of the lowest criterion, all others behind it.
+    let why = match fit.candidates.iter().position(|c| c.taken) {
+        Some(i) if fit.candidates[i].bic <= lowest => "is that of the fit with the lowest criterion",
+        Some(0) => {
+            "is that of the smallest fit that gives the same velocity steps as the one with the lowest \
+             criterion"
+        }
+        _ => "is that of the fit with the lowest criterion among those that the motion does not contradict",
     };
     format!(
         "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes \
-         is the one with the lowest information criterion{among}",
+         {why}.",
         fixed(fit.from_s * 1e3, 2),
         fixed(fit.to_s * 1e3, 2)
     )
@@ -273,6 +279,7 @@ mod tests {
     use super::super::document::ReportDocument;
     use super::super::{as_html, sample};
     use super::*;
+    use crate::data::FlightModelScore;
 
     fn page(chapter: Chapter) -> String {
         as_html::page(&ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }, &[])
@@ -334,5 +341,32 @@ mod tests {
             assert!(found.contains(words), "{words}: {found}");
         }
         assert!(!page(reconstruction(&sample::without_anything().result)).contains("<h2>"));
+    }
+
+    #[test]
+    fn the_number_of_modes_is_explained_by_what_decided_it() {
+        let score = |modes, bic, taken| FlightModelScore {
+            modes,
+            drift: false,
+            driven: false,
+            taken,
+            bic,
+            residual_m_s: 0.01,
+        };
+        let said = |scores: [(f64, bool); 3]| {
+            let candidates =
+                (1..).zip(scores).map(|(modes, (bic, taken))| score(modes, bic, taken)).collect();
+            flight_sentence(&FlightFit { candidates, ..FlightFit::default() })
+        };
+        let lowest = said([(-9.0, true), (-8.0, false), (-7.0, false)]);
+        assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
+        // A simpler one that does as well stands first.
+        let smallest = said([(-7.0, true), (-9.0, false), (-8.0, false)]);
+        assert!(smallest.contains("smallest fit that gives the same velocity steps"), "{smallest}");
+        // The motion contradicts the first.
+        let other = said([(-9.0, false), (-8.0, true), (-7.0, false)]);
+        assert!(other.ends_with("among those that the motion does not contradict."), "{other}");
+        let lowest = said([(-7.0, false), (-9.0, true), (-8.0, false)]);
+        assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
     }
 }

@@ -5,9 +5,9 @@ use super::document::{
     Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape, Words,
 };
 use super::rounding::{MISSING, interval, optional, optional_fixed, plain, significant};
-use super::text::{Style, json_word};
+use super::text::{Style, determined, json_word};
 use super::words::contact_words;
-use crate::data::keys::{LIMITS, OBSERVED};
+use crate::data::keys::quantity_words;
 use crate::data::{
     CaskFile, ChannelSpec, Contact, Contribution, DropResult, Extreme, Limit, LimitState, ObservedBeside,
     OtherSummary, Photo, Setting, SpectralLine, TOLERANCES, TestRecord,
@@ -54,11 +54,6 @@ pub(super) fn line(test: &TestRecord) -> Option<ChapterPart> {
     (!words.is_empty()).then(|| ChapterPart::line(words.join(" · ")).only(Medium::Terminal))
 }
 
-/// What a key of `[observed]` or `[limits]` is called.
-fn words(name: &str) -> &str {
-    OBSERVED.iter().chain(&LIMITS).find(|key| key.name == name).map_or(name, |key| key.remark)
-}
-
 /// What was seen otherwise beside the result.
 pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     let agrees = |seen: &ObservedBeside| match seen.e_n {
@@ -69,7 +64,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     let table = ReportTable::of(all)
         .class("")
         .caption("E_n: the difference over both half-widths together; within ±1 they agree.")
-        .head("Quantity", |seen| words(seen.name))
+        .head("Quantity", |seen| quantity_words(seen.name))
         .number("Observed", |seen| interval(Some(&seen.observed)))
         .text("By", |seen| seen.by.as_deref().unwrap_or(MISSING))
         .only(Medium::Page)
@@ -79,25 +74,49 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     Chapter::new("Observed otherwise").with_all((!all.is_empty()).then(|| table.into()))
 }
 
-const LIMITS_CAPTION: &str = "The customer's. Undecided: the interval holds the limit, or the quantity is \
-                              not determined. Deceleration (at the centre of gravity), force, crush, energy: \
-                              the larger of both impacts'.";
+/// The word for a limit that is exceeded.
+pub(super) const LIMIT_EXCEEDED: &str = "LIMIT EXCEEDED";
+
+/// The decision rule by which a limit is kept or exceeded.
+pub(super) const GUARD_BAND: &str = "Decision rule: a guard band of the 95 % half-width (JCGM 106:2012, 8.3)";
+
+const LIMITS_CAPTION: &str = "Exceeded: the whole interval lies beyond the customer's limit. Kept: all of it \
+                              lies within. Undecided: it holds the limit, or the quantity is not determined. \
+                              Deceleration (at the centre of gravity), force, crush, energy: the larger of \
+                              both impacts'.";
+
+/// The limits that are exceeded, then those undecided, at most so many in full, then the count of those kept;
+/// `None` without limits.
+pub(super) fn limits_said(all: &[Limit], most: usize) -> Option<String> {
+    let words = |limit: &Limit| {
+        let bounds = [limit.least.map(|of| ("at least", of)), limit.most.map(|of| ("at most", of))];
+        let bounds = bounds.into_iter().flatten().map(|(word, of)| format!("{word} {}", plain(of, 6)));
+        let bounds = bounds.collect::<Vec<_>>().join(", ");
+        let unit = limit.measured.map_or("", |of| of.unit).trim_matches('1');
+        let measured = determined(interval(limit.measured.as_ref()));
+        format!("{} {measured} ({})", quantity_words(limit.name), format!("{bounds} {unit}").trim_end())
+    };
+    let of = |state| all.iter().filter(move |limit| limit.state == state);
+    let undecided = of(LimitState::Undecided).map(|limit| format!("undecided: {}", words(limit)));
+    let mut said: Vec<String> = of(LimitState::Exceeded).map(words).chain(undecided).collect();
+    let (more, kept) = (said.len().saturating_sub(most), of(LimitState::Kept).count());
+    said.truncate(most);
+    said.extend((more > 0).then(|| format!("{more} more (`--full`)")));
+    said.extend((kept > 0).then(|| format!("{kept} kept")));
+    (!said.is_empty()).then(|| said.join("; "))
+}
 
 /// What was measured beside the customer's limits.
 pub(super) fn limits(all: &[Limit]) -> Chapter {
     let state = |row: &Limit| {
-        let style = match row.state {
-            LimitState::Kept => Style::Green,
-            LimitState::Exceeded => Style::Red,
-            LimitState::Undecided => Style::Yellow,
-        };
+        let style = [Style::Green, Style::Red, Style::Yellow][row.state as usize];
         TableCell::toned(style, json_word(row.state))
     };
     let bound = |bound: Option<f64>| bound.map_or_else(|| MISSING.to_owned(), |bound| plain(bound, 6));
     let table = ReportTable::of(all)
         .class("")
-        .caption(LIMITS_CAPTION)
-        .head("Quantity", |row| words(row.name))
+        .caption(format!("{GUARD_BAND}. {LIMITS_CAPTION}"))
+        .head("Quantity", |row| quantity_words(row.name))
         .number("Measured", |row| interval(row.measured.as_ref()))
         .number("Least", |row| bound(row.least))
         .number("Most", |row| bound(row.most))

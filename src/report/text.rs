@@ -2,7 +2,7 @@
 //! codes.
 
 use super::rounding::{MISSING, plain};
-use crate::data::{Drop, DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
+use crate::data::{Drop, DropResult, Estimate, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
 
 /// Each of `items` once, in the order of first appearance.
 pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -124,11 +124,12 @@ pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The verdict as capital words.
-pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
+/// The verdict as capital words; an error may leave a number, k or the slap-down speed or both.
+pub(super) fn verdict_word(verdict: Verdict, number: Option<Estimate>) -> &'static str {
     match verdict {
         Verdict::Pass => "DATA SOUND",
         Verdict::Review => "REVIEW",
+        Verdict::Fail if number.is_some() => "PARTLY USABLE",
         Verdict::Fail => "NOT TO BE USED",
     }
 }
@@ -147,23 +148,23 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
     let of_severity = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
     let (errors, warnings) = (of_severity(Severity::Error), of_severity(Severity::Warning));
     let missing = match (result.k.is_none(), result.slap_down.speed.is_none()) {
-        (true, true) => Some(("k and the slap-down speed are", "")),
-        (true, false) => Some(("k is", "; the speed may be used")),
-        (false, true) => Some(("The slap-down speed is", "; k may be used")),
+        (true, true) => Some("k and the slap-down speed are"),
+        (true, false) => Some("The slap-down speed is valid, k is"),
+        (false, true) => Some("k is valid, the slap-down speed is"),
         (false, false) => None,
     };
     match (result.verdict, missing) {
         (Verdict::Pass, _) => "No check found a problem.".into(),
-        (_, Some((missing, stands))) => {
+        (_, Some(missing)) => {
             let why = if errors > 0 { counted(errors, "error") } else { counted(warnings, "warning") };
-            format!("{missing} not determined ({why}){stands}.")
+            format!("{missing} not determined ({why}).")
         }
         (Verdict::Review, None) if warnings == 1 => "One warning: read it before using the numbers.".into(),
         (Verdict::Review, None) => format!("{warnings} warnings: read them before using the numbers."),
         (Verdict::Fail, None) if result.quality.iter().any(|i| i.code == IssueCode::MissingChannel) => {
-            "One end has no channel; the mass properties stand in for it.".into()
+            "One end has no channel; the mass properties replace it, and nothing checks the numbers.".into()
         }
-        (Verdict::Fail, None) => "A velocity step was lost; the rest of the motion tells the numbers.".into(),
+        (Verdict::Fail, None) => "A velocity step was lost; the other channels determine the numbers.".into(),
     }
 }
 

@@ -36,6 +36,7 @@ mod run;
 mod safety;
 mod same;
 mod scale_model;
+mod sentences;
 mod short_flights;
 mod slips;
 mod stages;

@@ -209,7 +209,7 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
                 photos = [\"before.png\"]\n[test.more]\nHook = 4\n";
     // Corner 18.22 ± 0.46 m/s: (18.22 − 18.0)/√(0.46² + 0.30²) = 0.40; k 0.551 ± 0.042: (0.551 −
     // 0.7)/√(0.042² + 0.030²) = −2.9.
-    let seen = "[observed]\nslap_down_speed_m_s = { value = 18.0, u95 = 0.3, by = \"video\" }\n\
+    let seen = "[observed]\nlocal_speed_m_s = { value = 18.0, u95 = 0.3, by = \"video\" }\n\
                 k = { value = 0.7, u95 = 0.03 }\n";
     let result = with(&format!("{test}{seen}")).json();
     assert_eq!(result["test"]["id"], "SD-14");
@@ -263,7 +263,7 @@ fn a_report_goes_to_paper_and_to_other_programs() {
             && curves.lines().nth(1).is_some_and(|row| row.contains("0,0"))
     );
     let table = fs::read_to_string(out.join("results.tex")).expect("a table");
-    assert!(table.contains("Slap-down: speed & $20.62 \\pm 0.40$ m/s \\\\"), "{table}");
+    assert!(table.contains("Slap-down: speed (rigid cask) & $20.62 \\pm 0.40$ m/s \\\\"), "{table}");
     let path = std::env::var("PATH").unwrap_or_default();
     if std::env::split_paths(&path).all(|folder| !folder.join("chromium").is_file()) {
         println!("skipped: no chromium to print with");

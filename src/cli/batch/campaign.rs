@@ -63,6 +63,8 @@ fn curves(cask_file: &CaskFile, ks: [f64; 2], [from, to]: [f64; 2]) -> Vec<Predi
 
 /// How a campaign ends: as its worst recording.
 pub fn ending(batch: &Batch) -> Ending {
-    let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
-    batch.rows.iter().map(outcome).max().unwrap_or(Ending::Clear)
+    match batch.rows.iter().map(|row| row.exit).max() {
+        Some(2..) => Ending::NotDone,
+        exit => Ending::of(exit == Some(1)),
+    }
 }

@@ -5,9 +5,9 @@ use super::{IssueCode as Code, Severity};
 use crate::data::shown::digits;
 use crate::data::{End, Estimate, STANDARD_GRAVITY_M_S2 as G};
 
-/// What is left to know a velocity step by that a channel lost.
-const AS_FAR_AS_TOLD: &str = "k and the slap-down speed are determined only as far as the other channels and \
-                              the path of the second end to the target allow";
+/// What may still determine a velocity step that a channel lost.
+const REPLACES_STEP: &str =
+    "only the other channels and the path of the second end to the target can replace it";
 /// What channels whose clocks are apart need.
 const ONE_TRIGGER: &str =
     "the channels' clocks are apart; record them with one trigger, or shift the channel";
@@ -54,7 +54,7 @@ pub enum ChannelFinding {
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.
     LostStep { shows_slap_down: bool } => (Code::Gap, Error),
         ("lacks samples of the first impact (missing, or one value repeated), and with them its velocity \
-         step: {}", if *shows_slap_down { AS_FAR_AS_TOLD } else { "no slap-down tells what it was" });
+         step: {}", if *shows_slap_down { REPLACES_STEP } else { "no slap-down tells what it was" });
     /// Noise makes the velocity uncertain over a stretch of `length_s`.
     Noise { noise_m_s2: f64, u_m_s: f64, length_s: f64, severity: Severity } => (Code::Noise, *severity),
         ("({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which \
@@ -268,7 +268,7 @@ fn cut_off(during: During, lost_m_s: f64, takes_step: bool) -> String {
                 .into();
         }
     };
-    let had = if takes_step { format!(", and {AS_FAR_AS_TOLD}") } else { String::new() };
+    let had = if takes_step { format!(", and {REPLACES_STEP}") } else { String::new() };
     format!("in the {part}; about {lost_m_s:.2} m/s of velocity is cut off{had}")
 }
 

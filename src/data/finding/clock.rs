@@ -13,7 +13,7 @@ pub enum ClockFinding of Clock {
          sample_rate_hz = {rate}", rate = hz(apart.other_hz));
     /// Times were taken, and another column or dataset does not bear them out.
     Times(apart: TimesApart) => (Code::Clock, Warning),
-        ("{apart}; the first was taken, and every velocity goes with it");
+        ("{apart}; the channels timed by {} have their velocities from it", apart.taken);
     /// A listing has no rate, for reading would refuse: the problem and its remedy.
     Refused(words: String) => (Code::Clock, Warning),
         ("{words}");

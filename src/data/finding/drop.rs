@@ -1,6 +1,7 @@
 //! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
 
 use super::{Finding, IssueCode as Code, Severity};
+use crate::data::keys::quantity_words;
 use crate::data::shown::digits;
 use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate, ObservedBeside};
 
@@ -135,9 +136,9 @@ pub enum DropFinding of Drop {
          comparison.measured, comparison.measured_u95, comparison.predicted, comparison.predicted_u95);
     /// What was seen otherwise lies apart from the result.
     ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity } => (Code::Observed, *severity),
-        ("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); \
-         check what was observed, and the cask file",
-        beside.name,
+        ("by this recording the {} is {}, but was observed{} as {}: they lie apart beyond both intervals \
+         (E_n = {e_n:.1}); check the observation, and the cask file",
+        quantity_words(beside.name),
         beside.result.as_ref().map_or_else(String::new, plus_minus),
         beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")),
         plus_minus(&beside.observed));
@@ -217,9 +218,9 @@ fn without_end(end: End, is_stood_in_for: bool) -> &'static str {
     }
 }
 
-/// "20.62 ± 0.40".
-fn plus_minus(estimate: &Estimate) -> String {
-    format!("{} ± {}", digits(estimate.value, 4), digits(estimate.u95, 2))
+/// "20.62 ± 0.40 m/s".
+fn plus_minus(Estimate { value, u95, unit }: &Estimate) -> String {
+    format!("{} ± {} {}", digits(*value, 4), digits(*u95, 2), unit.trim_matches('1')).trim_end().to_owned()
 }
 
 /// What a key of the cask file says amiss: a number x where `from` + `by` x is meant, or the sources of two

@@ -136,7 +136,7 @@ mod tests {
     fn what_is_silent_comes_with_what_to_measure_and_a_limit_that_is_not_kept_is_named() {
         let mut trial = trial();
         let text = page(&trial);
-        assert!(text.contains("silent from 1000, warned from 100, refused from 10000 Hz"), "{text}");
+        assert!(text.contains("unnoticed from 1000, warned from 100, refused from 10000 Hz"), "{text}");
         assert!(text.contains("with a gauge") && text.contains("ACCEPTED") && !text.contains("NOT ACCEPTED"));
         assert!(text.contains("within 0.20 % of the speed") && text.contains("other ways (by hand; 5.0 ms)"));
         // What the recorded full run saw stands there though three drops did not show it.

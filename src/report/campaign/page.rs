@@ -18,7 +18,8 @@ use crate::report::text::Style;
 use serde_json::json;
 use std::collections::{BTreeSet, HashMap};
 
-const REPEATS: &str = "Mean of the repeats without outliers, weighted with 1/u². Its interval is that of one \
+const REPEATS: &str = "Drops at angles within their tolerance of each other are repeats; k holds for one \
+                       angle. Mean of the repeats without outliers, weighted with 1/u². Its interval is that of one \
                        drop: repeats share what is stated of cask, angle and sensors, and no mean makes that \
                        smaller. Scatter: the standard deviation. χ² of the stated intervals says whether it \
                        is as large as they say; where repeats share most of what is uncertain it is smaller.";
@@ -29,14 +30,14 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let (pass, review) = (count(Some(Verdict::Pass)), count(Some(Verdict::Review)));
     let odd = oddities(series);
     let count = batch.rows.len();
-    let worst = match (count - pass - review, review + odd.len()) {
+    let exceeded = batch.rows.iter().filter(|row| !row.exceeded.is_empty()).count();
+    let worst = match (count - pass - review + exceeded, review + odd.len()) {
         (0, 0) => Style::Green,
         (0, _) => Style::Yellow,
         _ => Style::Red,
     };
     let banner = Tone(worst, format!("{pass} of {count} sound"));
-    let angles =
-        series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
+    let angles = series.iter().flat_map(|series| &series.pools).map(|pool| pool.angles_deg[0].to_bits());
     let angles = angles.collect::<BTreeSet<u64>>().len();
     let heading = format!("Drop tests: {}", few(series.iter().map(|series| series.name.clone())));
     let banner = Chapter::new("").with(PartContent::Banner(banner, batch.sum(&odd)));
@@ -165,10 +166,7 @@ fn reasons(batch: &Batch) -> Option<Chapter> {
 }
 
 fn of_series(series: &DropSeries, number: usize) -> Chapter {
-    let pool = |pool: &Pool| {
-        let angle = pool.angle_deg.map_or_else(|| "all".to_owned(), |angle| format!("{}°", plain(angle, 4)));
-        format!("{} at {angle}", pool.quantity.words()[2])
-    };
+    let pool = |pool: &Pool| format!("{} at {}", pool.quantity.words()[2], pool.angle_words());
     let unit = |pool: &Pool| if pool.quantity == PooledQuantity::K { "" } else { " m/s" };
     let word = |pool: &Pool| pool.pooled.word().map_or(MISSING, scatter_words);
     let repeats = ReportTable::of(&series.pools)
@@ -239,7 +237,7 @@ fn recordings(rows: &[&BatchRow], all: usize, places: &HashMap<u32, RowPlace>) -
     let more = (rows.len() < all)
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
     Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(
-        "Outliers first, then what is not to be used. E_n against the other repeats at the angle; within ±1 \
+        "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
          they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies absorbed, \
          in the first and the second impact.",
     ))

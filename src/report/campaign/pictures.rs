@@ -12,6 +12,9 @@ use crate::report::pictures::panel::{
 use crate::report::rounding::plain;
 use crate::report::words::contact_words;
 
+/// How far the mean of an angle is drawn to either side of it, degrees.
+const MEAN_DEG: f64 = 0.5;
+
 const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
 
 impl DropSeries<'_> {
@@ -45,7 +48,7 @@ impl DropSeries<'_> {
         let caption = format!(
             "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one \
              another. Bands: the analytical model over the measured range of k{k}. Below: measured over \
-             predicted with each drop's own k. Hollow: not to be used. Ringed: outlier."
+             predicted with each drop's own k. Hollow: with errors, in no mean. Ringed: outlier."
         );
         Plate::new(name, format!("{}: slap-down speed over the drop angle", self.name), caption)
             .or(NOTHING)
@@ -56,7 +59,7 @@ impl DropSeries<'_> {
         let k = |row: &BatchRow| PooledQuantity::K.of(row);
         let over = |what: &str, axis: PanelAxis| Panel::new(format!("k over the {what}"), axis, "k", 330);
         let dates = PanelAxis { scale: AxisScale::Days, ..PanelAxis::new("test date") };
-        let panels = [
+        let mut panels = [
             self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row)),
             self.drawn(over("test date", dates), k, day).with_air(0.03),
             self.drawn(over("test number", "test number in the campaign".into()), k, |row| {
@@ -64,15 +67,14 @@ impl DropSeries<'_> {
             })
             .with_air(0.03),
         ];
-        let mean = self.pools.iter().rfind(|pool| pool.quantity == PooledQuantity::K);
-        let panels = panels.map(|mut panel| {
-            let ends = panel.x_range();
-            let line = |mean: f64| Curve::new(GREY, vec![(ends.start, mean), (ends.end, mean)]);
-            panel.lines.extend(mean.map(|pool| line(pool.pooled.mean).named("mean").broken(Dash::Dashed)));
-            panel
-        });
-        let caption = "The coefficient of restitution with its 95 % interval. Dashed: mean without outliers. \
-                       Hollow: not to be used. Ringed: outlier.";
+        // Over date and number the drops at several angles stand among one another.
+        for pool in self.pools.iter().filter(|pool| pool.quantity == PooledQuantity::K) {
+            let [from, to] = pool.angles_deg;
+            let ends = [from - MEAN_DEG, to + MEAN_DEG].map(|angle_deg| (angle_deg, pool.pooled.mean));
+            panels[0].lines.push(Curve::new(GREY, ends.to_vec()).broken(Dash::Dashed));
+        }
+        let caption = "The coefficient of restitution with its 95 % interval. Dashed: mean of the repeats at \
+                       an angle, without outliers. Hollow: with errors, in no mean. Ringed: outlier.";
         let plate = Plate { columns: 3, ..Plate::new(name, format!("{}: restitution", self.name), caption) };
         plate.or(NOTHING).picture(&panels)
     }

@@ -1,12 +1,13 @@
-//! Rows of a campaign to series, the drops of one cask from one height, and these to pools: repeats at one
-//! angle, and all angles.
+//! Rows of a campaign to series, the drops of one cask from one height, and these to pools, its repeats at one
+//! angle: k holds for one angle, and a drop at another is no outlier.
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
+use crate::numerics::as_f64;
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
-use crate::numerics::{as_count, as_f64};
+use crate::report::rounding::plain;
 use serde_json::{Value, json};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 /// How far beyond the angles of the tests the predicted curves go, degrees.
 const BEYOND_DEG: f64 = 5.0;
@@ -55,9 +56,10 @@ pub(super) struct PoolMember<'a> {
     pub(super) is_out: bool,
 }
 
-/// One quantity of the sound drops at one angle, or at all.
+/// One quantity of the sound drops at one angle.
 pub(super) struct Pool<'a> {
-    pub(super) angle_deg: Option<f64>,
+    /// The least and the largest of the stated angles, which count as one within their tolerances.
+    pub(super) angles_deg: [f64; 2],
     pub(super) quantity: PooledQuantity,
     pub(super) members: Vec<PoolMember<'a>>,
     /// Of those that are no outliers.
@@ -151,12 +153,10 @@ impl<'a> DropSeries<'a> {
                 self.places.insert(number, RowPlace { beside_deg, ..RowPlace::default() });
             }
         }
-        for pool in self.pools.iter().filter(|pool| pool.angle_deg.is_some()) {
-            for member in &pool.members {
-                let place = self.places.entry(member.row.at.number).or_default();
-                place.e_n[pool.quantity as usize] = member.e_n;
-                place.is_out |= member.is_out;
-            }
+        for (pool, member) in self.pools.iter().flat_map(|pool| pool.members.iter().map(move |m| (pool, m))) {
+            let place = self.places.entry(member.row.at.number).or_default();
+            place.e_n[pool.quantity as usize] = member.e_n;
+            place.is_out |= member.is_out;
         }
     }
 
@@ -167,7 +167,7 @@ impl<'a> DropSeries<'a> {
             let Pooled { count, mean, u95, scatter, chi_square } = pool.pooled;
             let [quantity, unit, _] = pool.quantity.words();
             json!({
-                "cask": self.name, "angle_deg": pool.angle_deg, "quantity": quantity,
+                "cask": self.name, "angle_deg": pool.angles_deg[0], "quantity": quantity,
                 "unit": unit, "count": count, "mean": mean, "u95": u95, "scatter": scatter,
                 "chi_square": chi_square, "degrees": count - 1,
                 "scatter_is": pool.pooled.word().map(scatter_words),
@@ -187,40 +187,44 @@ pub(super) fn scatter_words(word: ScatterWord) -> &'static str {
     }
 }
 
-/// A verdict of "fail" says that the numbers are not to be used.
+/// Whether the numbers enter a mean: after an error they rest on what replaces a lost velocity step.
 pub(super) fn is_usable(row: &BatchRow) -> bool {
     row.verdict.is_some_and(|verdict| verdict != Verdict::Fail)
 }
 
-/// Both quantities at every angle, and k of all angles.
-fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
-    let mut by_angle: BTreeMap<usize, Vec<&'a BatchRow>> = BTreeMap::new();
-    // One recording is one drop, however often it is listed.
-    for row in rows.iter().filter(|row| row.same_recording_as.is_none()) {
-        if let Some(angle_deg) = row.at.angle_deg {
-            by_angle.entry(as_count((angle_deg * 1e6).round())).or_default().push(row);
-        }
+impl Pool<'_> {
+    /// "15°", or "14.8 to 15°" where the angles are not stated alike.
+    pub(super) fn angle_words(&self) -> String {
+        let [least, largest] = self.angles_deg.map(|angle| plain(angle, 4));
+        if least == largest { format!("{least}°") } else { format!("{least} to {largest}°") }
     }
-    let of_angle = by_angle.values().flat_map(|rows| {
-        PooledQuantity::ALL.iter().filter_map(|quantity| pool(rows[0].at.angle_deg, *quantity, rows))
-    });
-    let mut pools: Vec<Pool> = of_angle.collect();
-    if by_angle.len() > 1 {
-        // An outlier among its repeats does not enter the mean over the angles.
-        let out: HashSet<u32> = pools
-            .iter()
-            .flat_map(|pool| &pool.members)
-            .filter(|m| m.is_out)
-            .map(|m| m.row.at.number)
-            .collect();
-        let all = by_angle.values().flatten().copied();
-        let left: Vec<&BatchRow> = all.filter(|row| !out.contains(&row.at.number)).collect();
-        pools.extend(pool(None, PooledQuantity::K, &left));
-    }
-    pools
 }
 
-fn pool<'a>(angle_deg: Option<f64>, quantity: PooledQuantity, rows: &[&'a BatchRow]) -> Option<Pool<'a>> {
+/// Both quantities at every angle.
+fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
+    // One recording is one drop, however often it is listed.
+    let drops = rows.iter().filter(|row| row.same_recording_as.is_none());
+    let mut drops: Vec<(f64, &BatchRow)> =
+        drops.filter_map(|row| Some((row.at.angle_deg.filter(|a| a.is_finite())?, *row))).collect();
+    drops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut repeats: Vec<([f64; 2], Vec<&BatchRow>)> = Vec::new();
+    for (angle_deg, row) in drops {
+        let within_deg = |other: &BatchRow| row.at.angle_u95_deg.min(other.at.angle_u95_deg);
+        match repeats.last_mut().filter(|(angles, rows)| angle_deg - angles[0] <= within_deg(rows[0])) {
+            Some((angles, rows)) => {
+                angles[1] = angle_deg;
+                rows.push(row);
+            }
+            None => repeats.push(([angle_deg; 2], vec![row])),
+        }
+    }
+    let pools = |(angles, rows): &([f64; 2], Vec<&'a BatchRow>)| {
+        PooledQuantity::ALL.map(|quantity| pool(*angles, quantity, rows))
+    };
+    repeats.iter().flat_map(pools).flatten().collect()
+}
+
+fn pool<'a>(angles_deg: [f64; 2], quantity: PooledQuantity, rows: &[&'a BatchRow]) -> Option<Pool<'a>> {
     let measured = |row: &&'a BatchRow| {
         let estimate = quantity.of(row).filter(|e| e.value.is_finite() && e.u95.is_finite() && e.u95 > 0.0);
         estimate.filter(|_| is_usable(row)).map(|e| (*row, (e.value, e.u95)))
@@ -232,7 +236,7 @@ fn pool<'a>(angle_deg: Option<f64>, quantity: PooledQuantity, rows: &[&'a BatchR
     // Of two that contradict each other neither is the better one.
     let pooled = pooled(if kept.is_empty() { &values } else { &kept })?;
     let members = rows.into_iter().zip(found).map(|(row, (e_n, is_out))| PoolMember { row, e_n, is_out });
-    Some(Pool { angle_deg, quantity, members: members.collect(), pooled })
+    Some(Pool { angles_deg, quantity, members: members.collect(), pooled })
 }
 
 /// The lowest and the highest.
@@ -240,4 +244,44 @@ fn ends(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     values.filter(|value| value.is_finite()).fold(None, |ends, value| {
         Some(ends.map_or([value, value], |[low, high]: [f64; 2]| [low.min(value), high.max(value)]))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DropPoint;
+    use super::*;
+
+    fn row(number: u32, angle_deg: f64, k: f64) -> BatchRow {
+        BatchRow {
+            id: number.to_string(),
+            verdict: Some(Verdict::Pass),
+            k: Some(Estimate::new(k, 0.02, "1")),
+            at: DropPoint { number, angle_deg: Some(angle_deg), angle_u95_deg: 0.4, ..DropPoint::default() },
+            ..BatchRow::default()
+        }
+    }
+
+    #[test]
+    fn a_drop_at_another_angle_is_no_outlier_and_in_no_mean_but_its_own() {
+        let angles = [15.0, 30.0, 15.0, 15.3, 30.0, 30.0, 22.0];
+        let ks = [0.43, 0.51, 0.44, 0.42, 0.52, 0.50, 0.9];
+        let rows: Vec<BatchRow> = (1..).zip(angles).zip(ks).map(|((i, angle), k)| row(i, angle, k)).collect();
+        let series = DropSeries::all(&rows, |_, _, _| Vec::new());
+        let pools: Vec<(String, usize, f64)> = series[0]
+            .pools
+            .iter()
+            .map(|pool| (pool.angle_words(), pool.members.len(), (1e3 * pool.pooled.mean).round() / 1e3))
+            .collect();
+        let expected = [("15 to 15.3°", 3, 0.43), ("22°", 1, 0.9), ("30°", 3, 0.51)];
+        assert_eq!(pools, expected.map(|(words, count, mean)| (words.to_owned(), count, mean)));
+        assert!(series[0].pools.iter().flat_map(|pool| &pool.members).all(|member| !member.is_out));
+    }
+
+    #[test]
+    fn angles_farther_apart_than_their_tolerance_are_two() {
+        let rows = [(1, 15.0), (2, 15.3), (3, 15.6)].map(|(number, angle)| row(number, angle, 0.5));
+        let series = DropSeries::all(&rows, |_, _, _| Vec::new());
+        // The third lies within the tolerance of the second, but not of the first.
+        assert_eq!(series[0].pools.iter().map(|pool| pool.members.len()).collect::<Vec<_>>(), [2, 1]);
+    }
 }

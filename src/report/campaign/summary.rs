@@ -3,10 +3,10 @@
 
 use super::series::DropSeries;
 use super::{Batch, BatchRow};
-use crate::data::Verdict;
+use crate::data::{Estimate, Verdict};
 use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable, TableCell, TableShape};
 use crate::report::rounding::{MISSING, fixed, interval, percent, plain};
-use crate::report::text::{Style, tail, verdict_word};
+use crate::report::text::{Style, tail, verdict_style, verdict_word};
 use std::cmp::Reverse;
 use std::collections::HashSet;
 use std::path::Path;
@@ -30,10 +30,10 @@ pub(super) fn oddities<'a>(series: &[DropSeries<'a>]) -> Vec<Oddity<'a>> {
     let mut found: Vec<Oddity> = Vec::new();
     for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
     {
-        for member in pool.members.iter().filter(|member| member.is_out && pool.angle_deg.is_some()) {
+        for member in pool.members.iter().filter(|member| member.is_out) {
             let e_n = member.e_n.unwrap_or_default();
             let (name, own) = (pool.quantity.words()[2], interval(pool.quantity.of(member.row).as_ref()));
-            let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
+            let place = format!("{} at {}", series.name, pool.angle_words());
             let others = match pool.members.len() {
                 2 => "the other repeat".to_owned(),
                 count => format!("the {} other repeats", count - 1),
@@ -61,19 +61,24 @@ pub(super) fn few(names: impl Iterator<Item = String>) -> String {
     if names.len() <= 5 { shown } else { format!("{shown} and {} more", names.len() - 5) }
 }
 
+/// A number that the row has.
+fn number(row: &BatchRow) -> Option<Estimate> {
+    row.k.or(row.slap_down_speed)
+}
+
 /// The verdict on a row.
 pub(super) fn tag(row: &BatchRow) -> TableCell {
     let (style, word) = match row.verdict {
         Some(Verdict::Pass) => (Style::Green, "sound"),
-        Some(verdict @ Verdict::Review) => (Style::Yellow, verdict_word(verdict)),
-        Some(verdict @ Verdict::Fail) => (Style::Red, verdict_word(verdict)),
+        Some(verdict) => (verdict_style(verdict), verdict_word(verdict, number(row))),
         None => (Style::Red, "error"),
     };
     TableCell::toned(style, word.to_lowercase())
 }
 
 impl Batch {
-    /// How many recordings of which verdict, the outliers, and recordings that are listed twice.
+    /// How many recordings of which verdict and beyond a limit, the outliers, and recordings that are listed
+    /// twice.
     pub(super) fn sum(&self, odd: &[Oddity]) -> String {
         let count = |verdict| self.rows.iter().filter(|row| row.verdict == verdict).count();
         let [sound, review, fail] = [Verdict::Pass, Verdict::Review, Verdict::Fail].map(|v| count(Some(v)));
@@ -85,10 +90,11 @@ impl Batch {
         let named = |row: &BatchRow| Some(format!("{} is {}", row.id, row.same_recording_as.as_ref()?));
         let again = few(self.rows.iter().filter_map(named));
         let again = if again.is_empty() { again } else { format!(" Listed twice, counted once: {again}.") };
+        let exceeded = self.rows.iter().filter(|row| !row.exceeded.is_empty()).count();
         let (all, failed) = (self.rows.len(), count(None));
         format!(
-            "{all} recordings: {sound} sound, {review} for review, {fail} not to be used, {failed} not \
-             analysed. Outliers: {outliers}.{again}"
+            "{all} recordings: {sound} sound, {review} for review, {fail} partly or not usable, {failed} not \
+             analysed, {exceeded} beyond a limit. Outliers: {outliers}.{again}"
         )
     }
 
@@ -138,7 +144,7 @@ impl Batch {
             .if_any(is_wide)
             .number("angle °", angle)
             .if_any(is_wide)
-            .text("verdict", |row| row.verdict.map_or("ERROR", verdict_word))
+            .text("verdict", |row| row.verdict.map_or("ERROR", |it| verdict_word(it, number(row))))
             .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
             .text("k", |row| interval(row.k.as_ref()))
             .number("meas/pred", |row| percent(row.comparison.map(|c| c.difference_percent)))

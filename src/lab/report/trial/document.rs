@@ -127,7 +127,7 @@ fn silent(trial: &Trial) -> [ChapterPart; 2] {
         .class("many")
         .code("damage", |map| &map.name[..])
         .text("what it is", |map| &map.what[..])
-        .text("what becomes of a drop", |map| {
+        .text("what becomes of the drops tried (another cask differs)", |map| {
             map.known.map_or_else(|| fate_words(map), |known| known.becomes.into())
         })
         .number("off by, half-widths", |map| {

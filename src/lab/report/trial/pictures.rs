@@ -168,7 +168,8 @@ fn stripes(map: &TrialMap, fate: TrialFate, middle: f64) -> Vec<Vec<(f64, f64)>>
 /// From which size on what becomes of some drop, the gravest first.
 pub(super) fn fate_words(map: &TrialMap) -> String {
     let from = |fate| {
-        let (size, word) = (rounding::plain(map.first(fate)?.size, 2), json_word(fate));
+        let word = if fate == TrialFate::Silent { "unnoticed".to_owned() } else { json_word(fate) };
+        let size = rounding::plain(map.first(fate)?.size, 2);
         Some(if map.unit.is_empty() { word } else { format!("{word} from {size}") })
     };
     let gravest_first = [TrialFate::Silent, TrialFate::Warned, TrialFate::Refused];
