@@ -36,6 +36,7 @@ impl Measured {
             flight,
             &file.tolerances,
             &file.drop,
+            impact.contact.time_s,
         ));
         let known = (quantities.k, quantities.speed);
         let contact_s = impact.contact.time_s;

@@ -149,7 +149,8 @@ fn moved(
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.untested(&|flight| {
-        judge::judge_rigid(judge::places(&impact.signals), flight, &file.tolerances, &file.drop).is_some()
+        let places = judge::places(&impact.signals);
+        judge::judge_rigid(places, flight, &file.tolerances, &file.drop, impact.contact.time_s).is_some()
     });
     let ringing = events
         .slap_down

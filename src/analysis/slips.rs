@@ -226,24 +226,32 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
     }
 }
 
+/// The velocity steps of a flight, as samples, and when the first contact began.
+#[derive(Clone)]
+struct StepSamples {
+    recording: Recording,
+    flight: FlightFit,
+    contact_s: f64,
+}
+
 /// The velocity steps of the flight, as a recording of two samples a channel, the step and its standard
 /// uncertainty: what a slip put right makes of them is told without a whole analysis.
 ///
 /// One body has them in any stretch of time that all channels share; what the fit leaves counts as uncertain.
-fn of_steps(recording: &Recording, result: &DropResult) -> Option<(Recording, FlightFit)> {
-    let flight = result.flight.clone()?;
+fn of_steps(recording: &Recording, result: &DropResult) -> Option<StepSamples> {
+    let (flight, contact_s) = (result.flight.clone()?, result.first_impact.time?.value);
     let mut steps = recording.clone();
     for channel in &mut steps.channels {
         let own = flight.plateau(&channel.name).map(|p| [p.velocity_step_m_s, p.u_m_s.hypot(p.residual_m_s)]);
         let in_unit = own.unwrap_or([f64::NAN; 2]).map(|x| x / channel.scale_m_s2);
         channel.samples = Samples::F64(in_unit.to_vec());
     }
-    Some((steps, flight))
+    Some(StepSamples { recording: steps, flight, contact_s })
 }
 
 /// Whether these steps may be those of one rigid body with these slips put right.
-fn is_rigid(slips: &[Slip], of_steps: &(Recording, FlightFit), file: &CaskFile) -> bool {
-    let (mut steps, mut flight) = of_steps.clone();
+fn is_rigid(slips: &[Slip], of_steps: &StepSamples, file: &CaskFile) -> bool {
+    let StepSamples { recording: mut steps, mut flight, contact_s } = of_steps.clone();
     let mut stated = file.clone();
     for slip in slips {
         put_right(slip, &mut steps, &mut stated);
@@ -255,8 +263,9 @@ fn is_rigid(slips: &[Slip], of_steps: &(Recording, FlightFit), file: &CaskFile) 
         }
     }
     let across = steps.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    let places = across.map(|c| (&c.name[..], c.position_m));
-    judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop).is_none()
+    let places =
+        across.map(|c| judge::SensorPlace { name: &c.name, position_m: c.position_m, offset_m: c.offset_m });
+    judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop, contact_s).is_none()
 }
 
 /// The samples of two channels change places, and what the cask file says of each channel stays, its polarity

@@ -1,7 +1,8 @@
 //! A pulse to its beginning, finer than a sample.
 
 use crate::data::{At, CoarseEvent, End, Signal, transverse};
-use crate::numerics::{as_count, as_f64, reduce};
+use crate::numerics::{as_count, as_f64, reduce, robust};
+use std::borrow::Cow;
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
@@ -11,6 +12,10 @@ const SHOULDER: f64 = 0.3;
 pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
 const EARLIER_STAGE: f64 = 0.02;
+/// An offset that no free fall has shown is the level of the record's first millisecond, s …
+const LEVEL_S: f64 = 1e-3;
+/// … where that is no more than accelerometers have, m/s²: 5 g.
+const MOST_LEVEL_M_S2: f64 = 50.0;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight
 /// from 5°. A cask shorter than 4 m, a model perhaps, rings and turns faster in proportion.
 const WIDTH_S: f64 = 0.025;
@@ -26,9 +31,24 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let stretch = from..signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     match signal.end {
-        End::First => first_rise(signal, stretch, coarse.velocity_step_m_s),
+        End::First => first_rise(&levelled(signal), stretch, coarse.velocity_step_m_s),
         End::Second => first_stir(signal, stretch),
     }
+}
+
+/// The signal without its offset, where the record begins too shortly before the contact for its free fall to
+/// show one: what adds up before the rise would pass for a stage of the contact.
+fn levelled(signal: &Signal) -> Cow<'_, Signal> {
+    let first = &signal.force_m_s2[..signal.index_from(signal.start_s + LEVEL_S)];
+    if signal.free_fall_s > 0.0 || first.is_empty() {
+        return Cow::Borrowed(signal);
+    }
+    let level_m_s2 = robust::centre_and_spread(first).0;
+    if level_m_s2.abs() > MOST_LEVEL_M_S2 {
+        return Cow::Borrowed(signal);
+    }
+    let force_m_s2 = signal.force_m_s2.iter().map(|force| force - level_m_s2).collect();
+    Cow::Owned(Signal { force_m_s2, ..signal.clone() })
 }
 
 /// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing
@@ -36,7 +56,7 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
 /// it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
     let sign = step_m_s.signum();
-    let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
+    let mut found = onset(signal, stretch.clone(), sign, Rise::First)?.at;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
         let mut gained = 0.0;
@@ -48,7 +68,8 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -
         let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s.abs());
         let Some(all_m_s) = all_m_s else { return Some(found) };
         let from = before.start;
-        let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
+        let earlier = onset(signal, before, sign, Rise::First).map(|earlier| earlier.at);
+        let earlier = earlier.filter(|e| e.time_s < found.time_s);
         let Some(earlier) = earlier else {
             // The noise hides where that began.
             let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s)?;
@@ -105,9 +126,22 @@ pub fn slap_down(
     let crossing = (first..last).find(|&i| change(i) >= SHARE * largest)?;
     let hump = crossing..(crossing + blocks).min(last);
     let middle = start + block * hump.max_by(|&a, &b| change(a).total_cmp(&change(b)))?;
-    let from = middle.saturating_sub(width * 3 / 5).max(start + first * block);
+    let (earliest, reach) = (start + first * block, (width * 3 / 5).max(1));
     let to = (middle + width / 2).min(signal.force_m_s2.len());
-    onset(signal, from..to, 1.0, if is_calm { Rise::First } else { Rise::BeforePeak })
+    let rise = if is_calm { Rise::First } else { Rise::BeforePeak };
+    // A pulse longer than the width has its rise before the stretch.
+    let mut from = middle.saturating_sub(reach).max(earliest);
+    loop {
+        let OnsetFound { at, border } = onset(signal, from..to, 1.0, rise)?;
+        // Ringing that is still there has a foot anywhere.
+        if border == Border::Clear || (!is_calm && border == Border::Foot) {
+            return Some(at);
+        }
+        if from == earliest {
+            return Some(At { u_s: at.u_s.hypot(width_s), ..at });
+        }
+        from = from.saturating_sub(reach).max(earliest);
+    }
 }
 
 /// Which rise of a stretch begins the pulse.
@@ -119,9 +153,26 @@ enum Rise {
     BeforePeak,
 }
 
+/// What the force has reached where the stretch begins.
+#[derive(Clone, Copy, PartialEq)]
+enum Border {
+    /// Nothing: the rise lies within the stretch.
+    Clear,
+    /// More than the foot of the pulse, so that it may have begun before.
+    Foot,
+    /// More than its shoulder: it has begun before.
+    Shoulder,
+}
+
+/// The beginning of a pulse in a stretch, and what the stretch begins with.
+struct OnsetFound {
+    at: At,
+    border: Border,
+}
+
 /// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut
 /// with zero.
-fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<At> {
+fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<OnsetFound> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
@@ -154,7 +205,15 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
     let steep = zero_of_line(&upper).map_or(0.0, |zero| zero.min(as_f64(high)) - position);
     let u_s = ((crossing - position).max(steep).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
-    Some(At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s })
+    let border = match low {
+        0 if sign * force[0] >= shoulder => Border::Shoulder,
+        0 if sign * force[0] >= foot => Border::Foot,
+        _ => Border::Clear,
+    };
+    Some(OnsetFound {
+        at: At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s },
+        border,
+    })
 }
 
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
@@ -263,6 +322,38 @@ mod tests {
         // Where the noise lets it be seen it is the contact's first stage.
         let quiet = seen(with_foot(2e4, 1e4, 0.05));
         assert!((quiet.time_s - 0.02).abs() < 1e-4, "{quiet:?}");
+    }
+
+    #[test]
+    fn a_pulse_longer_than_the_means_begins_at_its_rise() {
+        // The force of a limiter: 2 ms of rise, 40 of plateau, where the means are 25 ms long.
+        let plain = signal(End::Second, 2e4, 0.08, 1.0);
+        let force = |i: usize| match plain.time_s(i) - 0.08 {
+            t if (0.0..0.002).contains(&t) => 2e5 * t,
+            t if (0.002..0.042).contains(&t) => 400.0,
+            _ => 0.0,
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        let long = Signal { force_m_s2, ..plain };
+        for is_calm in [true, false] {
+            let found = slap_down(&long, 5.0, 0.03..0.19, 2.0, is_calm).expect("an onset");
+            assert!((found.time_s - 0.08).abs() < 1e-4 && found.u_s < 1e-3, "{found:?}");
+        }
+        // Where R cannot have struck before, no rise is seen: the time is as uncertain as the means are long.
+        let hidden = slap_down(&long, 5.0, 0.09..0.19, 2.0, true).expect("an onset");
+        assert!(hidden.u_s > 0.02, "{hidden:?}");
+    }
+
+    #[test]
+    fn an_offset_that_no_free_fall_shows_is_no_stage_of_the_contact() {
+        let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 11.0 };
+        for offset_m_s2 in [-20.0, 20.0] {
+            let plain = signal(End::First, 2e4, 0.0301, 3000.0);
+            let force_m_s2 = plain.force_m_s2.iter().map(|force| force + offset_m_s2).collect();
+            let offset = Signal { force_m_s2, free_fall_s: 0.0, noise_m_s2: 0.0, ..plain };
+            let found = first_contact(&[offset], &coarse).expect("an onset");
+            assert!((found.time_s - 0.0301).abs() < 1e-4, "{found:?}");
+        }
     }
 
     #[test]
