@@ -129,7 +129,7 @@ fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
     }
 }
 
-/// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its
+/// One of the casks; four in ten are stretched, one in four leaves out its centre of gravity, one in four its
 /// inertia.
 fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
     let mut build = chance.one_of(&BUILDS);
@@ -141,12 +141,12 @@ fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
         name.push_str("-var");
     }
     let mut cask = Cask { name, ..build.cask() };
-    if chance.is(0.25) {
+    if chance.is(0.75) {
         cask.cog_m = round(cask.length_m * chance.even(0.45, 0.55), 3);
     } else {
         defaults.push("cask.cog_m".to_owned());
     }
-    if chance.is(0.25) {
+    if chance.is(0.75) {
         cask.inertia_kg_m2 = round(cask.inertia_kg_m2 * chance.even(0.85, 1.15), 0);
     } else {
         defaults.push("cask.inertia_kg_m2".to_owned());
