@@ -175,7 +175,7 @@ pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
     }
 }
 
-/// What keeps the first of these models, the others being richer, from being taken; `None` where nothing does.
+/// What keeps the first of these models, the others being richer, from being taken; `None` if nothing does.
 fn objection(models: &[ModelCandidate], known_m_s: f64) -> Option<String> {
     let (own, richer) = models.split_first()?;
     if !own.consistent {

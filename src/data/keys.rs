@@ -72,10 +72,12 @@ TEST {
 
 /// Keys of `[observed]`.
 OBSERVED {
-    "slap_down_speed_m_s": "–", Observation, "{ value = 20.4, u95 = 0.3 }", "slap-down speed of the rigid cask";
+    "slap_down_speed_m_s": "–", Observation, "{ value = 20.4, u95 = 0.3 }",
+        "slap-down speed of the rigid cask";
     "local_speed_m_s": "–", Observation, "{ value = 18.1, u95 = 0.3 }", "speed of the corner that strikes";
     "k": "–", Observation, "{ value = 0.55, u95 = 0.05 }", "coefficient of restitution";
-    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }", "angular velocity after the first impact";
+    "angular_velocity_rad_s": "–", Observation, "{ value = 4.6, u95 = 0.1 }",
+        "angular velocity after the first impact";
     "angle_deg": "–", Observation, "{ value = 1.0, u95 = 0.5 }", "angle at slap-down";
     "flight_time_s": "–", Observation, "{ value = 0.056, u95 = 0.001, by = \"video\" }", "flight time";
     "impact_velocity_m_s": "–", Observation, "{ value = 13.25, u95 = 0.05 }", "impact velocity";

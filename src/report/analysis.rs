@@ -227,8 +227,8 @@ fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
         let candidates = ReportTable::of(&model.candidates)
             .caption(
                 "The analytical models with the measured k, the simplest first, without those that change \
-                 nothing. Taken: the first that agrees, all richer ones agreeing too and none farther from it \
-                 than the measured speed is known; else the richest.",
+                 nothing. Taken: the first that agrees, all richer ones agreeing too and none farther from \
+                 it than the measured speed is known; else the richest.",
             )
             .chosen(|c| c.rung == model.rung)
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
@@ -236,7 +236,8 @@ fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
             .number("± 95 %, m/s", |c| optional(c.u95, 2))
             .number("Measured against predicted", |c| percent(c.difference_percent))
             .text("Within both intervals", |c| yes(c.consistent));
-        let built_in = built_in(result).map_or_else(String::new, |words| format!(" The agreement is partly {words}."));
+        let built_in = built_in(result).map(|words| format!(" The agreement is partly {words}."));
+        let built_in = built_in.unwrap_or_default();
         let words = format!("Model: {}. {}{built_in}", model.rung.words(), sentence(&model.reason));
         [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]
     });

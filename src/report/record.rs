@@ -96,10 +96,10 @@ pub(super) fn limits_said(all: &[Limit], most: usize) -> Option<String> {
         let measured = determined(interval(limit.measured.as_ref()));
         format!("{} {measured} ({})", quantity_words(limit.name), format!("{bounds} {unit}").trim_end())
     };
-    let of = |state| all.iter().filter(move |limit| limit.state == state);
-    let undecided = of(LimitState::Undecided).map(|limit| format!("undecided: {}", words(limit)));
-    let mut said: Vec<String> = of(LimitState::Exceeded).map(words).chain(undecided).collect();
-    let (more, kept) = (said.len().saturating_sub(most), of(LimitState::Kept).count());
+    let in_state = |state| all.iter().filter(move |limit| limit.state == state);
+    let undecided = in_state(LimitState::Undecided).map(|limit| format!("undecided: {}", words(limit)));
+    let mut said: Vec<String> = in_state(LimitState::Exceeded).map(words).chain(undecided).collect();
+    let (more, kept) = (said.len().saturating_sub(most), in_state(LimitState::Kept).count());
     said.truncate(most);
     said.extend((more > 0).then(|| format!("{more} more (`--full`)")));
     said.extend((kept > 0).then(|| format!("{kept} kept")));

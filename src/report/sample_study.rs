@@ -3,8 +3,8 @@
 use super::sample;
 use crate::data::{
     Advice, AngleCurve, Body, BodyModel, BodyPath, CogVelocity, Contact, Criterion, CriticalAngle,
-    FlightRegime, Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study,
-    StudyRequest, Sweep, SweepVariable, Uncertain,
+    FlightRegime, Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung,
+    Study, StudyRequest, Sweep, SweepVariable, Uncertain,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];

@@ -30,10 +30,8 @@ pub fn restitution(text: &str) -> Result<f64, String> {
 }
 
 pub fn duration(text: &str) -> Result<f64, String> {
-    let range = format!(
-        "the first impact lasts 0 (an impulse), or {SHORTEST_CONTACT_S} to {LONGEST_CONTACT_S} seconds: 20 ms are \
-         0.02"
-    );
+    let span = format!("{SHORTEST_CONTACT_S} to {LONGEST_CONTACT_S}");
+    let range = format!("the first impact lasts 0 (an impulse), or {span} seconds: 20 ms are 0.02");
     let duration_s = within(text, 0.0, LONGEST_CONTACT_S, &range)?;
     if duration_s == 0.0 || duration_s >= SHORTEST_CONTACT_S { Ok(duration_s) } else { Err(range) }
 }

@@ -19,10 +19,11 @@ use serde_json::json;
 use std::collections::{BTreeSet, HashMap};
 
 const REPEATS: &str = "Drops at angles within their tolerance of each other are repeats; k holds for one \
-                       angle. Mean of the repeats without outliers, weighted with 1/u². Its interval is that of one \
-                       drop: repeats share what is stated of cask, angle and sensors, and no mean makes that \
-                       smaller. Scatter: the standard deviation. χ² of the stated intervals says whether it \
-                       is as large as they say; where repeats share most of what is uncertain it is smaller.";
+                       angle. Mean of the repeats without outliers, weighted with 1/u². Its interval is that \
+                       of one drop: repeats share what is stated of cask, angle and sensors, and no mean \
+                       makes that smaller. Scatter: the standard deviation. χ² of the stated intervals says \
+                       whether it is as large as they say; where repeats share most of what is uncertain it \
+                       is smaller.";
 
 /// The page.
 pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {

@@ -1,5 +1,5 @@
-//! Rows of a campaign to series, the drops of one cask from one height, and these to pools, its repeats at one
-//! angle: k holds for one angle, and a drop at another is no outlier.
+//! Rows of a campaign to series, the drops of one cask from one height, and these to pools, its repeats at
+//! one angle: k holds for one angle, and a drop at another is no outlier.
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
