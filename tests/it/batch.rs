@@ -109,7 +109,8 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
     let of_anf18: Vec<&Value> =
         pools.iter().filter(|pool| pool["cask"] == "ANF-18" && pool["quantity"] == "k").collect();
     assert_eq!((of_anf18.len(), &of_anf18[0]["angle_deg"]), (1, &15.0.into()), "{pools:?}");
-    let sum = "7 recordings: 4 sound, 1 for review, 0 partly or not usable, 2 not analysed, 0\n  beyond a limit. Outliers: none.";
+    let sum = "7 recordings: 4 sound, 1 for review, 0 partly or not usable, 2 not analysed, 0\n  beyond a \
+               limit. Outliers: T1 (k 0.556";
     assert!(answer.stdout.contains(sum), "{}", answer.stdout);
     let page = fs::read_to_string(series.path("full/campaign.html")).expect("a page");
     for part in

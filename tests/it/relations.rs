@@ -223,11 +223,13 @@ fn another_way_to_write_the_same_drop_says_the_same() {
             f.rows.iter_mut().for_each(|row| row[2] = -row[2]);
             f.cask = f.cask.replace("source = \"A2\"", "source = \"A2\"\npolarity = -1");
         }),
-        ("a hundredfold mass", WRITTEN, |f| f.cask = f.cask.replace("1429.0", "142900.0")),
+        ("a hundredfold mass", WRITTEN, |f| {
+            f.cask = f.cask.replace("1429.0", "142900.0").replace("2696.6", "269660.0");
+        }),
         ("defaults stated", WRITTEN, |f| {
             f.cask += "[tolerance]\nangle_deg = 0.4\nimpact_velocity_percent = 0.3\ncalibration_percent = 1\n\
                        cross_axis_percent = 2\nposition_m = 0.01\ncog_m = 0.01\nclock_percent = 0.05\n\
-                       inertia_percent = 10\nangular_velocity_deg_s = 1\nhorizontal_velocity_m_s = 0.1\n\
+                       inertia_percent = 2\nangular_velocity_deg_s = 1\nhorizontal_velocity_m_s = 0.1\n\
                        length_m = 0.04725\nheight_m = 0.00565\n";
         }),
         ("a rate lower by 2e-9", CUT, |f| f.each(|x| x, "unit = \"g\"\nsample_rate_hz = 12499.999975")),

@@ -2,7 +2,8 @@
 
 use crate::run::fixture;
 use dropcheck::data::{
-    Axis, CaskFile, Channel, Closure, ClosureKind, Finding, IssueCode, Recording, Samples, Severity, Verdict,
+    Axis, CaskFile, Channel, Closure, ClosureKind, Finding, IssueCode, Recording, Samples, Severity,
+    Tolerances, Verdict,
 };
 use dropcheck::lab::data::{SceneFile, SceneNumber};
 use dropcheck::lab::{campaign, in_memory, synth};
@@ -67,7 +68,6 @@ fn a_usual_slip_is_named_first() {
             f.cask.length_m /= 0.3048;
             f.cask.height_m /= 0.3048;
             f.cask.cog_m /= 0.3048;
-            f.cask.inertia_kg_m2 /= 0.3048_f64.powi(2);
             r.channels.iter_mut().for_each(|c| c.position_m /= 0.3048);
         }),
         ("`sample_rate_hz` of A1 and A2 halved", |r, f| {
@@ -208,12 +208,14 @@ fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_t
     let (mut told, mut found, mut held) = (0, 0, 0);
     for (file, recording) in drawn.filter(|(file, _)| is_axial(file)) {
         let read = in_memory::synthetic(&recording, &file.stated).expect("a recording");
-        let result = stages::measure(&read, &file.stated).result;
+        // A cask whose centre of gravity and inertia nobody knows hides its length.
+        let stated = CaskFile { tolerances: Tolerances::default(), ..file.stated.clone() };
+        let result = stages::measure(&read, &stated).result;
         if result.reconstruction.is_none_or(|choice| !choice.closures.iter().any(is_told)) {
             continue;
         }
         assert_eq!(result.verdict, Verdict::Pass);
-        let mut longer = file.stated.clone();
+        let mut longer = stated;
         longer.cask.length_m *= 1.05;
         let result = stages::measure(&read, &longer).result;
         told += 1;
