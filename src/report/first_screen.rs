@@ -164,7 +164,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         ("Slap-down speed", Some(determined(interval(speed)) + &holds), 1),
         ("Speed of corner", of_corner(result), 1),
         ("Restitution k", Some(determined(interval(result.k.as_ref()))), 1),
-        ("Predicted speed", compared(result, file), 2),
+        ("Predicted speed", compared(result, file), if result.exceeds_a_limit() { 1 } else { 2 }),
         ("Assumed", super::record::assumed(file, &result.budget), 2),
         ("Interval", Some(interval_by).filter(|_| is_number), if result.limits.is_empty() { 3 } else { 1 }),
         ("Limits", limits, 4),
