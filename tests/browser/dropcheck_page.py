@@ -150,7 +150,7 @@ def to(driver, place):
 def by_hand(form):
     """The form of `init` as a hand would fill it in."""
     for old, new in [('# name = "CASK" ', 'name = "ANF-18" '), ("mass_kg = nan", "mass_kg = 4466"),
-                     ("length_m = nan", "length_m = 5.512"), ("# height_m = 0.8 ", "height_m = 0.792 "),
+                     ("length_m = nan", "length_m = 5.512"), ("height_m = nan", "height_m = 0.792"),
                      ("height_m = nan", "height_m = 9"),
                      ("angle_deg = nan", "angle_deg = 15"), ('end = "FILL IN"', 'end = "first"'),
                      ('axis = "FILL IN"', 'axis = "transverse"'), ("position_m = nan", "position_m = 0.15"),
@@ -165,7 +165,7 @@ def filled_in(driver, command, folder):
     """A recording to its cask file by keys alone, with decimal commas; equal to `init` and a hand."""
     chosen(driver, EXAMPLES / "anf18-json.mcap")
     soon("the channels are listed", lambda: "/daq/a2.samples" in told(driver, "listing"))
-    soon("the form asks for what only a person knows", lambda: told(driver, "form-word").startswith("10 fields"))
+    soon("the form asks for what only a person knows", lambda: told(driver, "form-word").startswith("11 fields"))
     answers = {"cask.name": "ANF-18", "cask.mass_kg": "4466", "cask.length_m": "5,512",
                "cask.height_m": "0,792", "drop.height_m": "9",
                "drop.angle_deg": "15", "channel.0.end": "f", "channel.0.axis": "t", "channel.0.position_m": "0,15",
@@ -371,7 +371,7 @@ def elsewhere(page, command, name):
     print(name, driver.capabilities.get("browserVersion"))
     driver.set_script_timeout(120)
     driver.get(page.resolve().as_uri())
-    soon("the page begins", lambda: told(driver, "form-word").startswith("4 fields"))
+    soon("the page begins", lambda: told(driver, "form-word").startswith("5 fields"))
     driver.find_element(By.ID, "cask").send_keys(str(EXAMPLES / "anf18-json.toml"))
     soon("the cask file is in the form", lambda: value(driver, "drop.angle_deg") == "15")
     chosen(driver, EXAMPLES / "anf18-json.mcap")
