@@ -104,7 +104,7 @@ fn hold_flight(result: &DropResult, text: &str, name: &str) -> Option<&'static s
         // Modes, each with two phases a channel where these are free, and drifts.
         let size = |of: &FlightModelScore| (of.modes + usize::from(of.modes > 0 && !of.driven), of.drift);
         let (own, other) = (size(taken), size(lowest));
-        assert!(own.0 < other.0 || own.1 < other.1, "{name}: {taken:?} is not smaller than {lowest:?}");
+        assert!(own.0 < other.0 || (!own.1 && other.1), "{name}: {taken:?} is not smaller than {lowest:?}");
         return Some("smallest");
     }
     assert!(
@@ -398,7 +398,10 @@ fn two_loggers_in_one_table_each_with_its_own_times_are_no_contradiction() {
     let found = result["quality"].as_array().expect("findings").iter();
     assert_eq!(found.filter(|finding| finding["code"] == "clock").count(), 0, "{result}");
     let rates = [0, 1].map(|i| result["channels"][i]["sample_rate_hz"].as_f64().expect("a rate").round());
-    assert_eq!(rates, [12_500.0, 6_250.0]);
+    assert!(
+        rates.iter().zip([12_500.0, 6_250.0]).all(|(rate, stated)| (rate - stated).abs() < 1e-6),
+        "{rates:?}"
+    );
     // Where the file leaves open which of them is right it is asked.
     let open = with(&stated);
     assert_eq!(open.status, 2, "{}", open.stdout);
