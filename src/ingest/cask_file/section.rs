@@ -53,15 +53,15 @@ pub(crate) struct Document<'a> {
 #[must_use]
 pub fn with_ascii_minus(text: &str) -> Cow<'_, str> {
     const PRINTED: &str = "−";
-    let mut text = Cow::Borrowed(text);
-    loop {
-        let refused = DeTable::parse(&text).err().and_then(|error| error.span());
-        let Some(at) = refused.map(|span| span.start) else { return text };
-        if !text.get(at..).is_some_and(|rest| rest.starts_with(PRINTED)) {
-            return text;
-        }
-        text.to_mut().replace_range(at..at + PRINTED.len(), "  -");
+    let mut ascii = Cow::Borrowed(text);
+    let refused = DeTable::parse_recoverable(text).1.into_iter().filter_map(|error| error.span());
+    for at in refused
+        .map(|span| span.start)
+        .filter(|at| text.get(*at..).is_some_and(|rest| rest.starts_with(PRINTED)))
+    {
+        ascii.to_mut().replace_range(at..at + PRINTED.len(), "  -");
     }
+    ascii
 }
 
 /// A table of the file whose keys are all known.

@@ -319,6 +319,9 @@ fn a_minus_that_a_report_prints_can_be_pasted() {
     let message = told(&of(&text.replace("time_constant_s = 0.3", "time_constant_s = x")).unwrap_err());
     assert!(message.contains("line 40"), "{message}");
     assert!(told(&of(&FULL.replace("offset_m = -0.1", "offset_m = −")).unwrap_err()).contains("not TOML"));
+    // As many as a file may have, in one look at it: a look for each would take minutes.
+    let many = format!("{SHORT}[test.more]\na = [{}]\n", "−1, ".repeat(100_000));
+    assert!(told(&of(&many).unwrap_err()).contains("not a text or a number"));
 }
 
 #[test]
