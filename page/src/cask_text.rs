@@ -1,5 +1,6 @@
 //! The text of a cask file to what it states, and to a text that states one thing otherwise.
 
+use dropcheck::cask_file::with_ascii_minus;
 use dropcheck::stages::{Key, KeyTable, TABLES, Takes};
 use miette::{IntoDiagnostic, Report, miette};
 use serde_json::{Value, json};
@@ -41,7 +42,7 @@ fn key(key: &Key) -> Value {
 /// # Errors
 /// It is no TOML.
 pub fn values(text: &str) -> Result<Value, Report> {
-    toml::from_str(text).into_diagnostic()
+    toml::from_str(&with_ascii_minus(text)).into_diagnostic()
 }
 
 /// The text with the key at `path` as `value`, or without it; a path without a key takes a channel out. All else
@@ -50,6 +51,7 @@ pub fn values(text: &str) -> Result<Value, Report> {
 /// # Errors
 /// The text or the value is no TOML, or the path leads nowhere.
 pub fn edited(text: &str, path: &str, value: Option<&str>) -> Result<String, Report> {
+    let text = &*with_ascii_minus(text);
     let nowhere = || miette!("the cask file has no place {path}");
     let place = match path.split('.').collect::<Vec<_>>()[..] {
         ["channel", number] => Place { table: "channel", number: number.parse().into_diagnostic()?, key: "" },
