@@ -118,7 +118,6 @@ fn moved(
     let signals = &impact.signals;
     let (setup, friction) = contact(file, integrated, &flight, events);
     let turning_rad_s = motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s);
-    let plain = motion::mean_of_flight(integrated, &flight, turning_rad_s, setup.cog_m);
     let cask = &file.cask;
     let measured = fit::FitData {
         signals,
@@ -142,7 +141,7 @@ fn moved(
     let is_whole = flight.landing.is_none();
     let second =
         is_whole.then(|| SecondImpact::find(file, &integrated.signals, &stated, &measured)).flatten();
-    let taken = taken(integrated, &measured, plain.as_ref(), second.as_ref())?;
+    let taken = taken(integrated, &measured, second.as_ref())?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
@@ -176,18 +175,17 @@ fn moved(
 fn taken(
     integrated: &Integrated,
     measured: &fit::FitData,
-    plain: Option<&FlightFit>,
     second: Option<&SecondImpact>,
 ) -> Option<fit::RungTaken> {
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
-    let without = || fit::ladder(measured, plain, &moved);
+    let without = || fit::ladder(measured, &moved);
     let Some(second) = second else { return without() };
     let contact = fit::SecondContact {
         inputs: &second.inputs(),
         turned_beyond_rad_s: &|inputs: &_, first: &_| second.turned_beyond_rad_s(inputs, first),
         turned_rad_s: second.turned_rad_s(),
     };
-    fit::ladder(&fit::FitData { second: Some(contact), ..*measured }, plain, &moved).or_else(without)
+    fit::ladder(&fit::FitData { second: Some(contact), ..*measured }, &moved).or_else(without)
 }
 
 /// The speed of R's corner where ringing adds to that of the rigid body   (44)
@@ -213,7 +211,7 @@ pub(super) fn contact(
     // What sticking needs; more friction than that does nothing.
     let needed =
         motion::outcome(integrated, flight, events, &sticking).map_or(0.0, |motion| motion.impulse_ratio);
-    let (axial, friction) = by_law(file.contact, needed, file.tolerances.friction / 2.0);
+    let (axial, friction) = by_law(file, file.contact, needed);
     (Setup { axial, ..sticking }, Some(friction))
 }
 

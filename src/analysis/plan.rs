@@ -173,7 +173,7 @@ impl ExpectedDrop {
             stood_in: None,
             second: None,
         };
-        Some(fit::ladder(&measured, None, &moved)?.quantities)
+        Some(fit::ladder(&measured, &moved)?.quantities)
     }
 }
 

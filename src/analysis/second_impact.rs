@@ -117,7 +117,7 @@ impl SecondImpact {
         let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
         // What sticks at L may slide at R, and what slides there may turn round or stick here.
         let law = if file.contact == Contact::Smooth { Contact::Smooth } else { Contact::Unknown };
-        let friction = (!is_measured).then(|| by_law(law, needed, file.tolerances.friction / 2.0));
+        let friction = (!is_measured).then(|| by_law(file, law, needed));
         let is_known = is_measured || law != Contact::Unknown;
         setup.axial = friction.map_or(AxialClosure::Measured, |(axial, _)| axial);
         let basis =

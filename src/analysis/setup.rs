@@ -4,17 +4,25 @@ use crate::data::{AssumedFriction, AxialClosure, CONTACT_STEPS, CaskFile, Contac
 
 /// A friction that nobody states lies between none and what sticking needs, and more than that does as much:
 /// in the middle of what 0.1 and more give, as a share of what sticking needs, and with a standard
-/// uncertainty that takes both ends in.
+/// uncertainty that takes both ends in. So does the impulse ratio under a stated coefficient, as a share of
+/// it: an end that gives along the target springs back along it (Maw, Barber & Fawcett 1976).
 const MIDDLE: f64 = 0.6;
 const U_UNKNOWN: f64 = 0.33;
 
-/// How the axial velocity of a contact is had without an axial channel: by its law, of which the friction is
-/// known to `share_u`, where sticking needs a friction of `needed`, more than which does nothing.
-pub(super) fn by_law(contact: Contact, needed: f64, share_u: f64) -> (AxialClosure, AssumedFriction) {
+/// The axial velocity of a contact without an axial channel: by its law. The file states the friction to
+/// `file.tolerances`, or the default stands there; sticking needs a friction of `needed`, and more does as
+/// much.
+pub(super) fn by_law(file: &CaskFile, contact: Contact, needed: f64) -> (AxialClosure, AssumedFriction) {
+    let share_u = file.tolerances.friction / 2.0;
+    let is_bound = file.defaults.iter().any(|key| key == "tolerance.friction_percent");
     let sliding = |friction: f64| AxialClosure::Sliding { friction };
     let (axial, ratio, u) = match contact {
         Contact::Rough => (AxialClosure::Sticking, needed, share_u * needed),
         Contact::Smooth => (sliding(0.0), 0.0, share_u * needed),
+        Contact::Coulomb(mu) if is_bound => {
+            let most = needed.clamp(-mu, mu);
+            (sliding(MIDDLE * most), MIDDLE * most, U_UNKNOWN * most)
+        }
         Contact::Coulomb(mu) if mu < needed.abs() => {
             let friction = mu * needed.signum();
             (sliding(friction), friction, share_u * mu)

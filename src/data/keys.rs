@@ -164,7 +164,7 @@ DROP {
 /// Keys of `[contact]`.
 CONTACT {
     "friction": "`\"unknown\"`", TextOrNumber, r#""unknown""#,
-        r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown": all that lies between"#;
+        r#""rough", "smooth", "unknown" (all between), or the most that the impulse ratio is, such as 0.4"#;
     "duration_s": "–",
         Takes::Number(Allowed::ZeroOrWithin(SHORTEST_CONTACT_S, LONGEST_CONTACT_S,
             "how long the first end's impact lasts, in seconds: 20 ms are 0.02, and 0 is an impulse")),

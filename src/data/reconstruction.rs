@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReconstructionRung {
-    /// Planar motion with gravity, each velocity step the mean over the flight.
-    Planar,
-    /// Planar motion, the flight fitted with bending modes and drift.
+    /// Planar motion, the flight fitted with the bending modes and drift that it shows, none included.
     Flight,
     /// Planar motion, all inputs fitted to all observables within their tolerances.
     Joint,
@@ -18,7 +16,7 @@ pub enum ReconstructionRung {
 
 impl ReconstructionRung {
     /// All, simplest first.
-    pub const ALL: [Self; 3] = [Self::Planar, Self::Flight, Self::Joint];
+    pub const ALL: [Self; 2] = [Self::Flight, Self::Joint];
 }
 
 /// What one rung says.

@@ -81,18 +81,13 @@ impl RungTaken {
 /// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain,
 /// and whose answer no higher one would change by more than its interval or know much better.
 ///
-/// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
-pub fn ladder(measured: &FitData, plain: Option<&FlightFit>, reconstruct: Reconstruct) -> Option<RungTaken> {
+/// `None` where the motion cannot be determined.
+pub fn ladder(measured: &FitData, reconstruct: Reconstruct) -> Option<RungTaken> {
     let model = Model::new(measured, reconstruct)?;
     let flight = model.by_stated_inputs()?;
     let joint = model.joint();
     let closures = model.closures();
-    let mut steps = Vec::new();
-    if let Some(plain) = plain {
-        let measured = FitData { flight: plain, ..*measured };
-        steps.extend(planar(&measured, reconstruct));
-    }
-    steps.push(by_flight(measured, flight, &closures));
+    let mut steps = vec![by_flight(measured, flight, &closures)];
     let (mut widened, mut why) = widened(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
         if closures.iter().any(|c| c.kind == ClosureKind::SecondTurning && c.most_in_u() > MET_U) {
@@ -143,20 +138,9 @@ fn step(rung: ReconstructionRung, propagated: Propagated, consistent: bool, resi
     }
 }
 
-/// (a) Planar motion, each velocity step the mean over the flight.
-fn planar(measured: &FitData, reconstruct: Reconstruct) -> Option<RungStep> {
-    let model = Model::new(measured, reconstruct)?;
-    let propagated = model.by_stated_inputs()?;
-    let closures = model.closures();
-    let left_m_s = most_left_m_s(measured.flight);
-    let consistent = explains(measured.flight) && meets(&closures) && !has_lost_step(measured);
-    let residual = format!("{left_m_s:.2} m/s about the mean of the flight; {}", worst(&closures));
-    Some(step(ReconstructionRung::Planar, propagated, consistent, residual))
-}
-
-/// (b) The flight fitted with modes and drift.
+/// (a) The flight fitted with modes and drift.
 fn by_flight(measured: &FitData, propagated: Propagated, closures: &[Closure]) -> RungStep {
-    let left_m_s = most_left_m_s(measured.flight);
+    let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
         (n, drift) => {
@@ -191,7 +175,7 @@ fn by_open_length(measured: &FitData, reconstruct: Reconstruct, stated: &Quantit
     open.map_or(1.0, |open| apart((stated.k, open.k)).max(stated.speed.zip(open.speed).map_or(0.0, apart)))
 }
 
-/// (c) Everything fitted within its tolerance.
+/// (b) Everything fitted within its tolerance.
 fn by_joint(
     propagated: Propagated,
     chi_square: f64,
@@ -205,16 +189,6 @@ fn by_joint(
         residual = format!("{residual}, intervals widened {widened:.1} times: {why}");
     }
     step(ReconstructionRung::Joint, propagated, true, residual)
-}
-
-/// The largest residual of the channels, m/s.
-fn most_left_m_s(flight: &FlightFit) -> f64 {
-    flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max)
-}
-
-/// Whether the best fit of the flight is the one without modes and drift.
-fn explains(plain: &FlightFit) -> bool {
-    plain.candidates.first().is_some_and(|best| best.modes == 0 && !best.drift)
 }
 
 fn meets(closures: &[Closure]) -> bool {
@@ -251,7 +225,6 @@ fn stays(own: &ReconstructionCandidate, next: &ReconstructionCandidate) -> bool 
 
 fn words(rung: ReconstructionRung) -> &'static str {
     match rung {
-        ReconstructionRung::Planar => "the planar motion with the mean of the flight",
         ReconstructionRung::Flight => "the planar motion with modes and drift fitted to the flight",
         ReconstructionRung::Joint => "the joint fit of all inputs within their tolerances",
     }

@@ -1,21 +1,9 @@
-//! A flight fit to the same window again: without its modes, or with them in other signals.
+//! A flight fit to the same window again, with its modes in other signals.
 
 use super::flight::{oscillation, plateaus, series};
 use super::{Integrated, Window};
 use crate::data::FlightFit;
 use crate::numerics::damped_modes::{Form, describe};
-
-/// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of
-/// the best fit.
-pub fn mean_of_flight(
-    integrated: &Integrated,
-    best: &FlightFit,
-    turning_rad_s: f64,
-    cog_m: f64,
-) -> Option<FlightFit> {
-    let plain = FlightFit { modes: Vec::new(), drift: false, ..best.clone() };
-    with_modes(integrated, &plain, turning_rad_s, cog_m)
-}
 
 /// The same window and the same modes, in the sizes that they have in these signals; the cask turns so fast.
 pub fn with_modes(

@@ -17,20 +17,11 @@ pub(super) fn choice() -> ReconstructionChoice {
         };
     ReconstructionChoice {
         rung: ReconstructionRung::Flight,
-        reason: "Taken: planar motion with modes and drift fitted to the flight, because planar motion with \
-                 the mean of the flight leaves 0.61 m/s about the mean of the flight; height of the second \
-                 end at slap-down off by +31 mm (1.1 u); the joint fit of all inputs within their tolerances \
-                 would change the speed by +0.02 m/s and k by -0.001, within the interval."
+        reason: "Taken: planar motion with modes and drift fitted to the flight; the joint fit of all inputs \
+                 within their tolerances would change the speed by +0.02 m/s and k by -0.001, within the \
+                 interval."
             .into(),
         candidates: vec![
-            candidate(
-                ReconstructionRung::Planar,
-                (20.9, 1.2),
-                (0.55, 0.10),
-                false,
-                "0.61 m/s about the mean of the flight; height of the second end at slap-down off by +31 mm \
-                 (1.1 u)",
-            ),
             candidate(
                 ReconstructionRung::Flight,
                 (20.56, 0.11),

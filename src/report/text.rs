@@ -217,7 +217,6 @@ pub(super) fn dropped(drop: &Drop) -> String {
 /// A rung of the reconstruction as a table names it.
 pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
     match rung {
-        ReconstructionRung::Planar => "planar motion, mean of the flight",
         ReconstructionRung::Flight => "planar motion, flight fitted with modes and drift",
         ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
     }

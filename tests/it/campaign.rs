@@ -127,7 +127,7 @@ fn the_tables_have_every_kind_and_count_what_is_missed() {
     let truth = sound.quantities["k"].truth.expect("a truth");
     for u95 in [0.01, 0.03] {
         let k = Some(Stated { value: truth + 0.02, u95 });
-        let rung = ReconstructionRung::Planar;
+        let rung = ReconstructionRung::Flight;
         reviewed.rungs = vec![RungSaid { rung, consistent: true, speed: None, k }];
         reviewed.rung = Some(rung);
         tally.add(&reviewed);
@@ -146,7 +146,7 @@ fn the_tables_have_every_kind_and_count_what_is_missed() {
     }
     assert!(tables.contains("| review | 2 | 100.0 % | 2 | 0 |"), "{tables}");
     // Both are off by 0.02; one interval of two holds that.
-    assert!(tables.contains("| planar | planar | 2 | – | – | – | 0.0200 | 50.0 % | – |"), "{tables}");
+    assert!(tables.contains("| flight | flight | 2 | – | – | – | 0.0200 | 50.0 % | – |"), "{tables}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use crate::analysis::flight_search::{self, Patience};
 use crate::analysis::{self, analyze};
 use crate::data::{
-    CaskFile, CoarseEvent, Estimate, ReconstructionRung, Recording, STANDARD_GRAVITY_M_S2, Signal,
+    CaskFile, CoarseEvent, Estimate, FlightFit, Recording, STANDARD_GRAVITY_M_S2, Signal,
 };
 use crate::lab::chance::Chance;
 use crate::lab::damage;
@@ -113,8 +113,8 @@ const WORKINGS: [(&str, Working); 3] = [
         let result = analyze(recording, file).result;
         Some([result.slap_down.speed, result.k])
     }),
-    ("planar alone", |recording, file| alone(ReconstructionRung::Planar, recording, file)),
-    ("flight alone", |recording, file| alone(ReconstructionRung::Flight, recording, file)),
+    ("planar alone", |recording, file| alone(true, recording, file)),
+    ("flight alone", |recording, file| alone(false, recording, file)),
 ];
 
 /// The conditioned channels of a recording about the first impact, and where that lies; none without an
@@ -126,16 +126,17 @@ fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, C
     Some((signals, coarse))
 }
 
-/// A simple rung of the reconstruction, without the others, the checks and the prediction.
-fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Option<Answer> {
+/// The flight alone, without joint fit, checks and prediction; each velocity step is its mean over the flight
+/// where `is_mean`.
+fn alone(is_mean: bool, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
     let mut found = flight_search::find(file, &integrated, Patience::EachBeginning)?;
-    if rung == ReconstructionRung::Planar {
-        let flight = found.flight?;
+    if is_mean {
+        let flight = FlightFit { modes: Vec::new(), drift: false, ..found.flight? };
         let turning_rad_s = motion::rotation_rad_s(&signals, &flight);
-        found.flight = motion::mean_of_flight(&integrated, &flight, turning_rad_s, file.cask.cog_m);
+        found.flight = motion::with_modes(&integrated, &flight, turning_rad_s, file.cask.cog_m);
     }
     let moved = found.moved(file, &integrated)?;
     let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));

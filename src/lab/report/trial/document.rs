@@ -52,8 +52,8 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
 
 const HEADING: &str = "Acceptance of dropcheck on this machine";
 
-const RUNGS: &str = "The reconstruction takes planar motion, the flight with its modes, or a joint fit of \
-                     all inputs. Random sound drops whose stated values are off within their tolerances (in \
+const RUNGS: &str = "The reconstruction takes the flight with its modes, or a joint fit of all inputs. \
+                     Random sound drops whose stated values are off within their tolerances (in \
                      the picture they are exact): what each scene, of which a drop may be several, takes; \
                      then, for each rung taken, what every rung says of the same drops.";
 
