@@ -29,9 +29,17 @@ const LEAST_SLAP_DOWN: f64 = 0.08;
 const FIRST_CLEARANCE: f64 = 0.4;
 const LONGEST_CLEARANCE_S: f64 = 0.022;
 
+/// Most modes of the first fits: those of a cask below 400 Hz; and where they do not explain the flight, since
+/// a short contact excites more of them.
+const FEW_MODES: usize = 3;
+const MANY_MODES: usize = 6;
+
 /// Shares of the time to the slap-down first seen at which the first fit ends: strong ringing may make that
 /// one late, and a fit that reaches into it explains nothing.
 const FIRST_ENDS: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
+
+/// A flight fit that leaves no more than this share of v0 shows the slap-down as what departs from it.
+const SHOWN: f64 = 0.05;
 
 /// A flight fit that leaves less than this RMS has explained its channel, m/s: 1.5 % of a 9 m fall.
 const EXPLAINED_M_S: f64 = 0.2;
@@ -99,6 +107,17 @@ pub enum Patience {
 /// The signals of both ends, free of ringing as far as it is known.
 type Ends = (motion::RingingRemoved, motion::RingingRemoved);
 
+/// What the first round of the search goes by.
+#[derive(Clone, Copy)]
+struct Beginning {
+    /// Of the time to the slap-down first seen, where its fit ends.
+    share: f64,
+    /// When the impulse has been given, s: its fit begins no sooner.
+    given_s: Option<f64>,
+    /// Most modes of its fits, and of those after it.
+    most_modes: usize,
+}
+
 /// What one round of the search hands to the next.
 struct Attempt {
     separation: At,
@@ -107,6 +126,8 @@ struct Attempt {
     free_s: f64,
     /// Where the flight ends, s.
     end_s: f64,
+    /// Most modes of its fit.
+    most_modes: usize,
     /// The last fit of the flight, and what it was fitted over.
     fitted: Option<(FlightFit, motion::Window)>,
     /// The other fits over that, the best first.
@@ -161,7 +182,7 @@ fn searched(
     };
     let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
     let mut ends = (first?, second?);
-    let struck = search.slap_down(&ends.1, search.earliest_s, false);
+    let struck = search.slap_down(&ends.1, search.earliest_s, None);
     let mut best: Option<(f64, FoundFlight)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
@@ -171,7 +192,9 @@ fn searched(
         .filter(|given_s| !is_hopeless && *given_s > cleared_s(contact_s, before_s));
     let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { beginnings });
     let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
-    for beginning in given.into_iter().chain(shares.map(|share| (share, None))) {
+    for (share, given_s) in given.into_iter().chain(shares.map(|share| (share, None))) {
+        let most_modes = if best.is_none() { FEW_MODES } else { MANY_MODES };
+        let beginning = Beginning { share, given_s, most_modes };
         let attempt = search.attempt(&mut ends, struck, beginning);
         let cost = search.cost(&attempt);
         let is_settled = cost < 1.0 || attempt.flight.as_ref().is_some_and(is_clearly_explained);
@@ -216,10 +239,9 @@ impl FoundFlight {
 }
 
 impl Search<'_> {
-    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and
-    /// beginning where the impulse has been given; the signals of both ends are without the first bending
+    /// Rounds from a first guess of the slap-down; the signals of both ends are without the first bending
     /// mode.
-    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: (f64, Option<f64>)) -> FoundFlight {
+    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: Beginning) -> FoundFlight {
         ends.0.restore();
         let mut attempt = self.begin(ends, struck, beginning);
         for round in 0..ROUNDS + FURTHER_ROUNDS {
@@ -228,7 +250,7 @@ impl Search<'_> {
             let Some(flight) = fits.next() else { break };
             self.take_ringing_off(ends, &attempt, &flight);
             let (left_s, end_s) = (attempt.separation.time_s, attempt.end_s);
-            self.seek_anew(ends, &mut attempt, is_explained(&flight));
+            self.seek_anew(ends, &mut attempt, &flight);
             attempt = Attempt { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
             let (left_by_s, end_by_s) =
                 ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
@@ -240,10 +262,10 @@ impl Search<'_> {
         self.conclude(ends, attempt)
     }
 
-    /// Where the signal of R shows it to strike after `from_s`.
-    fn slap_down(&self, second: &motion::RingingRemoved, from_s: f64, is_calm: bool) -> Option<At> {
+    /// Where the signal of R shows it to strike after `from_s`; free of ringing but for `calm_m_s2`.
+    fn slap_down(&self, second: &motion::RingingRemoved, from_s: f64, calm_m_s2: Option<f64>) -> Option<At> {
         let between_s = from_s..self.record_end_s;
-        events::slap_down(second.signal(), self.file.cask.length_m, between_s, self.least_m_s, is_calm)
+        events::slap_down(second.signal(), self.file.cask.length_m, between_s, self.least_m_s, calm_m_s2)
     }
 
     /// Where R strikes; where nothing shows that, where the record ends, s.
@@ -252,7 +274,8 @@ impl Search<'_> {
     }
 
     /// What the first round goes by.
-    fn begin(&self, (first, _): &Ends, struck: Option<At>, (share, given_s): (f64, Option<f64>)) -> Attempt {
+    fn begin(&self, (first, _): &Ends, struck: Option<At>, beginning: Beginning) -> Attempt {
+        let Beginning { share, given_s, most_modes } = beginning;
         let contact_s = self.integrated.contact_s;
         let end_s = contact_s + share * (self.flight_end_s(struck) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit
@@ -265,6 +288,7 @@ impl Search<'_> {
             // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
             free_s: rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s)),
             end_s,
+            most_modes,
             fitted: None,
             others: Vec::new(),
         }
@@ -277,6 +301,7 @@ impl Search<'_> {
         let window = motion::Window {
             from_s: attempt.free_s,
             to_s: attempt.end_s - motion::BEFORE_SLAP_DOWN_S,
+            most_modes: attempt.most_modes,
             drift: self.file.corrections.zero_shift,
             angular_velocity_rad_s: before
                 .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
@@ -296,17 +321,24 @@ impl Search<'_> {
     }
 
     /// Seeks slap-down and separation on signals free of ringing.
-    fn seek_anew(&self, (first, second): &Ends, attempt: &mut Attempt, is_explained: bool) {
+    fn seek_anew(&self, (first, second): &Ends, attempt: &mut Attempt, flight: &FlightFit) {
         let contact_s = self.integrated.contact_s;
         // A well-explained flight hides no slap-down in its ringing, and a poorly fitted one can imitate a
         // slap-down.
-        if is_explained {
-            attempt.slap_down = self.slap_down(second, self.earliest_s.max(attempt.free_s), true);
+        let most_left_m_s = EXPLAINED_M_S.max(SHOWN * self.file.drop.impact_velocity_m_s);
+        let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
+        if is_shown {
+            let later_half_s = f64::midpoint(flight.from_s, flight.to_s)..flight.to_s;
+            let calm_m_s2 = second.largest_m_s2(&later_half_s);
+            let from_s = self.earliest_s.max(attempt.free_s);
+            attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2));
         }
         attempt.separation =
             events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.separation);
         attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.separation.time_s);
-        attempt.end_s = self.flight_end_s(attempt.slap_down);
+        if is_shown {
+            attempt.end_s = self.flight_end_s(attempt.slap_down);
+        }
     }
 
     /// What the last round ended with, the separation by the impulse.
@@ -332,6 +364,7 @@ impl Search<'_> {
             slap_down: *slap_down,
             free_s: stage_s + STAGE_FADES_S,
             end_s: self.flight_end_s(*slap_down),
+            most_modes: FEW_MODES,
             fitted: flight.clone().zip(*window),
             others: Vec::new(),
         };

@@ -2,7 +2,7 @@
 
 use super::clipping::runs_of_steps;
 use crate::data::{ChannelFinding, Finding, Severity, Signal, Span};
-use crate::numerics::{as_f64, reduce};
+use crate::numerics::{as_f64, reduce, robust};
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
 const SHARE_OF_PEAK: f64 = 0.05;
@@ -11,6 +11,10 @@ const NOISE_FACTOR: f64 = 20.0;
 /// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's
 /// peak do not.
 const AGREEMENT: f64 = 0.3;
+/// Samples on either side of a spike in which the signal bends less than this share of its height, in the
+/// median of its second differences: a mode of a few samples a period has such extremes one beside the other.
+const AROUND: usize = 12;
+const CALM: f64 = 0.2;
 /// Longest spike, in samples: a contact that breaks for longer is a dropout or a burst.
 const LONGEST_SPIKE: usize = 5;
 /// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too
@@ -73,7 +77,15 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
     let is_flat = [before[1] - before[0], after[0] - before[1], after[1] - after[0]]
         .iter()
         .all(|step| step.abs() < AGREEMENT * least);
-    (least > height && is_flat).then(|| run.iter().map(|f| sign * (f - base)).sum())
+    (least > height && is_flat && bends_around(force, i, width) < CALM * least)
+        .then(|| run.iter().map(|f| sign * (f - base)).sum())
+}
+
+/// Median of the second differences about the `width` samples from `i` on, without them, m/s².
+fn bends_around(force: &[f64], i: usize, width: usize) -> f64 {
+    let beside = [i.saturating_sub(AROUND)..i, i + width..(i + width + AROUND).min(force.len())];
+    let bends = beside.into_iter().flat_map(|range| force[range].windows(3));
+    robust::median(&mut bends.map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).collect::<Vec<_>>())
 }
 
 /// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.

@@ -9,9 +9,10 @@ use std::borrow::Cow;
 /// offset.
 const LEAST_S: f64 = 0.01;
 
-/// Offsets above this are worth a warning, m/s²: 5 g is past what any accelerometer's data sheet allows as
-/// bias.
+/// Offsets above this are worth a warning, m/s², and above this share of the channel's peak: data sheets of
+/// piezoresistive shock sensors allow a bias of some percent of the range.
 const LARGE_M_S2: f64 = 50.0;
+const LARGE_SHARE: f64 = 0.05;
 
 /// Offsets above this are worth a note, m/s².
 const NOTABLE_M_S2: f64 = 0.98;
@@ -54,7 +55,8 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     let u_offset_m_s2 = robust::mean_and_u(&quiet).1.hypot(rounding_m_s2(signal, spread_m_s2));
     let mut findings = Vec::new();
-    findings.extend(offset(&signal.name, mean, take_off));
+    let large_m_s2 = LARGE_M_S2.max(LARGE_SHARE * reduce::peak(&signal.force_m_s2));
+    findings.extend(offset(&signal.name, mean, take_off, large_m_s2));
     findings.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
     signal.noise_m_s2 = noise_m_s2;
     signal.noise_spectrum = noise_spectrum;
@@ -120,10 +122,10 @@ fn tame(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
     (quiet, spread)
 }
 
-fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Finding> {
+fn offset(name: &str, mean_m_s2: f64, taken_off: bool, large_m_s2: f64) -> Option<Finding> {
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
     if taken_off {
-        let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > LARGE_M_S2 };
+        let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
         return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.on(name));
     }
     let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };

@@ -6,6 +6,9 @@ use std::borrow::Cow;
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
+/// It is so many times as high as what rings on in the flight, but no higher than this share of the peak.
+const ABOVE_RINGING: f64 = 1.2;
+const HIGHEST_FOOT: f64 = 0.3;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
 /// Noise is passed by this many of its standard deviations.
@@ -14,8 +17,8 @@ pub(super) const NOISE_FACTOR: f64 = 6.0;
 const EARLIER_STAGE: f64 = 0.02;
 /// An offset that no free fall has shown is the level of the record's first millisecond, s …
 const LEVEL_S: f64 = 1e-3;
-/// … where that is no more than accelerometers have, m/s²: 5 g.
-const MOST_LEVEL_M_S2: f64 = 50.0;
+/// … where that is no more of its peak than accelerometers have.
+const MOST_LEVEL: f64 = 0.05;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight
 /// from 5°. A cask shorter than 4 m, a model perhaps, rings and turns faster in proportion.
 const WIDTH_S: f64 = 0.025;
@@ -44,7 +47,7 @@ fn levelled(signal: &Signal) -> Cow<'_, Signal> {
         return Cow::Borrowed(signal);
     }
     let level_m_s2 = robust::centre_and_spread(first).0;
-    if level_m_s2.abs() > MOST_LEVEL_M_S2 {
+    if level_m_s2.abs() > MOST_LEVEL * reduce::peak(&signal.force_m_s2) {
         return Cow::Borrowed(signal);
     }
     let force_m_s2 = signal.force_m_s2.iter().map(|force| force - level_m_s2).collect();
@@ -56,7 +59,7 @@ fn levelled(signal: &Signal) -> Cow<'_, Signal> {
 /// it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
     let sign = step_m_s.signum();
-    let mut found = onset(signal, stretch.clone(), sign, Rise::First)?.at;
+    let mut found = onset(signal, stretch.clone(), sign, Rise::First, 0.0)?.at;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
         let mut gained = 0.0;
@@ -68,7 +71,7 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -
         let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s.abs());
         let Some(all_m_s) = all_m_s else { return Some(found) };
         let from = before.start;
-        let earlier = onset(signal, before, sign, Rise::First).map(|earlier| earlier.at);
+        let earlier = onset(signal, before, sign, Rise::First, 0.0).map(|earlier| earlier.at);
         let earlier = earlier.filter(|e| e.time_s < found.time_s);
         let Some(earlier) = earlier else {
             // The noise hides where that began.
@@ -95,14 +98,14 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
 ///
 /// Ringing of a cask of `length_m` has no mean over 25 ms, R striking the target has: the means before and
 /// after each time are compared, and the largest difference, if above `least_change_m_s`, is the slap-down.
-/// On signals that still ring the rise is sought backwards from the pulse's peak; free of ringing the first
-/// rise is taken.
+/// On signals that still ring the rise is sought backwards from the pulse's peak; free of ringing, but for
+/// `calm_m_s2` that the flight shows, the first rise beyond that is taken.
 pub fn slap_down(
     signal: &Signal,
     length_m: f64,
     between_s: std::ops::Range<f64>,
     least_change_m_s: f64,
-    is_calm: bool,
+    calm_m_s2: Option<f64>,
 ) -> Option<At> {
     let width_s = WIDTH_S.min(WIDTH_S_PER_M * length_m);
     let start = signal.index_from(between_s.start - width_s);
@@ -128,13 +131,13 @@ pub fn slap_down(
     let middle = start + block * hump.max_by(|&a, &b| change(a).total_cmp(&change(b)))?;
     let (earliest, reach) = (start + first * block, (width * 3 / 5).max(1));
     let to = (middle + width / 2).min(signal.force_m_s2.len());
-    let rise = if is_calm { Rise::First } else { Rise::BeforePeak };
+    let (rise, left_m_s2) = calm_m_s2.map_or((Rise::BeforePeak, 0.0), |left_m_s2| (Rise::First, left_m_s2));
     // A pulse longer than the width has its rise before the stretch.
     let mut from = middle.saturating_sub(reach).max(earliest);
     loop {
-        let OnsetFound { at, border } = onset(signal, from..to, 1.0, rise)?;
+        let OnsetFound { at, border } = onset(signal, from..to, 1.0, rise, left_m_s2)?;
         // Ringing that is still there has a foot anywhere.
-        if border == Border::Clear || (!is_calm && border == Border::Foot) {
+        if border == Border::Clear || (calm_m_s2.is_none() && border == Border::Foot) {
             return Some(at);
         }
         if from == earliest {
@@ -171,8 +174,14 @@ struct OnsetFound {
 }
 
 /// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut
-/// with zero.
-fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<OnsetFound> {
+/// with zero. Its foot stands above what rings on, of so many m/s² at the most.
+fn onset(
+    signal: &Signal,
+    stretch: std::ops::Range<usize>,
+    sign: f64,
+    rise: Rise,
+    ringing_m_s2: f64,
+) -> Option<OnsetFound> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
@@ -180,6 +189,7 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     if peak <= 2.0 * foot {
         return None;
     }
+    let foot = foot.max((ABOVE_RINGING * ringing_m_s2).min(HIGHEST_FOOT * peak));
     let shoulder = (SHOULDER * peak).max(2.0 * foot);
     // To the first sample past the shoulder, then backwards to the last below the foot.
     let high = match rise {
@@ -276,8 +286,9 @@ mod tests {
             let first =
                 first_contact(&[signal(End::First, rate, 0.020_03, 3000.0)], &coarse).expect("an onset");
             assert!((first.time_s - 0.020_03).abs() < 6e-5, "{rate}: {first:?}");
-            let second = slap_down(&signal(End::Second, rate, 0.080_03, 3000.0), 5.0, 0.03..0.19, 2.0, true)
-                .expect("an onset");
+            let second =
+                slap_down(&signal(End::Second, rate, 0.080_03, 3000.0), 5.0, 0.03..0.19, 2.0, Some(0.0))
+                    .expect("an onset");
             assert!((second.time_s - 0.080_03).abs() < 6e-5, "{rate}: {second:?}");
         }
     }
@@ -340,7 +351,7 @@ mod tests {
             assert!((found.time_s - 0.08).abs() < 1e-4 && found.u_s < 1e-3, "{found:?}");
         }
         // Where R cannot have struck before, no rise is seen: the time is as uncertain as the means are long.
-        let hidden = slap_down(&long, 5.0, 0.09..0.19, 2.0, true).expect("an onset");
+        let hidden = slap_down(&long, 5.0, 0.09..0.19, 2.0, Some(0.0)).expect("an onset");
         assert!(hidden.u_s > 0.02, "{hidden:?}");
     }
 
@@ -358,6 +369,6 @@ mod tests {
 
     #[test]
     fn a_quiet_record_has_no_slap_down() {
-        assert!(slap_down(&signal(End::Second, 1e5, 0.08, 1.0), 5.0, 0.03..0.19, 2.0, true).is_none());
+        assert!(slap_down(&signal(End::Second, 1e5, 0.08, 1.0), 5.0, 0.03..0.19, 2.0, Some(0.0)).is_none());
     }
 }

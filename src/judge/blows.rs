@@ -15,7 +15,7 @@ const RATE_HZ: f64 = 8_000.0;
 const PIECE_S: f64 = 0.1;
 /// A mean this many times as far off its prediction as those before it is a shock. Modes that the prediction
 /// has no room for leave a residual too, but one that decays.
-const LIMIT: f64 = 5.0;
+const LIMIT: f64 = 6.0;
 /// So many means before it are those: 3 ms, longer than most shocks. A third of them will do at first.
 const BEFORE: usize = 24;
 const FEWEST_BEFORE: usize = 8;

@@ -25,6 +25,8 @@ const BAND: f64 = 0.4;
 /// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of
 /// 25 samples and more that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
 const MOST_CONTENT: f64 = 0.05;
+/// Less than this share there leaves of a pulse's area, that the trapezoid misses, less than this share too.
+const LEAST_CONTENT: f64 = 0.01;
 /// Content of less than this many times the noise in the band is noise.
 const OVER_NOISE: f64 = 3.0;
 /// Longest contact whose pulse is sought, s.
@@ -44,7 +46,8 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut findings = Vec::new();
     for (signal, content) in signals.iter().zip(contents) {
-        let low = low_rate(&signal.name, signal.sample_rate_hz, length_s);
+        let is_filtered = content.as_ref().is_some_and(|found| found.in_band < LEAST_CONTENT * largest);
+        let low = low_rate(&signal.name, signal.sample_rate_hz, length_s).filter(|_| !is_filtered);
         findings.extend(low.map(|found| found.between(pulse_s.0, pulse_s.1)));
         if !disturbed.contains(&signal.name.as_str()) {
             findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));

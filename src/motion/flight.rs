@@ -11,8 +11,6 @@ use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
 const MOST_FITS: usize = 5;
-/// Most modes tried: the bending modes of a cask below 400 Hz.
-const MOST_MODES: usize = 3;
 /// Points a window: 240 over 60 ms resolve 400 Hz tenfold.
 const POINTS: usize = 240;
 /// Longest window fitted, s: eight periods of 80 Hz; a longer one would only coarsen the points.
@@ -126,7 +124,10 @@ fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<
     let drifts = if window.drift { &[false, true][..] } else { &[false] };
     let chains = |drive: Option<&Drive>, periods: f64| -> Vec<Vec<Fit>> {
         let seeds = Seeds::new(series, band_hz(periods), drive);
-        drifts.par_iter().map(|&drift| chain(series, &seeds, Form { drift, drive })).collect()
+        drifts
+            .par_iter()
+            .map(|&drift| chain(series, &seeds, Form { drift, drive }, window.most_modes))
+            .collect()
     };
     let mut fits = chains(None, LEAST_PERIODS).concat();
     if drive.is_some() && fits.iter().all(|f| !is_clear(series, f, length_s)) {
@@ -256,10 +257,10 @@ fn improbability(peaks_m_s2: &[f64], fit: &Fit) -> f64 {
 }
 
 /// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.
-fn chain(series: &[Series], seeds: &Seeds, form: Form) -> Vec<Fit> {
+fn chain(series: &[Series], seeds: &Seeds, form: Form, most_modes: usize) -> Vec<Fit> {
     let Some(first) = fit(series, &[], None, form) else { return Vec::new() };
     let mut fits = vec![first];
-    while fits.len() <= MOST_MODES {
+    while fits.len() <= most_modes {
         let last = &fits[fits.len() - 1];
         if series.iter().zip(&last.series).all(|(s, f)| f.residual < 1.1 * s.floor) {
             break;

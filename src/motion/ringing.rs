@@ -2,8 +2,8 @@
 
 use super::flight::{centrifugal_arm_m, oscillation};
 use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
-use crate::numerics::as_f64;
 use crate::numerics::damped_modes::uniform_ringing;
+use crate::numerics::{as_f64, reduce};
 use std::ops::Range;
 
 /// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back
@@ -27,6 +27,12 @@ impl RingingRemoved {
     /// The sum as it now is.
     pub fn signal(&self) -> &Signal {
         &self.signal
+    }
+
+    /// The largest force between two times, m/s².
+    pub fn largest_m_s2(&self, between_s: &Range<f64>) -> f64 {
+        let [from, to] = [between_s.start, between_s.end].map(|time_s| self.signal.index_from(time_s));
+        reduce::peak(self.signal.force_m_s2.get(from..to).unwrap_or_default())
     }
 
     /// Puts back what was taken off.

@@ -17,10 +17,11 @@ pub(super) fn choice() -> ReconstructionChoice {
         };
     ReconstructionChoice {
         rung: ReconstructionRung::Flight,
-        reason: "Taken: planar motion with modes and drift fitted to the flight; the joint fit of all inputs \
+        reason:
+            "Taken: planar motion with modes and drift fitted to the flight; the joint fit of all inputs \
                  within their tolerances would change the speed by +0.02 m/s and k by -0.001, within the \
                  interval."
-            .into(),
+                .into(),
         candidates: vec![
             candidate(
                 ReconstructionRung::Flight,

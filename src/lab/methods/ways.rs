@@ -3,9 +3,7 @@
 
 use crate::analysis::flight_search::{self, Patience};
 use crate::analysis::{self, analyze};
-use crate::data::{
-    CaskFile, CoarseEvent, Estimate, FlightFit, Recording, STANDARD_GRAVITY_M_S2, Signal,
-};
+use crate::data::{CaskFile, CoarseEvent, Estimate, FlightFit, Recording, STANDARD_GRAVITY_M_S2, Signal};
 use crate::lab::chance::Chance;
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};

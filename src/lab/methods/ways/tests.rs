@@ -98,6 +98,7 @@ fn step_error_percent(of: &Prepared) -> f64 {
         to_s: of.contact_s + slap_s - 5e-4,
         drift: true,
         angular_velocity_rad_s: truth.omega_rebound.expect("a separation"),
+        most_modes: 3,
     };
     let integrated = motion::Integrated::over(&of.signals, of.contact_s);
     let drive = motion::drive(&integrated, None, left_s, window.from_s, cog_m);
