@@ -73,14 +73,13 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         roll_rad_s: value(&drop_table, "roll_deg_s")?.to_radians(),
         rates,
     };
-    let body = elastic_body(&root)?;
     let mut scene = Scene {
         name: root.text("name")?.unwrap_or_else(|| cask.name.clone()),
         seed: whole(&root, "seed")?.unwrap_or(by_pulses.seed),
         first_end: crushable(&first, by_pulses.first_end)?,
         second_end: crushable(&second, by_pulses.second_end)?,
         modes: root.tables("mode")?.iter().map(mode).collect::<Result<_, _>>()?,
-        elastic: body,
+        elastic: root.value("body").map(|_| elastic_body(&root)).transpose()?,
         after_s: value(&recording, "after_s")?,
         rest: flag(&recording, "rest")?,
         clock_error: 1e-6 * value(&recording, "clock_error_ppm")?,
@@ -163,17 +162,15 @@ fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, Ca
     Ok(CrushableEnd { loading_n_m, unloading_n_m, yield_n, ..by_pulse })
 }
 
-/// The elastic body where there is a `[body]`: its modes are its own.
-fn elastic_body(root: &Section) -> Result<Option<ElasticBody>, CaskFileError> {
-    let body = root.table("body")?;
-    let Some(first_bending_hz) = body.given("first_bending_hz")? else {
-        return needs(&body, &[("damping", "first_bending_hz")]).map(|()| None);
-    };
+/// The elastic body: its modes are its own.
+fn elastic_body(root: &Section) -> Result<ElasticBody, CaskFileError> {
     if let Some(mode) = root.tables("mode")?.first() {
         let mend = "leave [body] out, or the [[mode]] tables: an elastic body has modes of its own";
         return Err(contradicts(mode, "frequency_hz", "not beside [body]", mend));
     }
-    Ok(Some(ElasticBody { first_bending_hz, damping: value(&body, "damping")? }))
+    let body = root.table("body")?;
+    let first_bending_hz = body.required_number("first_bending_hz")?;
+    Ok(ElasticBody { first_bending_hz, damping: value(&body, "damping")? })
 }
 
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {

@@ -253,14 +253,6 @@ impl SimulatedMotion {
         self.steps.partition_point(|step| is_before(step.time_s))
     }
 
-    /// The whole state at step `i`: that of the cask, then the coordinate of each mode and its rate.
-    pub fn state(&self, i: usize) -> Vec<f64> {
-        let count = self.modes.len() / self.steps.len().max(1);
-        let modes = &self.modes[i * count..(i + 1) * count];
-        let rigid = self.steps[i].state.into_iter();
-        rigid.chain(modes.iter().flat_map(|mode| [mode.q_m, mode.rate_m_s])).collect()
-    }
-
     /// Tangential and normal impulse of the first contact, N s.
     pub fn first_impulse_n_s(&self) -> (f64, f64) {
         let end_s = self.truth.contact_s.unwrap_or(f64::INFINITY);
@@ -284,6 +276,8 @@ pub struct MotionStep {
     pub rates: [f64; 6],
     /// Forces on the corners of L and R, N: tangential, normal.
     pub loads_n: [(f64, f64); 2],
+    /// Heights of these corners above the target, m.
+    pub heights_m: [f64; 2],
 }
 
 /// A bending mode at one time, before its strength.
@@ -297,21 +291,18 @@ pub struct ModeStep {
     pub rate_m_s2: f64,
 }
 
-/// What a perfect measurement would say of the impact of an end; `None` where the end does not strike, or not
-/// leave.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+/// What a perfect measurement would say of the impact of an end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ImpactTruth {
-    /// Length of the contact, s.
+    /// Length of the contact, s; `None` where the end does not leave.
     pub contact_s: Option<f64>,
     /// Greatest crush of the end: how far its corner, as it bends, came below the target, m.
-    pub crush_m: Option<f64>,
+    pub crush_m: f64,
     /// Greatest normal force, unfiltered, N.
-    pub force_n: Option<f64>,
-    /// Greatest deceleration of S across the axis by the force on this end, unfiltered, m/s².
-    pub deceleration_m_s2: Option<f64>,
+    pub force_n: f64,
     /// What the rigid motion loses in the contact, of kinetic energy and of height, J; where the end does not
     /// leave, up to the greatest crush.
-    pub energy_j: Option<f64>,
+    pub energy_j: f64,
 }
 
 /// What a perfect measurement would say. Times count from first contact.
@@ -361,6 +352,6 @@ pub struct Truth {
     pub relands: u32,
     /// Whether L was on the target when R struck.
     pub first_down_at_slap: bool,
-    /// The impacts of L and R.
-    pub impacts: [ImpactTruth; 2],
+    /// The impacts of L and R, where they strike.
+    pub impacts: [Option<ImpactTruth>; 2],
 }

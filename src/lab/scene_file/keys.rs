@@ -77,7 +77,7 @@ CONTENTS {
 
 /// An elastic body, by its first bending mode.
 BODY {
-    "first_bending_hz": "", within(1.0, 20_000.0, "first natural frequency of the free beam, in Hz");
+    "first_bending_hz": REQUIRED, within(1.0, 20_000.0, "first natural frequency of the free beam, in Hz");
     // Of a welded steel structure; bolted ones have more.
     "damping": "0.01", within(0.0, 0.9, "share of critical damping of every mode");
 }

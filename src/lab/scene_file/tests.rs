@@ -169,7 +169,7 @@ fn every_slip_is_one_message_with_its_key() {
         ("yield_n = 1e6", "yield_n = \"1e6 N\"", &["yield_n", "not a number"]),
         ("order = 2", "order = 4", &["order is 4"]),
         ("[[mode]]", "[body]\nfirst_bending_hz = 90\n[[mode]]", &["not beside [body]"]),
-        ("[[mode]]", "[body]\ndamping = 0.02\n[[mode]]", &["damping", "without first_bending_hz"]),
+        ("[[mode]]\norder = 2\nfrequency_hz = 62.0", "[body]", &["[body] has no first_bending_hz"]),
         ("frequency_hz = 62.0", "", &["[[mode]] has no frequency_hz"]),
         ("angle_deg = 15.0\n", "angle_deg = 0\n", &["angle_deg is 0", "0.1 to 89"]),
         ("height_m = 9.0\n", "height_m = 9000\n", &["height_m is 9000, outside 0.001 to 1000"]),

@@ -2,7 +2,7 @@
 //! on it or, of an elastic body, move its corners, and what is loose in it.
 
 use super::contact::CrushingCorner;
-use super::elastic::{self, BodyMode, EndShape, MOST_ELASTIC};
+use super::elastic::{self, BodyMode, MOST_ELASTIC};
 use crate::data::Contact;
 use crate::lab::data::{BendingMode, LooseMass, Scene};
 use crate::numerics::free_beam::MOST_MODES;
@@ -71,8 +71,8 @@ pub(super) struct SceneBody<'a> {
     friction: f64,
     hold_s: f64,
     pub(super) modes: Vec<BodyMode>,
-    /// Of each mode at either end.
-    ends: Vec<[EndShape; 2]>,
+    /// Of each mode at either end, along and across the axis.
+    pub(super) ends: Vec<[[f64; 2]; 2]>,
     /// Whether the modes move the corners.
     acts_back: bool,
     /// Where the state of what is loose begins.
@@ -137,7 +137,7 @@ impl<'a> SceneBody<'a> {
         let mut rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
         if self.acts_back {
             for (q, mode) in self.modes.iter().enumerate() {
-                let bends = mode.mode.strength * mode.shape(self.share(xi_m));
+                let bends = mode.shape(self.share(xi_m));
                 (eta_m, rising_m_s) = (eta_m - bends * y[6 + 2 * q], rising_m_s - bends * y[7 + 2 * q]);
             }
         }
@@ -158,35 +158,19 @@ impl<'a> SceneBody<'a> {
 
     /// Place and motion of L (0) or R (1), as the target meets it.
     pub(super) fn corner(&self, end: usize, y: &[f64]) -> CornerMotion {
-        if self.acts_back { self.bent_corner(end, y) } else { self.rigid_corner(end, y) }
+        self.corner_bent_by(if self.acts_back { &self.ends } else { &[] }, end, y)
     }
 
-    /// Without bending.
-    pub(super) fn rigid_corner(&self, end: usize, y: &[f64]) -> CornerMotion {
-        self.corner_moved(end, y, [0.0; 2])
-    }
-
-    /// With the bending of all modes, u along and w across the axis.
-    pub(super) fn bent_corner(&self, end: usize, y: &[f64]) -> CornerMotion {
+    /// With the bending of the first of the modes, u along and w across the axis.
+    pub(super) fn corner_bent_by(&self, modes: &[[[f64; 2]; 2]], end: usize, y: &[f64]) -> CornerMotion {
+        let cask = &self.scene.cask;
         let ([mut u_m, mut w_m], [mut u_m_s, mut w_m_s]) = ([0.0; 2], [0.0; 2]);
-        for (i, (mode, ends)) in self.modes.iter().zip(&self.ends).enumerate() {
+        for (i, (ends, mode)) in modes.iter().zip(&self.modes).enumerate() {
+            let [along, across] = ends[end];
             let [q_m, q_m_s] = [y[6 + 2 * i], y[7 + 2 * i]].map(|q| mode.mode.strength * q);
-            let EndShape { across, along } = ends[end];
             (u_m, w_m) = (u_m + along * q_m, w_m + across * q_m);
             (u_m_s, w_m_s) = (u_m_s + along * q_m_s, w_m_s + across * q_m_s);
         }
-        let (sin, cos) = y[2].sin_cos();
-        let at = self.corner_moved(end, y, [u_m, w_m]);
-        CornerMotion {
-            sliding_m_s: at.sliding_m_s + u_m_s * cos - w_m_s * sin,
-            rising_m_s: at.rising_m_s + u_m_s * sin + w_m_s * cos,
-            ..at
-        }
-    }
-
-    /// Of the corner that stands `[u_m, w_m]` from where it is in the rigid body, and stays there.
-    fn corner_moved(&self, end: usize, y: &[f64], [u_m, w_m]: [f64; 2]) -> CornerMotion {
-        let cask = &self.scene.cask;
         let xi_m = u_m + if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
         let eta_m = w_m - cask.height_m / 2.0;
         let (sin, cos) = y[2].sin_cos();
@@ -195,8 +179,8 @@ impl<'a> SceneBody<'a> {
             x_m,
             z_m,
             height_m: y[1] + z_m,
-            sliding_m_s: y[3] - y[5] * z_m,
-            rising_m_s: y[4] + y[5] * x_m,
+            sliding_m_s: y[3] - y[5] * z_m + (u_m_s * cos - w_m_s * sin),
+            rising_m_s: y[4] + y[5] * x_m + (u_m_s * sin + w_m_s * cos),
         }
     }
 
@@ -255,10 +239,10 @@ impl<'a> SceneBody<'a> {
             let (sin, cos) = y[2].sin_cos();
             // − 2 φ̇ ż′ + ẍ′ of what bends, with its velocity z′ upwards.
             without_m_s2 -= 2.0 * y[5] * (at.rising_m_s - (y[4] + y[5] * at.x_m));
-            for (i, (mode, ends)) in self.modes.iter().zip(&self.ends).enumerate() {
-                let towards = ends[0].along * cos - ends[0].across * sin;
-                without_m_s2 += mode.mode.strength * towards * self.mode_m_s2(i, y, loads);
-                per_newton += mode.mode.strength * towards * towards / cask.mass_kg;
+            for (i, [[along, across], _]) in self.ends.iter().enumerate() {
+                let towards = along * cos - across * sin;
+                without_m_s2 += towards * self.mode_m_s2(i, y, loads);
+                per_newton += towards * towards / cask.mass_kg;
             }
         }
         (-at.sliding_m_s / self.hold_s - without_m_s2) / per_newton
@@ -271,12 +255,12 @@ impl<'a> SceneBody<'a> {
         let mass_kg = self.scene.cask.mass_kg;
         let [first, second] = [0, 1].map(|end| {
             let (t, n) = loads[end];
-            (n * cos - t * sin) * (self.ends[i][end].across / mass_kg)
+            (n * cos - t * sin) * (self.ends[i][end][1] / mass_kg)
         });
         let mut drive_m_s2 = first + second;
         if self.acts_back {
             for (end, (t, n)) in loads.iter().enumerate() {
-                drive_m_s2 += (t * cos + n * sin) * (self.ends[i][end].along / mass_kg);
+                drive_m_s2 += (t * cos + n * sin) * (self.ends[i][end][0] / mass_kg);
             }
         }
         bending_m_s2(&self.modes[i].mode, drive_m_s2, y[6 + 2 * i], y[7 + 2 * i])

@@ -24,15 +24,6 @@ pub(super) struct BodyMode {
     turning: f64,
 }
 
-/// How far an end moves for a mode's coordinate, before its strength.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct EndShape {
-    /// Of the axis, across it.
-    pub(super) across: f64,
-    /// Of the lower corner, along the axis.
-    pub(super) along: f64,
-}
-
 impl BodyMode {
     /// Deflection at `share` of the length for the coordinate before the strength.
     pub(super) fn shape(&self, share: f64) -> f64 {
@@ -45,12 +36,12 @@ impl BodyMode {
         strength * (above - below) / (2.0 * STEP * length_m) * self.turning
     }
 
-    /// How L's corner (0) or R's (1) moves; that of a mode that only rides on the motion, across alone.
-    pub(super) fn of_end(&self, end: usize, scene: &Scene) -> EndShape {
+    /// How L's corner (0) or R's (1) moves along and across the axis for that coordinate; that of a mode that
+    /// only rides on the motion, across alone.
+    pub(super) fn of_end(&self, end: usize, scene: &Scene) -> [f64; 2] {
         let share = if end == 0 { 0.0 } else { 1.0 };
         let down_m = if scene.elastic.is_some() { scene.cask.height_m / 2.0 } else { 0.0 };
-        let along = down_m * self.tilt_1_m(1.0, share, scene.cask.length_m);
-        EndShape { across: self.shape(share), along }
+        [down_m * self.tilt_1_m(1.0, share, scene.cask.length_m), self.shape(share)]
     }
 }
 
@@ -62,14 +53,13 @@ pub(super) fn modes(scene: &Scene) -> Vec<BodyMode> {
         return listed.map(|mode| BodyMode { mode: *mode, turning: 1.0 }).collect();
     };
     let height = scene.cask.height_m / scene.cask.length_m;
-    let beam = |order| {
-        let thick = ThickBeam::of(order, height, SHEAR);
-        (wave_number(order).powi(2) * thick.slowing, thick)
-    };
+    // Of the slender beam's first: the inertia of the turning sections is in the frequencies alone.
+    let relative = |order, thick: ThickBeam| wave_number(order).powi(2) * thick.slowing;
+    let unit_hz = body.first_bending_hz / relative(1, ThickBeam::of(1, height, SHEAR));
     let mode = |order| {
-        let (thick_hz, thick) = beam(order);
-        let frequency_hz = body.first_bending_hz * thick_hz / beam(1).0;
-        let mode = BendingMode { order, frequency_hz, damping: body.damping, strength: 1.0 / thick.mass };
+        let thick = ThickBeam::of(order, height, SHEAR);
+        let frequency_hz = unit_hz * relative(order, thick);
+        let mode = BendingMode { order, frequency_hz, damping: body.damping, strength: 1.0 };
         BodyMode { mode, turning: thick.turning }
     };
     let is_in_band = |mode: &BodyMode| mode.mode.order == 1 || mode.mode.frequency_hz <= BAND_HZ;

@@ -126,7 +126,7 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
             if end == 1 && passage == Some(CornerPassage::Touch) && !struck {
                 end_s = time_s + scene.after_s;
             }
-            let [corner, local] = [body.rigid_corner(end, now), body.bent_corner(end, now)];
+            let [corner, local] = [&[][..], &body.ends].map(|modes| body.corner_bent_by(modes, end, now));
             let state = std::array::from_fn(|i| now[i]);
             events.push(ContactChange { passage, end, time_s, state, corner, local });
             let has_returned = most < usize::MAX && end == 0 && passage == Some(CornerPassage::Touch);
@@ -136,7 +136,7 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
             break;
         }
     }
-    motion.truth = truth::truth(&body, &motion, &events);
+    motion.truth = truth::truth(scene, &motion, &events);
     motion
 }
 
@@ -223,7 +223,8 @@ fn keep(motion: &mut SimulatedMotion, body: &SceneBody, time_s: f64, y: &[f64]) 
     let loads_n = body.loads(y);
     let all = body.rates(y, &loads_n);
     let [state, rates] = [y, &all[..]].map(|all| std::array::from_fn(|i| all[i]));
-    motion.steps.push(MotionStep { time_s, state, rates, loads_n });
+    let heights_m = [0, 1].map(|end| body.corner(end, y).height_m);
+    motion.steps.push(MotionStep { time_s, state, rates, loads_n, heights_m });
     let mode = |i| ModeStep { q_m: y[i], rate_m_s: y[i + 1], rate_m_s2: all[i + 1] };
     motion.modes.extend((6..).step_by(2).take(body.modes.len()).map(mode));
 }

@@ -68,15 +68,10 @@ type SectionStep = [[f64; 3]; 2];
 /// The section that each mode moves by `bending`, w and θ, at every step.
 fn sections(motion: &SimulatedMotion, bending: &[[f64; 2]]) -> Vec<SectionStep> {
     let at_step = |modes: &[ModeStep]| {
-        let mut section = SectionStep::default();
-        for (weights, mode) in bending.iter().zip(modes) {
-            for (sums, weight) in section.iter_mut().zip(weights) {
-                for (sum, q) in sums.iter_mut().zip([mode.q_m, mode.rate_m_s, mode.rate_m_s2]) {
-                    *sum += weight * q;
-                }
-            }
-        }
-        section
+        let sum = |of: usize, quantity: fn(&ModeStep) -> f64| -> f64 {
+            bending.iter().zip(modes).map(|(weights, mode)| weights[of] * quantity(mode)).sum()
+        };
+        [0, 1].map(|of| [sum(of, |m| m.q_m), sum(of, |m| m.rate_m_s), sum(of, |m| m.rate_m_s2)])
     };
     motion.modes.chunks_exact(bending.len()).map(at_step).collect()
 }

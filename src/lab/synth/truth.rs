@@ -1,6 +1,6 @@
 //! The changes of contact of a simulated drop to what a perfect measurement would say of it.
 
-use super::body::{CornerMotion, SceneBody};
+use super::body::CornerMotion;
 use super::contact::CornerPassage;
 use crate::lab::data::{ImpactTruth, Scene, SimulatedMotion, Truth};
 
@@ -40,18 +40,21 @@ fn strike(events: &[ContactChange]) -> Option<&ContactChange> {
 pub(super) fn contacts<'a>(scene: &Scene, events: &'a [ContactChange], end: usize) -> Vec<ContactSpan<'a>> {
     let period_s = scene.elastic.map_or(0.0, |body| 1.0 / body.first_bending_hz);
     let struck_s = strike(events).map_or(f64::INFINITY, |e| e.time_s);
-    let mut spans = if end == 0 { vec![ContactSpan { from_s: 0.0, left: None }] } else { Vec::new() };
+    let begun = |from_s| ContactSpan { from_s, left: None };
+    let mut spans: Vec<ContactSpan> = (end == 0).then(|| begun(0.0)).into_iter().collect();
     for event in events.iter().filter(|e| e.end == end) {
-        let is_pause = |span: &ContactSpan| {
-            let left_s = span.left.map_or(f64::INFINITY, |left| left.time_s);
-            let has_struck = end == 0 && left_s < struck_s && struck_s <= event.time_s;
-            event.time_s - left_s < period_s.min(left_s - span.from_s) && !has_struck
-        };
-        match (event.passage, spans.last_mut()) {
-            (Some(CornerPassage::Touch), Some(last)) if is_pause(last) => last.left = None,
-            (Some(CornerPassage::Touch), _) => spans.push(ContactSpan { from_s: event.time_s, left: None }),
-            (Some(CornerPassage::Leave), Some(last)) => last.left = Some(event),
-            _ => {}
+        let Some(passage) = event.passage else { continue };
+        let last = spans.last_mut();
+        let is_pause = last.as_ref().and_then(|span| Some((span.from_s, span.left?.time_s))).is_some_and(
+            |(from_s, left_s)| {
+                let has_struck = end == 0 && left_s < struck_s && struck_s <= event.time_s;
+                event.time_s - left_s < period_s.min(left_s - from_s) && !has_struck
+            },
+        );
+        match (passage, last) {
+            (CornerPassage::Leave, Some(last)) => last.left = Some(event),
+            (CornerPassage::Touch, Some(last)) if is_pause => last.left = None,
+            _ => spans.push(begun(event.time_s)),
         }
     }
     spans
@@ -59,11 +62,10 @@ pub(super) fn contacts<'a>(scene: &Scene, events: &'a [ContactChange], end: usiz
 
 /// Reads the truth off the motion and its events, which are in order; without any, only what the scene itself
 /// says.
-pub(super) fn truth(body: &SceneBody, motion: &SimulatedMotion, events: &[ContactChange]) -> Truth {
-    let (scene, strike) = (body.scene, strike(events));
+pub(super) fn truth(scene: &Scene, motion: &SimulatedMotion, events: &[ContactChange]) -> Truth {
+    let strike = strike(events);
     let [of_first, of_second] = [0, 1].map(|end| contacts(scene, events, end));
-    let first = of_first.first().copied();
-    let leave = first.and_then(|span| span.left);
+    let leave = of_first.first().and_then(|span| span.left);
     let before_s = strike.map_or(0.0, |e| e.time_s);
     let left_before = leave.filter(|e| e.time_s < before_s).zip(strike);
     let before: Vec<_> = of_first.iter().filter(|span| span.from_s < before_s).collect();
@@ -90,9 +92,8 @@ pub(super) fn truth(body: &SceneBody, motion: &SimulatedMotion, events: &[Contac
         energy_ratio: strike.map(|e| kinetic_j(scene, &e.state) / (0.5 * cask.mass_kg * v0 * v0)),
         relands: u32::try_from(before.len().saturating_sub(1)).unwrap_or(u32::MAX),
         first_down_at_slap: strike.is_some() && before.last().is_some_and(|span| is_down(&span)),
-        impacts: [(0, first), (1, of_second.first().copied())].map(|(end, span)| {
-            span.map_or_else(ImpactTruth::default, |span| impact(body, motion, end, &span))
-        }),
+        impacts: [(0, &of_first), (1, &of_second)]
+            .map(|(end, spans)| spans.first().and_then(|span| impact(scene, motion, end, span))),
     }
 }
 
@@ -103,31 +104,21 @@ fn kinetic_j(scene: &Scene, y: &[f64; 6]) -> f64 {
 }
 
 /// What happens in a contact of an end.
-fn impact(body: &SceneBody, motion: &SimulatedMotion, end: usize, span: &ContactSpan) -> ImpactTruth {
-    let (mass_kg, gravity_m_s2) = (body.scene.cask.mass_kg, body.scene.drop.gravity_m_s2);
+fn impact(scene: &Scene, motion: &SimulatedMotion, end: usize, span: &ContactSpan) -> Option<ImpactTruth> {
     let until_s = span.left.map_or(f64::INFINITY, |left| left.time_s);
-    let [from, to] =
-        [motion.count_before(|time_s| time_s < span.from_s), motion.count_before(|time_s| time_s <= until_s)];
-    let (mut force_n, mut deceleration_m_s2, mut deepest) = (0.0_f64, 0.0_f64, (0.0, from));
-    for (i, step) in (from..to).zip(&motion.steps[from..to]) {
-        let (t, n) = step.loads_n[end];
-        let (sin, cos) = step.state[2].sin_cos();
-        force_n = force_n.max(n);
-        deceleration_m_s2 = deceleration_m_s2.max((n * cos - t * sin) / mass_kg);
-        let crush_m = if n > 0.0 { -body.corner(end, &motion.state(i)).height_m } else { 0.0 };
-        if crush_m > deepest.0 {
-            deepest = (crush_m, i);
-        }
-    }
-    let energy_j = |state: &[f64; 6]| kinetic_j(body.scene, state) + mass_kg * gravity_m_s2 * state[1];
-    let last = span.left.map_or(&motion.steps[deepest.1].state, |left| &left.state);
-    ImpactTruth {
+    let from = motion.count_before(|time_s| time_s < span.from_s);
+    let to = motion.count_before(|time_s| time_s <= until_s);
+    let steps = &motion.steps[from..to];
+    let deepest = steps.iter().min_by(|a, b| a.heights_m[end].total_cmp(&b.heights_m[end]))?;
+    let weight_n = scene.cask.mass_kg * scene.drop.gravity_m_s2;
+    let energy_j = |state: &[f64; 6]| kinetic_j(scene, state) + weight_n * state[1];
+    let last = span.left.map_or(&deepest.state, |left| &left.state);
+    Some(ImpactTruth {
         contact_s: span.left.map(|left| left.time_s - span.from_s),
-        crush_m: Some(deepest.0),
-        force_n: Some(force_n),
-        deceleration_m_s2: Some(deceleration_m_s2),
-        energy_j: Some(energy_j(&motion.steps[from].state) - energy_j(last)),
-    }
+        crush_m: -deepest.heights_m[end],
+        force_n: steps.iter().map(|step| step.loads_n[end].1).fold(0.0, f64::max),
+        energy_j: energy_j(&steps[0].state) - energy_j(last),
+    })
 }
 
 #[cfg(test)]
