@@ -14,8 +14,8 @@ pub(super) const DENSITY_KG_M3: Range = [900.0, 3500.0];
 pub(super) const PULSE_MS: Range = [1.0, 45.0];
 /// k of either end. \[P\] Table 3: from k → 0 with limiters to a clear rebound without.
 pub(super) const RESTITUTION: Range = [0.05, 0.8];
-/// Force plateau of either end, in one of three, over the elastic peak. Assumed: wood, foam and honeycomb crush
-/// at a nearly constant force.
+/// Force plateau of either end, in one of three, over the elastic peak. Assumed: wood, foam and honeycomb
+/// crush at a nearly constant force.
 pub(super) const PLATEAU: Range = [0.5, 0.95];
 /// First bending mode of an elastic body, Hz. Assumed: steel casks of 8 m to 1 m as free beams.
 pub(super) const FIRST_BENDING_HZ: Range = [40.0, 600.0];
@@ -23,7 +23,8 @@ pub(super) const FIRST_BENDING_HZ: Range = [40.0, 600.0];
 pub(super) const DAMPING: Range = [0.005, 0.03];
 /// Transverse sensors. One at each end suffices; test laboratories use up to 23 in 21 planes (HAW/TB2).
 pub(super) const SENSORS: Range = [2.0, 12.0];
-/// Sensors around the skin from the lowest line, in steps of 90°. Planes of sensors at 0, 90 and 180° are usual.
+/// Sensors around the skin from the lowest line, in steps of 90°. Planes of sensors at 0, 90 and 180° are
+/// usual.
 pub(super) const AROUND_DEG: [f64; 3] = [0.0, 90.0, 180.0];
 /// Sample rate, Hz. Assumed: 25 samples a contact, and usual recorders.
 pub(super) const RATES_HZ: [f64; 5] = [5e3, 1e4, 2e4, 5e4, 1e5];

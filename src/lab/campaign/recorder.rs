@@ -69,8 +69,8 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     rate_hz
 }
 
-/// Where the sensors sit as stated: a transverse one near each end, often more, sometimes an axial one; all on
-/// one line of the skin, or each on its own.
+/// Where the sensors sit as stated: a transverse one near each end, often more, sometimes an axial one; all
+/// on one line of the skin, or each on its own.
 fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let cask = &case.stated.cask;
     let chance = &mut case.chance;

@@ -309,9 +309,9 @@ pub struct ImpactTruth {
 ///
 /// k, velocities, ω and angles are of the rigid motion: that of S by its momentum and of the axis by its
 /// angular momentum, without what bends. Times are of the contacts as the corners make them. A bending corner
-/// chatters: it leaves and is back before the rigid motion has ended its contact. A pause that is shorter than
-/// the contact so far and than a period of the first bending mode therefore belongs to the contact, unless R
-/// strikes in it; a longer one is a flight.
+/// chatters: it leaves and is back before the rigid motion has ended its contact. A pause that is shorter
+/// than the contact so far and than a period of the first bending mode therefore belongs to the contact,
+/// unless R strikes in it; a longer one is a flight.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Truth {
     /// Speed at first contact, m/s.

@@ -64,8 +64,8 @@ fn of_points(family: &str, class: &str, points: &[TrialPoint]) -> Option<f64> {
     if class == "held" { taken(ALL_CLASSES)?.held } else { Some(taken(class)?.p95_error) }
 }
 
-/// Of random sound drops: the share of those of a body that passes or has no numbers, those that are wrong, or
-/// how far off a quantity is, in half-widths.
+/// Of random sound drops: the share of those of a body that passes or has no numbers, those that are wrong,
+/// or how far off a quantity is, in half-widths.
 fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     let rows = &campaign.rows;
     let has_passed = |row: &&CampaignRow| row.verdict == Some(Verdict::Pass);
@@ -94,8 +94,8 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
 /// twenty.
 const SILENT_BY: f64 = 2.0;
 
-/// Of damages: those that are silent though a recording can tell them, of which no finding names what is wrong
-/// at the gross end, or whose harmless end leaves a drop of a body without sound intervals.
+/// Of damages: those that are silent though a recording can tell them, of which no finding names what is
+/// wrong at the gross end, or whose harmless end leaves a drop of a body without sound intervals.
 fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
     let is_wrong = |drop: &TrialDrop| {
         drop.fate == TrialFate::Silent && drop.half_widths_off.is_some_and(|off| off > SILENT_BY)

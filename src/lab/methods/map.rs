@@ -12,8 +12,8 @@ use crate::report::text::json_word;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 12
-/// ms at either end and an offset of half a g; rigid bodies with a weak mode and elastic ones by turns.
+/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to
+/// 12 ms at either end and an offset of half a g; rigid bodies with a weak mode and elastic ones by turns.
 fn plans(request: &TrialRequest) -> Vec<DropPlan> {
     let plan = |order: u64, build: Build, [angle_deg, k, first_ms, second_ms, frequency_hz]: [f64; 5]| {
         let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);

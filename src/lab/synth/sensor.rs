@@ -180,8 +180,9 @@ impl<'a> Between<'a> {
         [point_x * cos + point_z * sin, point_z * cos - point_x * sin]
     }
 
-    /// The same of an elastic body, whose section there moves by w across the axis and turns by θ, in the axes
-    /// of the section: that of the axis at w, ẅ and −2 φ̇ ẇ, then −η (φ̇ + θ̇)² across and −η (φ̈ + θ̈) along.
+    /// The same of an elastic body, whose section there moves by w across the axis and turns by θ, in the
+    /// axes of the section: that of the axis at w, with ẅ across and −2 φ̇ ẇ along; then −η (φ̇ + θ̇)² across
+    /// and −η (φ̈ + θ̈) along.
     fn on_section_m_s2(&self, scene: &Scene, [xi_m, eta_m]: [f64; 2], sections: &[SectionStep]) -> [f64; 2] {
         let between = |which: usize| {
             let [from, to] = self.places.map(|i| sections[i][which]);
