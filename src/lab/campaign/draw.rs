@@ -98,10 +98,7 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         ..stated_drop
     };
     let impacts = impacts(chance, &stated, drop.impact_velocity_m_s);
-    let elastic = chance.is(0.5).then(|| ElasticBody {
-        first_bending_hz: chance.log_even_in(envelope::FIRST_BENDING_HZ),
-        damping: chance.log_even_in(envelope::DAMPING),
-    });
+    let elastic = chance.is(0.5).then(|| elastic_body(chance));
     let (share, friction) = (off * chance.within(tolerances.friction), chance.even(LEAST_FRICTION, 1.0));
     let mut scene = Scene {
         seed: chance.seed(),
@@ -196,6 +193,11 @@ fn impacts(chance: &mut Chance, cask: &Cask, impact_velocity_m_s: f64) -> [Wante
             yield_share: chance.is(1.0 / 3.0).then(|| chance.log_even_in(envelope::PLATEAU)),
         }
     })
+}
+
+fn elastic_body(chance: &mut Chance) -> ElasticBody {
+    let first_bending_hz = chance.log_even_in(envelope::FIRST_BENDING_HZ);
+    ElasticBody { first_bending_hz, damping: chance.log_even_in(envelope::DAMPING) }
 }
 
 /// One to three bending modes of 30 to 400 Hz.

@@ -150,7 +150,7 @@ fn a_finer_tolerance_changes_nothing() {
 fn a_hundredth_of_the_tolerance_changes_nothing_of_an_elastic_body() {
     let elastic = Some(crate::lab::data::ElasticBody { first_bending_hz: 90.0, damping: 0.01 });
     for contact in [Contact::Rough, Contact::Coulomb(0.3)] {
-        let scene = Scene { elastic, contact, ..anf18() };
+        let scene = Scene { contact, elastic, ..anf18() };
         let [coarse, fine] =
             [1.0, 0.01].map(|share| follow(&scene, share * ELASTIC_TOLERANCE, usize::MAX).truth);
         for (a, b) in [(coarse.k, fine.k), (coarse.speed, fine.speed), (coarse.local_speed, fine.local_speed)]
