@@ -1,5 +1,6 @@
 //! A seed and the number of a stream to random numbers.
 
+use super::envelope::Range;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -27,6 +28,11 @@ impl Chance {
     /// Evenly between the logarithms of two values.
     pub(super) fn log_even(&mut self, low: f64, high: f64) -> f64 {
         self.even(low.ln(), high.ln()).exp()
+    }
+
+    /// Evenly between the logarithms of the ends of a range.
+    pub(super) fn log_even_in(&mut self, [low, high]: Range) -> f64 {
+        self.log_even(low, high)
     }
 
     /// True with this probability.
@@ -70,6 +76,11 @@ impl Chance {
         // TOML and JSON readers hold whole numbers of 53 bits for certain.
         self.0.random::<u64>() >> 11
     }
+}
+
+/// Rounded to three digits, as a person states it.
+pub(super) fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Rounded to this many decimal places, as a person states it.

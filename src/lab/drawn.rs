@@ -3,7 +3,7 @@
 
 use super::chance::Chance;
 use super::data::{
-    BendingMode, Chain, Scene, SceneChannel, SimulatedMotion, SyntheticRecording, WantedImpact,
+    BendingMode, Chain, ElasticBody, Scene, SceneChannel, SimulatedMotion, SyntheticRecording, WantedImpact,
 };
 use super::{in_memory, synth};
 use crate::analysis::measure;
@@ -34,6 +34,9 @@ pub(super) const ANF_10: Build = Build { name: "ANF-10", mass_kg: 1429.0, length
 pub(super) const ANF_18: Build = Build { name: "ANF-18", mass_kg: 4466.0, length_m: 5.512, section_m: 0.792 };
 pub(super) const VHLW: Build = Build { name: "VHLW", mass_kg: 20_950.0, length_m: 4.486, section_m: 1.156 };
 pub(super) const BUILDS: [Build; 4] = [ESBB, ANF_10, ANF_18, VHLW];
+
+/// The name of a cask that is none of these.
+pub(super) const DRAWN: &str = "drawn";
 
 impl Build {
     /// The cask with its centre of gravity in the middle and a block's inertia.
@@ -135,14 +138,12 @@ impl DrawnDrop {
 pub(super) struct DropPlan {
     pub build: Build,
     pub angle_deg: f64,
-    /// Coefficient of restitution of a short impact.
-    pub k: f64,
-    /// Length of the first contact, s.
-    pub pulse_s: f64,
-    /// Yield force over the elastic peak.
-    pub yield_share: Option<f64>,
+    /// What either end does.
+    pub ends: [WantedImpact; 2],
     pub contact: Contact,
     pub modes: Vec<BendingMode>,
+    /// The body where it is elastic: then no mode is listed.
+    pub elastic: Option<ElasticBody>,
     pub rate_hz: f64,
     /// Chain of both transverse channels.
     pub chain: Chain,
@@ -156,11 +157,14 @@ impl DropPlan {
         Self {
             build,
             angle_deg,
-            k,
-            pulse_s: 5e-3,
-            yield_share: None,
+            ends: [(5e-3, k), (4e-3, 0.3)].map(|(duration_s, restitution)| WantedImpact {
+                duration_s,
+                restitution,
+                yield_share: None,
+            }),
             contact: Contact::Rough,
             modes: Vec::new(),
+            elastic: None,
             rate_hz: 2e4,
             chain: Chain { white_noise_m_s2: 0.1 * STANDARD_GRAVITY_M_S2, ..Chain::perfect() },
             before_s: 0.1,
@@ -186,17 +190,13 @@ impl DropPlan {
     /// The drop, its scene and cask file changed before it is simulated.
     pub(super) fn draw_with(&self, change: impl FnOnce(&mut Scene, &mut CaskFile, &mut Chance)) -> DrawnDrop {
         let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
-        let impacts = [(self.pulse_s, self.k), (4e-3, 0.3)].map(|(duration_s, restitution)| WantedImpact {
-            duration_s,
-            restitution,
-            yield_share: self.yield_share,
-        });
         let mut scene = Scene {
             seed: self.seed,
             modes: self.modes.clone(),
+            elastic: self.elastic,
             before_s: self.before_s,
             channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
-            ..scene(self.build.cask(), drop, self.contact, impacts)
+            ..scene(self.build.cask(), drop, self.contact, self.ends)
         };
         let mut stated = cask_file(scene.cask.clone(), drop, self.contact, Vec::new());
         let mut chance = Chance::new(self.seed, 0);

@@ -8,6 +8,7 @@ mod chance;
 mod damage;
 pub mod data;
 mod drawn;
+mod envelope;
 pub mod in_memory;
 pub mod methods;
 pub mod report;

@@ -10,7 +10,7 @@ use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
 use crate::lab::data::{
-    BendingMode, CrushableEnd, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slowed,
+    BendingMode, CrushableEnd, ElasticBody, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slowed,
 };
 use crate::lab::drawn;
 use crate::lab::synth;
@@ -79,6 +79,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         first_end: crushable(&first, by_pulses.first_end)?,
         second_end: crushable(&second, by_pulses.second_end)?,
         modes: root.tables("mode")?.iter().map(mode).collect::<Result<_, _>>()?,
+        elastic: root.value("body").map(|_| elastic_body(&root)).transpose()?,
         after_s: value(&recording, "after_s")?,
         rest: flag(&recording, "rest")?,
         clock_error: 1e-6 * value(&recording, "clock_error_ppm")?,
@@ -159,6 +160,17 @@ fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, Ca
         return Err(contradicts(table, "unloading_n_m", "not below loading_n_m", mend));
     }
     Ok(CrushableEnd { loading_n_m, unloading_n_m, yield_n, ..by_pulse })
+}
+
+/// The elastic body: its modes are its own.
+fn elastic_body(root: &Section) -> Result<ElasticBody, CaskFileError> {
+    if let Some(mode) = root.tables("mode")?.first() {
+        let mend = "leave [body] out, or the [[mode]] tables: an elastic body has modes of its own";
+        return Err(contradicts(mode, "frequency_hz", "not beside [body]", mend));
+    }
+    let body = root.table("body")?;
+    let first_bending_hz = body.required_number("first_bending_hz")?;
+    Ok(ElasticBody { first_bending_hz, damping: value(&body, "damping")? })
 }
 
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {

@@ -84,6 +84,7 @@ impl Case {
             second_end: CrushableEnd { loading_n_m: 1e9, unloading_n_m: 1e9, ..CrushableEnd::default() },
             contact: self.contact,
             modes: vec![],
+            elastic: None,
             before_s: 0.0,
             after_s: 0.0,
             rest: false,

@@ -2,11 +2,16 @@
 
 use crate::data::planar::first_arm_m;
 use crate::data::{Cask, CaskFile, Contact, Drop, Tolerances};
-use crate::lab::chance::{Chance, round};
+use crate::lab::chance::{Chance, round, three_digits};
 use crate::lab::damage::{BetweenImpacts, Wish};
-use crate::lab::data::{BendingMode, Scene, Truth, WantedImpact};
-use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, scene};
+use crate::lab::data::{BendingMode, ElasticBody, Scene, Truth, WantedImpact};
+use crate::lab::drawn::{BUILDS, Build, DRAWN, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, scene};
+use crate::lab::envelope;
 use crate::lab::synth;
+use std::f64::consts::FRAC_PI_2;
+
+/// Greatest crush of an end over its section: a limiter is used up to a third of it.
+const LARGEST_CRUSH: f64 = 0.35;
 
 /// Bending frequencies of a free uniform beam over its first.
 const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
@@ -92,11 +97,13 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         horizontal_velocity_m_s: off * chance.within(tolerances.horizontal_velocity_m_s),
         ..stated_drop
     };
-    let impacts = impacts(chance);
+    let impacts = impacts(chance, &stated, drop.impact_velocity_m_s);
+    let elastic = chance.is(0.5).then(|| elastic_body(chance));
     let (share, friction) = (off * chance.within(tolerances.friction), chance.even(LEAST_FRICTION, 1.0));
     let mut scene = Scene {
         seed: chance.seed(),
-        modes: modes(chance),
+        modes: if elastic.is_some() { Vec::new() } else { modes(chance) },
+        elastic,
         after_s: chance.even(0.02, 0.15),
         // Quartz oscillators keep some 1e-5.
         clock_error: off * chance.normal() * 2e-5,
@@ -105,7 +112,7 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     let mut stated = cask_file(stated, stated_drop, stated_contact, defaults);
     wish.fulfil(&mut scene, &mut stated, chance);
     if wish.contact.is_none() && share != 0.0 {
-        let held = Scene { contact: Contact::Rough, ..scene.clone() };
+        let held = Scene { contact: Contact::Rough, elastic: None, ..scene.clone() };
         // I_x / I_z of the first contact.
         let (along, up) = synth::simulate_one_flight(&held).first_impulse_n_s();
         let holds = if up > 0.0 { along / up } else { 0.0 };
@@ -129,25 +136,24 @@ fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
     }
 }
 
-/// One of the casks; four in ten are stretched, one in four leaves out its centre of gravity, one in four its
-/// inertia.
+/// One of the casks, or, six times in ten, any within the envelope; one in four leaves out its centre of
+/// gravity, one in four its inertia.
 fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
     let mut build = chance.one_of(&BUILDS);
-    let mut name = build.name.to_owned();
-    if chance.is(0.4) {
-        build.mass_kg = round(build.mass_kg * chance.even(0.6, 1.6), 0);
-        build.length_m = round(build.length_m * chance.even(0.7, 1.3), 3);
-        build.section_m = round(build.section_m * chance.even(0.5, 1.2), 3);
-        name.push_str("-var");
+    if chance.is(0.6) {
+        let length_m = round(chance.log_even_in(envelope::LENGTH_M), 3);
+        let section_m = three_digits(length_m / chance.log_even_in(envelope::SLENDERNESS));
+        let mass_kg = length_m * section_m * section_m * chance.log_even_in(envelope::DENSITY_KG_M3);
+        build = Build { name: DRAWN, mass_kg: three_digits(mass_kg), length_m, section_m };
     }
-    let mut cask = Cask { name, ..build.cask() };
+    let mut cask = build.cask();
     if chance.is(0.75) {
         cask.cog_m = round(cask.length_m * chance.even(0.45, 0.55), 3);
     } else {
         defaults.push("cask.cog_m".to_owned());
     }
     if chance.is(0.75) {
-        cask.inertia_kg_m2 = round(cask.inertia_kg_m2 * chance.even(0.85, 1.15), 0);
+        cask.inertia_kg_m2 = three_digits(cask.inertia_kg_m2 * chance.even(0.85, 1.15));
     } else {
         defaults.push("cask.inertia_kg_m2".to_owned());
     }
@@ -173,35 +179,37 @@ fn contact(chance: &mut Chance) -> (Contact, bool) {
     (contact, !(0.4..0.8).contains(&part))
 }
 
-/// What both ends do: pulses of 1 to 20 ms, one in four of the first with a force plateau.
-fn impacts(chance: &mut Chance) -> [WantedImpact; 2] {
-    let duration_s = chance.log_even(1e-3, 20e-3);
-    let first = WantedImpact {
-        duration_s,
-        restitution: chance.even(K_RANGE.0, K_RANGE.1),
-        yield_share: if chance.is(0.25) { Some(chance.even(0.6, 0.95)) } else { None },
-    };
-    let second = WantedImpact {
-        duration_s: duration_s * chance.even(0.5, 1.5),
-        restitution: chance.even(0.05, 0.7),
-        yield_share: None,
-    };
-    [first, second]
+/// What both ends do, each by itself; none crushes further than its section lets it.
+fn impacts(chance: &mut Chance, cask: &Cask, impact_velocity_m_s: f64) -> [WantedImpact; 2] {
+    // R strikes half as fast again, about.
+    [1.0, 1.5].map(|faster| {
+        let restitution = chance.log_even_in(envelope::RESTITUTION);
+        // An elastic end of v0 and T is crushed by v0 T · 2/(π (1 + k)).
+        let most_m = LARGEST_CRUSH * cask.height_m;
+        let longest_s = most_m * FRAC_PI_2 * (1.0 + restitution) / (faster * impact_velocity_m_s);
+        WantedImpact {
+            duration_s: longest_s.min(1e-3 * chance.log_even_in(envelope::PULSE_MS)),
+            restitution,
+            yield_share: chance.is(1.0 / 3.0).then(|| chance.log_even_in(envelope::PLATEAU)),
+        }
+    })
+}
+
+fn elastic_body(chance: &mut Chance) -> ElasticBody {
+    let first_bending_hz = chance.log_even_in(envelope::FIRST_BENDING_HZ);
+    ElasticBody { first_bending_hz, damping: chance.log_even_in(envelope::DAMPING) }
 }
 
 /// One to three bending modes of 30 to 400 Hz.
 fn modes(chance: &mut Chance) -> Vec<BendingMode> {
-    let part = chance.even(0.0, 1.0);
     let first_hz = chance.log_even(30.0, 160.0);
     let strength = if chance.is(0.5) { chance.even(0.2, 1.0) } else { 1.0 };
-    let mut modes = Vec::new();
-    let most = 1 + usize::from(part >= 0.5) + usize::from(part >= 0.82);
-    for (order, overtone) in (1..).zip(OVERTONES).take(most) {
-        let frequency_hz = first_hz * overtone * if order == 1 { 1.0 } else { chance.even(0.8, 1.1) };
-        if frequency_hz > 400.0 {
-            break;
-        }
-        modes.push(BendingMode { order, frequency_hz, damping: chance.even(0.01, 0.06), strength });
-    }
-    modes
+    let most = chance.one_of(&[1, 1, 1, 2, 2, 3]);
+    let mode = |(order, overtone): (u8, f64)| BendingMode {
+        order,
+        frequency_hz: first_hz * overtone * if order == 1 { 1.0 } else { chance.even(0.8, 1.1) },
+        damping: chance.even(0.01, 0.06),
+        strength,
+    };
+    (1..).zip(OVERTONES).take(most).map(mode).take_while(|mode| mode.frequency_hz <= 400.0).collect()
 }

@@ -12,6 +12,7 @@ pub use statistics::outcome;
 pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;
+pub(super) use tally::BODIES;
 pub use tally::Tally;
 
 use crate::analysis::measure;

@@ -6,11 +6,11 @@ use crate::lab::chance::{Chance, round};
 use crate::lab::damage::Wish;
 use crate::lab::data::{Chain, SceneChannel};
 use crate::lab::drawn::{DrawnDrop, spec, unit_m_s2};
+use crate::lab::envelope::{AROUND_DEG, CLOCK_MS, RATES_HZ, SENSORS};
+use crate::numerics::as_count;
 
-/// Sample rates of the recorders, Hz.
-const RATES_HZ: [f64; 8] = [2e3, 5e3, 10e3, 20e3, 50e3, 100e3, 200e3, 500e3];
-
-/// Least samples in the first contact and in a period of the highest mode.
+/// Least samples in the first contact and in a period of the highest listed mode, or of an elastic body's
+/// first: a filter takes the others off.
 const CONTACT_SAMPLES: f64 = 25.0;
 const PERIOD_SAMPLES: f64 = 15.0;
 
@@ -27,8 +27,12 @@ pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
     let seats = seats(case, wish);
     let chain = chain(&mut case.chance, rate_hz);
     let unit = if case.chance.is(0.8) { "g" } else { "m/s^2" };
+    let late_s = if case.chance.is(0.2) { 1e-3 * case.chance.even(CLOCK_MS[0], CLOCK_MS[1]) } else { 0.0 };
     for seat in seats {
-        let seat = SceneChannel { unit: unit.into(), sample_rate_hz: rate_hz, chain: chain.clone(), ..seat };
+        // The second end has a recorder of its own, or not.
+        let skew_s = if seat.end == End::Second && !exact { late_s } else { 0.0 };
+        let chain = Chain { skew_s, ..chain.clone() };
+        let seat = SceneChannel { unit: unit.into(), sample_rate_hz: rate_hz, chain, ..seat };
         case.stated.channels.push(spec(&seat));
         let channel = mounted(case, seat, exact);
         case.scene.channels.push(channel);
@@ -49,7 +53,9 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
         chance.even(0.05, if is_short { 0.3_f64.min(0.95 * fall_s) } else { 0.95 * fall_s })
     };
     let end_s = truth.slap_t.unwrap_or(0.0) + case.scene.after_s;
-    let highest_hz = case.scene.modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
+    let bending_hz = case.scene.elastic.map(|body| body.first_bending_hz);
+    let listed_hz = case.scene.modes.iter().map(|mode| mode.frequency_hz);
+    let highest_hz = listed_hz.chain(bending_hz).fold(0.0, f64::max);
     let needed_hz = (CONTACT_SAMPLES / truth.contact_s.unwrap_or(1e-3)).max(PERIOD_SAMPLES * highest_hz);
     let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
     let before_s = |hz: f64| if hz >= 1e5 && !rest { drawn_s.min(0.08) } else { drawn_s };
@@ -57,36 +63,39 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     let most = if wish.kind.is_empty() { MOST_SAMPLES } else { MOST_SAMPLES / 3.0 };
     let affordable: Vec<f64> =
         fast.iter().copied().filter(|hz| hz * (before_s(*hz) + end_s) <= most).collect();
-    let slowest_hz = fast.first().copied().unwrap_or(500e3);
+    let slowest_hz = fast.first().or(RATES_HZ.last()).copied().unwrap_or(needed_hz);
     let rate_hz = if affordable.is_empty() { slowest_hz } else { chance.one_of(&affordable) };
     (case.scene.rest, case.scene.before_s) = (rest, before_s(rate_hz));
     rate_hz
 }
 
-/// Where the sensors sit as stated: a transverse one near each end, sometimes more, sometimes an axial one.
+/// Where the sensors sit as stated: a transverse one near each end, often more, sometimes an axial one; all
+/// on one line of the skin, or each on its own.
 fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let cask = &case.stated.cask;
     let chance = &mut case.chance;
-    let is_off_axis = chance.is(0.2);
-    let mut place = |name, end, axis, (nearest_m, farthest_m): (f64, f64)| {
+    let common_deg = chance.one_of(&AROUND_DEG);
+    let is_mixed = chance.is(0.3);
+    let mut place = |name: &str, end, axis, (nearest_m, farthest_m): (f64, f64)| {
         let from_end_m = chance.even(nearest_m, farthest_m);
-        let aside_m = round(chance.even(-0.4, 0.4) * cask.height_m, 3);
+        let around_deg = if is_mixed { chance.one_of(&AROUND_DEG) } else { common_deg };
         let position_m = if end == End::First { from_end_m } else { cask.length_m - from_end_m };
-        let offset_m = if is_off_axis { aside_m } else { 0.0 };
+        let offset_m = round(-around_deg.to_radians().cos() * cask.height_m / 2.0, 3);
         SceneChannel { axis, offset_m, ..SceneChannel::perfect(name, end, round(position_m, 3)) }
     };
-    let (near, inner) = ((0.05, 0.4), (0.4, 0.3 * cask.length_m));
+    let farthest_m = (0.1 * cask.length_m).min(0.4);
+    let (near, inner) = ((farthest_m / 8.0, farthest_m), (farthest_m, 0.45 * cask.length_m));
     let mut seats = vec![
         place("A1", End::First, Axis::Transverse, near),
         place("A2", End::Second, Axis::Transverse, near),
     ];
-    let third = place("A3", End::First, Axis::Transverse, inner);
-    let fourth = place("A4", End::Second, Axis::Transverse, inner);
-    let axial = place("A5", End::First, Axis::Axial, near);
-    let (more, most, has_axial) = (chance.is(0.1) || wish.third_channel, chance.is(0.5), chance.is(0.15));
-    seats.extend(more.then_some(third));
-    seats.extend((more && most).then_some(fourth));
-    seats.extend(wish.axial.unwrap_or(has_axial).then_some(axial));
+    let more = [End::First, End::Second].into_iter().cycle().zip(3..).take(10);
+    let more: Vec<_> = more.map(|(end, i)| place(&format!("A{i}"), end, Axis::Transverse, inner)).collect();
+    let axial = place("X1", End::First, Axis::Axial, near);
+    let count = if chance.is(0.5) { 2 } else { as_count(chance.log_even_in(SENSORS).round()) };
+    let least = if wish.third_channel { 3 } else { 2 };
+    seats.extend(more.into_iter().take(count.max(least) - 2));
+    seats.extend(wish.axial.unwrap_or(chance.is(0.15)).then_some(axial));
     seats
 }
 

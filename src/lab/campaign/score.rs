@@ -46,6 +46,7 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
             angle_deg: truth.angle_deg,
             rate_hz: drop.scene.channels.first().map_or(0.0, |channel| channel.sample_rate_hz),
             modes: drop.scene.modes.len(),
+            elastic: drop.scene.elastic.is_some(),
             yields: drop.scene.first_end.yield_n.is_some(),
             rest: drop.scene.rest,
             stated_angle_deg: round(drop.stated.drop.angle_rad.to_degrees(), 9),

@@ -160,6 +160,8 @@ pub(super) struct SceneWords {
     /// None where the recording was refused.
     pub verdict: Option<Verdict>,
     pub outcome: SceneOutcome,
+    /// Whether speed and k are stated.
+    pub has_numbers: bool,
     /// The rung of the reconstruction taken.
     pub rung: Option<ReconstructionRung>,
 }
@@ -175,7 +177,8 @@ pub(super) struct SceneGroup {
 impl SceneGroup {
     /// Counts a scene, and of its quantities so many.
     pub(super) fn add(&mut self, row: &CampaignRow, quantities: usize) {
-        let words = SceneWords { verdict: row.verdict, outcome: outcome(row), rung: row.rung };
+        let (outcome, has_numbers) = (outcome(row), row.has_numbers());
+        let words = SceneWords { verdict: row.verdict, outcome, has_numbers, rung: row.rung };
         *self.counts.entry(words).or_default() += 1;
         self.spreads.resize(quantities, Spread::default());
         for (spread, (name, _, relative, _)) in self.spreads.iter_mut().zip(QUANTITIES) {

@@ -156,6 +156,7 @@ fn coverage(groups: &[NamedGroup]) -> ChapterPart {
         .text("drops", |(words, _)| *words)
         .number("scenes", |(_, scenes)| scenes.len().to_string())
         .number("pass", |(_, scenes)| share(scenes.count(|s| s.verdict == Some(Verdict::Pass)), scenes.len()))
+        .number("no numbers", |(_, scenes)| share(scenes.count(|s| !s.has_numbers), scenes.len()))
         .number("covered", |(_, scenes)| share(scenes.with(SceneOutcome::Covered), scenes.len()))
         .number("speed: 95th, %", |(_, scenes)| scenes.spread("speed").error(0.95, 2))
         .number("k: 95th", |(_, scenes)| scenes.spread("k").error(0.95, 4))

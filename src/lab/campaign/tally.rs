@@ -5,7 +5,7 @@ use super::DamageKind;
 use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread, outcome};
 use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{CampaignRequest, CampaignRow, Stated};
-use crate::lab::drawn::BUILDS;
+use crate::lab::drawn::{BUILDS, DRAWN};
 use std::collections::BTreeMap;
 
 /// Scenes that passed and are wrong are listed up to this many.
@@ -68,14 +68,19 @@ fn classes(row: &CampaignRow) -> Vec<SceneClass> {
     classes
 }
 
-/// Cask, and small, middle or large numbers.
+/// The two kinds of bodies, as classes and limits name them.
+pub(in crate::lab) const BODIES: [&str; 2] = ["rigid bodies with modes", "elastic bodies"];
+
+/// Body, cask, and small, middle or large numbers.
 fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
     let class = |place, words: &str| SceneClass::new(ClassTable::SoundClasses, place, words);
-    // Stretched casks are among those of their name.
-    let cask = BUILDS.iter().position(|build| row.facts.cask.starts_with(build.name));
-    let mut classes: Vec<SceneClass> = cask.map(|i| class(i, BUILDS[i].name)).into_iter().collect();
+    let body = usize::from(row.facts.elastic);
+    let casks = BUILDS.map(|build| build.name).into_iter().chain([DRAWN]);
+    let cask = casks.zip(2..).find(|(name, _)| row.facts.cask.starts_with(name));
+    let mut classes = vec![class(body, BODIES[body])];
+    classes.extend(cask.map(|(name, i)| class(i, name)));
     // Where the middle class begins and ends.
-    for (i, (name, unit, [low, high], number)) in (BUILDS.len()..).zip([
+    for (i, (name, unit, [low, high], number)) in (2 + BUILDS.len()..).zip([
         ("angle", "°", [5.0, 30.0], Some(row.facts.angle_deg)),
         ("contact", " ms", [3.0, 10.0], row.truth("duration").map(|contact_s| 1e3 * contact_s)),
         ("k", "", [0.1, 0.8], row.truth("k")),
@@ -95,7 +100,8 @@ fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
 /// What in a scene asks for a higher rung, or is none of the rungs' business.
 fn rung_classes(row: &CampaignRow) -> impl Iterator<Item = SceneClass> {
     let asks = [
-        ("no mode", row.facts.modes == 0),
+        ("elastic body", row.facts.elastic),
+        ("no mode", row.facts.modes == 0 && !row.facts.elastic),
         ("one mode", row.facts.modes == 1),
         ("two modes", row.facts.modes == 2),
         ("three modes", row.facts.modes == 3),

@@ -122,6 +122,9 @@ const CLEAR_PERIODS: f64 = 3.0;
 fn harden(kind: &str, plan: &mut DropPlan, size: f64) {
     let flight_s = if kind.contains("mode") { plan.flight_s() } else { 1.0 };
     let clear = DropPlan::mode(1, CLEAR_PERIODS / flight_s);
+    if kind.contains("mode") {
+        plan.elastic = None;
+    }
     match kind {
         "mode_frequency" => plan.modes = vec![DropPlan::mode(1, size / flight_s)],
         "mode_damping" => plan.modes = vec![BendingMode { damping: size, ..clear }],
@@ -129,11 +132,11 @@ fn harden(kind: &str, plan: &mut DropPlan, size: f64) {
             plan.modes = vec![clear, DropPlan::mode(2, clear.frequency_hz * (1.0 + size / 100.0))];
         }
         "mode_strength" => plan.modes = vec![BendingMode { strength: size, ..clear }],
-        "k_small" => plan.k = size,
-        "k_large" => plan.k = 1.0 - size,
-        "pulse" => plan.pulse_s = 1e-3 * size,
+        "k_small" => plan.ends[0].restitution = size,
+        "k_large" => plan.ends[0].restitution = 1.0 - size,
+        "pulse" => plan.ends[0].duration_s = 1e-3 * size,
         "angle_small" | "angle_large" => plan.angle_deg = size,
-        "recontact" => (plan.k, plan.angle_deg) = (0.1, size),
+        "recontact" => (plan.ends[0].restitution, plan.angle_deg) = (0.1, size),
         _ => {}
     }
 }

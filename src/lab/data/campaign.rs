@@ -121,8 +121,10 @@ pub struct SceneFacts {
     pub angle_deg: f64,
     /// Rate of the first channel, Hz.
     pub rate_hz: f64,
-    /// Bending modes.
+    /// Bending modes that are listed.
     pub modes: usize,
+    /// Whether the body is an elastic beam.
+    pub elastic: bool,
     /// Whether the first end's force has a plateau.
     pub yields: bool,
     /// Whether the record shows the rest before the release.
@@ -162,6 +164,11 @@ impl CampaignRow {
     /// What is stated of a quantity.
     pub fn stated(&self, quantity: &str) -> Option<Stated> {
         self.quantities.get(quantity)?.stated
+    }
+
+    /// Whether it states speed and k.
+    pub fn has_numbers(&self) -> bool {
+        ["speed", "k"].iter().all(|name| self.stated(name).is_some())
     }
 
     /// The truth of a quantity.

@@ -86,6 +86,16 @@ pub struct BendingMode {
     pub strength: f64,
 }
 
+/// A body that is a free elastic beam of the cask's length and section, whose modes move the corners that
+/// strike.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ElasticBody {
+    /// Natural frequency of its first bending mode, Hz; the others follow from its slenderness.
+    pub first_bending_hz: f64,
+    /// Share of critical damping of each mode.
+    pub damping: f64,
+}
+
 /// What a sensor and its chain do to the specific force at its place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Chain {
@@ -191,8 +201,10 @@ pub struct Scene {
     pub first_end: CrushableEnd,
     /// R.
     pub second_end: CrushableEnd,
-    /// Bending modes.
+    /// Bending modes that ride on the rigid motion.
     pub modes: Vec<BendingMode>,
+    /// The body where it is elastic: then there are no other modes.
+    pub elastic: Option<ElasticBody>,
     /// Record before first contact, s.
     pub before_s: f64,
     /// Record after the slap-down, s.
@@ -229,6 +241,8 @@ impl Scene {
 pub struct SimulatedMotion {
     /// At the integrator's own times, ascending; twice where a contact changes and acceleration may step.
     pub steps: Vec<MotionStep>,
+    /// The bending modes at each of these times, those of a time together.
+    pub modes: Vec<ModeStep>,
     /// What a perfect measurement would say.
     pub truth: Truth,
 }
@@ -256,17 +270,49 @@ impl SimulatedMotion {
 pub struct MotionStep {
     /// Since first contact, s.
     pub time_s: f64,
-    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates; then the coordinate of each
-    /// bending mode, m, and its rate, both before its strength.
-    pub state: [f64; 12],
+    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates.
+    pub state: [f64; 6],
     /// The rate of each of these.
-    pub rates: [f64; 12],
+    pub rates: [f64; 6],
     /// Forces on the corners of L and R, N: tangential, normal.
     pub loads_n: [(f64, f64); 2],
+    /// Heights of these corners above the target, m.
+    pub heights_m: [f64; 2],
+}
+
+/// A bending mode at one time, before its strength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeStep {
+    /// Its coordinate, m.
+    pub q_m: f64,
+    /// The rate of that, m/s.
+    pub rate_m_s: f64,
+    /// The rate of that again, m/s².
+    pub rate_m_s2: f64,
+}
+
+/// What a perfect measurement would say of the impact of an end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ImpactTruth {
+    /// Length of the contact, s; `None` where the end does not leave.
+    pub contact_s: Option<f64>,
+    /// Greatest crush of the end: how far its corner, as it bends, came below the target, m.
+    pub crush_m: f64,
+    /// Greatest normal force, unfiltered, N.
+    pub force_n: f64,
+    /// What the rigid motion loses in the contact, of kinetic energy and of height, J; where the end does not
+    /// leave, up to the greatest crush.
+    pub energy_j: f64,
 }
 
 /// What a perfect measurement would say. Times count from first contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+///
+/// k, velocities, ω and angles are of the rigid motion: that of S by its momentum and of the axis by its
+/// angular momentum, without what bends. Times are of the contacts as the corners make them. A bending corner
+/// chatters: it leaves and is back before the rigid motion has ended its contact. A pause that is shorter
+/// than the contact so far and than a period of the first bending mode therefore belongs to the contact,
+/// unless R strikes in it; a longer one is a flight.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Truth {
     /// Speed at first contact, m/s.
     pub v0: f64,
@@ -294,6 +340,8 @@ pub struct Truth {
     pub vz: Option<f64>,
     /// Magnitude of R's velocity, m/s.
     pub speed: Option<f64>,
+    /// The same with all that bends: of the corner that strikes.
+    pub local_speed: Option<f64>,
     /// ω just before slap-down, rad/s.
     pub omega: Option<f64>,
     /// Inclination at slap-down, degrees.
@@ -304,4 +352,6 @@ pub struct Truth {
     pub relands: u32,
     /// Whether L was on the target when R struck.
     pub first_down_at_slap: bool,
+    /// The impacts of L and R, where they strike.
+    pub impacts: [Option<ImpactTruth>; 2],
 }

@@ -73,6 +73,8 @@ pub struct TrialDrop {
     pub half_widths_off: Option<f64>,
     /// Whether a finding names what is wrong by one of the codes that should.
     pub is_named: bool,
+    /// Whether the body is an elastic beam.
+    pub is_elastic: bool,
 }
 
 /// What several drops show that a damage of one size is done to.

@@ -3,11 +3,11 @@
 use super::references::{FINITE_ELEMENTS, OWN, References, built_in};
 use super::ways::ALL_CLASSES;
 use crate::data::Verdict;
-use crate::lab::campaign::{half_widths_off, is_missed};
-use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
+use crate::lab::campaign::{BODIES, half_widths_off, is_missed};
+use crate::lab::data::{Campaign, CampaignRow, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
-use crate::numerics::robust::quantile;
+use crate::numerics::robust::{mean_and_rms, quantile};
 use std::f64::consts::PI;
 
 /// What is measured, least, most, unit, why.
@@ -64,13 +64,20 @@ fn of_points(family: &str, class: &str, points: &[TrialPoint]) -> Option<f64> {
     if class == "held" { taken(ALL_CLASSES)?.held } else { Some(taken(class)?.p95_error) }
 }
 
-/// Of random sound drops: the share that passes, those that are wrong, or how far off a quantity is, in
-/// half-widths.
+/// Of random sound drops: the share of those of a body that passes or has no numbers, those that are wrong,
+/// or how far off a quantity is, in half-widths.
 fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     let rows = &campaign.rows;
-    let passed = || rows.iter().filter(|row| row.verdict == Some(Verdict::Pass));
+    let has_passed = |row: &&CampaignRow| row.verdict == Some(Verdict::Pass);
+    let passed = || rows.iter().filter(has_passed);
+    if let Some((what, body)) = measured.split_once(" of ") {
+        let is_counted =
+            |row: &CampaignRow| if what == "pass" { has_passed(&row) } else { !row.has_numbers() };
+        let of_body = rows.iter().filter(|row| BODIES[usize::from(row.facts.elastic)] == body);
+        let counts: Vec<f64> = of_body.map(|row| f64::from(u8::from(is_counted(row)))).collect();
+        return (Some(100.0 * mean_and_rms(&counts).0), String::new());
+    }
     match measured {
-        "pass" => (Some(100.0 * as_f64(passed().count()) / as_f64(rows.len())), String::new()),
         "passed and wrong" => {
             listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.scene.to_string()))
         }
@@ -87,8 +94,8 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
 /// twenty.
 const SILENT_BY: f64 = 2.0;
 
-/// Of damages: those that are silent though a recording can tell them, or of which no finding names what is
-/// wrong at the gross end.
+/// Of damages: those that are silent though a recording can tell them, of which no finding names what is
+/// wrong at the gross end, or whose harmless end leaves a drop of a body without sound intervals.
 fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
     let is_wrong = |drop: &TrialDrop| {
         drop.fate == TrialFate::Silent && drop.half_widths_off.is_some_and(|off| off > SILENT_BY)
@@ -96,6 +103,14 @@ fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
     let is_silent = |map: &&TrialMap| {
         map.instead.is_empty() && map.sizes.iter().flat_map(|size| &size.drops).any(is_wrong)
     };
+    if let Some(body) = measured.strip_prefix("false alarms of ") {
+        let is_alarm =
+            |drop: &TrialDrop| BODIES[usize::from(drop.is_elastic)] == body && drop.fate != TrialFate::Inside;
+        let grow = maps.iter().filter(|map| map.sizes.len() > 1);
+        return listed(
+            grow.filter(|map| map.sizes[0].drops.iter().any(is_alarm)).map(|map| map.name.clone()),
+        );
+    }
     match measured {
         "silent though a record can tell" => {
             listed(maps.iter().filter(is_silent).map(|map| map.name.clone()))

@@ -5,32 +5,36 @@ use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
 use crate::lab::campaign::half_widths_between;
 use crate::lab::damage::{self, DamageKind};
-use crate::lab::data::{TrialDrop, TrialFate, TrialMap, TrialRequest, TrialSize};
+use crate::lab::data::{BendingMode, ElasticBody, TrialDrop, TrialFate, TrialMap, TrialRequest, TrialSize};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, DropPlan, ESBB, VHLW};
 use crate::numerics::as_f64;
 use crate::report::text::json_word;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8
-/// ms, each with a weak mode and an offset of half a g.
+/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to
+/// 12 ms at either end and an offset of half a g; rigid bodies with a weak mode and elastic ones by turns.
 fn plans(request: &TrialRequest) -> Vec<DropPlan> {
-    let plan = |order: u64, build: Build, [angle_deg, k, pulse_ms, frequency_hz]: [f64; 4]| {
+    let plan = |order: u64, build: Build, [angle_deg, k, first_ms, second_ms, frequency_hz]: [f64; 5]| {
         let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);
-        plan.pulse_s = 1e-3 * pulse_ms;
-        plan.modes = vec![DropPlan::mode(1, frequency_hz)];
-        plan.modes[0].strength = 0.3;
+        (plan.ends[0].duration_s, plan.ends[1].duration_s) = (1e-3 * first_ms, 1e-3 * second_ms);
+        if order.is_multiple_of(2) {
+            plan.modes = vec![BendingMode { strength: 0.3, ..DropPlan::mode(1, frequency_hz) }];
+        } else {
+            plan.elastic = Some(ElasticBody { first_bending_hz: frequency_hz, damping: 0.01 });
+        }
         plan.chain.offset_m_s2 = 0.5 * STANDARD_GRAVITY_M_S2;
         plan
     };
     let plans = [
-        plan(0, ANF_18, [15.0, 0.5, 5.0, 120.0]),
-        plan(1, ANF_10, [10.0, 0.35, 4.0, 150.0]),
-        plan(2, VHLW, [20.0, 0.3, 8.0, 180.0]),
-        plan(3, ESBB, [12.0, 0.6, 3.0, 90.0]),
-        plan(4, ANF_18, [25.0, 0.45, 6.0, 100.0]),
+        plan(0, ANF_18, [15.0, 0.5, 5.0, 4.0, 120.0]),
+        plan(1, ANF_10, [10.0, 0.35, 4.0, 8.0, 150.0]),
+        plan(2, VHLW, [20.0, 0.3, 8.0, 12.0, 180.0]),
+        plan(3, ANF_18, [20.0, 0.5, 6.0, 3.0, 110.0]),
+        plan(4, ESBB, [12.0, 0.6, 3.0, 5.0, 90.0]),
+        plan(5, VHLW, [25.0, 0.45, 12.0, 6.0, 160.0]),
     ];
-    let count = request.either(3, plans.len());
+    let count = request.either(4, plans.len());
     plans.into_iter().take(count).collect()
 }
 
@@ -43,6 +47,7 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
             fate: TrialFate::Refused,
             half_widths_off: None,
             is_named: kind.told_by.is_empty(),
+            is_elastic: plan.elastic.is_some(),
         };
     };
     // Infinitely far where a number is given for what did not happen.
@@ -57,7 +62,7 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
     };
     let is_named = kind.told_by.is_empty()
         || result.quality.iter().any(|finding| kind.told_by.contains(&&json_word(finding.code)[..]));
-    TrialDrop { fate, half_widths_off: worst, is_named }
+    TrialDrop { fate, half_widths_off: worst, is_named, is_elastic: drop.scene.elastic.is_some() }
 }
 
 /// A map of every damage that grows; `progress` is told the share that is done.

@@ -49,7 +49,7 @@ impl DropClass {
             let build = BUILDS[usize::try_from(number).unwrap_or(0) % BUILDS.len()];
             let (angle_deg, k) = (chance.even(8.0, 22.0), chance.even(0.2, 0.7));
             let mut plan = DropPlan::of(build, angle_deg, k, request.seed + number);
-            plan.pulse_s = chance.even(3e-3, 8e-3);
+            plan.ends[0].duration_s = chance.even(3e-3, 8e-3);
             // Not on the same place of the first sample's interval every time.
             plan.before_s += chance.even(0.0, 1e-3);
             let sound_s = plan.flight_s();
@@ -74,7 +74,11 @@ const CLASSES: [WayClass; 7] = [
 ];
 const LIMITER: DropClass = DropClass {
     name: "limiter, 12 to 25 ms",
-    make: |plan, _, share| (plan.pulse_s, plan.yield_share) = (0.012 + 0.013 * share, Some(0.7)),
+    make: |plan, _, share| {
+        for (end, share) in plan.ends.iter_mut().zip([share, 1.0 - share]) {
+            (end.duration_s, end.yield_share) = (0.012 + 0.013 * share, Some(0.7));
+        }
+    },
 };
 
 /// Samples a second, and the record before first contact, s: what loggers at test sites write.

@@ -6,7 +6,7 @@ mod place;
 
 pub use place::SyntheticFormat;
 
-use crate::lab::data::{SceneFile, SyntheticRecording, Truth};
+use crate::lab::data::{Scene, SceneFile, SyntheticRecording, Truth};
 use crate::numerics::as_f64;
 use crate::report::curves_h5::{filled, text, through_a_file};
 use crate::report::records::records;
@@ -42,6 +42,7 @@ pub fn synthetic_files(
         seed: recording.seed,
         t_impact: recording.first_contact_s,
         truth: &recording.truth,
+        drawn: &scene_file.scene,
     })?;
     Ok(vec![(recording_name.to_owned(), bytes), (cask_name, cask_file), (truth_name, truth)])
 }
@@ -56,6 +57,7 @@ struct TruthFile<'a> {
     t_impact: f64,
     #[serde(flatten)]
     truth: &'a Truth,
+    drawn: &'a Scene,
 }
 
 /// The sample rate of all channels, Hz: one table has one rate.

@@ -53,7 +53,7 @@ mod tests {
         };
         let points = [point("as taken", true, 0.1, 1.5e7), point("by hand", false, 9.0, 5e6)];
         let k = points.iter().map(|p| TrialPoint { family: WAYS[1].into(), ..p.clone() });
-        let drop = |fate, off| TrialDrop { fate, half_widths_off: off, is_named: true };
+        let drop = |fate, off| TrialDrop { fate, half_widths_off: off, is_named: true, is_elastic: false };
         let size =
             |size, fate, off| TrialSize { size, drops: vec![drop(TrialFate::Inside, None), drop(fate, off)] };
         let map = TrialMap {

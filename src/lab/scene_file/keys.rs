@@ -7,13 +7,14 @@ use crate::data::keys::{
 /// What stands in no table.
 pub(super) const ROOT: [&str; 2] = ["name", "seed"];
 
-pub(super) static TABLES: [KeyTable; 9] = [
+pub(super) static TABLES: [KeyTable; 10] = [
     KeyTable { name: "cask", remark: "", keys: &keys::CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
     KeyTable { name: "contact", remark: "", keys: &CONTACT },
     KeyTable { name: "first_end", remark: "", keys: &END },
     KeyTable { name: "second_end", remark: "", keys: &END },
     KeyTable { name: "contents", remark: "", keys: &CONTENTS },
+    KeyTable { name: "body", remark: "", keys: &BODY },
     KeyTable { name: "mode", remark: "", keys: &MODE },
     KeyTable { name: "recording", remark: "", keys: &RECORDING },
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
@@ -72,6 +73,13 @@ CONTENTS {
     "play_m": "0.02", FROM_ZERO;
     "pulse_ms": "2", within(0.1, 200.0, "the length of a blow, in ms");
     "damping_s_m": "0.2", FROM_ZERO;
+}
+
+/// An elastic body, by its first bending mode.
+BODY {
+    "first_bending_hz": REQUIRED, within(1.0, 20_000.0, "first natural frequency of the free beam, in Hz");
+    // Of a welded steel structure; bolted ones have more.
+    "damping": "0.01", within(0.0, 0.9, "share of critical damping of every mode");
 }
 
 MODE {

@@ -100,6 +100,12 @@ fn six_lines_make_a_scene() {
 }
 
 #[test]
+fn a_body_may_be_elastic() {
+    let SceneFile { scene, .. } = of(&format!("{SHORT}[body]\nfirst_bending_hz = 120\n")).unwrap();
+    assert_eq!(scene.elastic, Some(ElasticBody { first_bending_hz: 120.0, damping: 0.01 }));
+}
+
+#[test]
 fn every_key_finds_its_place() {
     let SceneFile { scene, stated } = of(FULL).unwrap();
     near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.3025);
@@ -146,7 +152,7 @@ fn every_key_finds_its_place() {
 
 #[test]
 fn every_slip_is_one_message_with_its_key() {
-    let cases: [(&str, &str, &[&str]); 29] = [
+    let cases: [(&str, &str, &[&str]); 31] = [
         ("seed = 7", "seed = -7", &["seed is no whole number"]),
         ("seed = 7", "sed = 7", &["knows no table sed", "did you mean seed?"]),
         ("pulse_ms = 5.0", "pulse_ms = 500", &["pulse_ms is 500", "0.05 to 200"]),
@@ -162,6 +168,8 @@ fn every_slip_is_one_message_with_its_key() {
         ("loading_n_m = 1e7\nun", "un", &["needs loading_n_m"]),
         ("yield_n = 1e6", "yield_n = \"1e6 N\"", &["yield_n", "not a number"]),
         ("order = 2", "order = 4", &["order is 4"]),
+        ("[[mode]]", "[body]\nfirst_bending_hz = 90\n[[mode]]", &["not beside [body]"]),
+        ("[[mode]]\norder = 2\nfrequency_hz = 62.0", "[body]", &["[body] has no first_bending_hz"]),
         ("frequency_hz = 62.0", "", &["[[mode]] has no frequency_hz"]),
         ("angle_deg = 15.0\n", "angle_deg = 0\n", &["angle_deg is 0", "0.1 to 89"]),
         ("height_m = 9.0\n", "height_m = 9000\n", &["height_m is 9000, outside 0.001 to 1000"]),

@@ -1,10 +1,11 @@
-//! State of the cask to its rates: a rigid body in the plane with two corners, the bending modes that ride on
-//! it, and what is loose in it.
+//! State of the cask to its rates: a rigid body in the plane with two corners, its bending modes, which ride
+//! on it or, of an elastic body, move its corners, and what is loose in it.
 
 use super::contact::CrushingCorner;
+use super::elastic::{self, BodyMode, MOST_ELASTIC};
 use crate::data::Contact;
 use crate::lab::data::{BendingMode, LooseMass, Scene};
-use crate::numerics::free_beam::{MOST_MODES, shape};
+use crate::numerics::free_beam::MOST_MODES;
 use std::f64::consts::PI;
 
 /// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.
@@ -12,6 +13,9 @@ pub(super) const CASK_STATE: usize = 6 + 2 * MOST_MODES;
 
 /// The same, then x, z and their rates of each loose mass.
 pub(super) const WHOLE_STATE: usize = CASK_STATE + 4 * MOST_LOOSE;
+
+/// [`WHOLE_STATE`] of an elastic body.
+pub(super) const ELASTIC_STATE: usize = 6 + 2 * MOST_ELASTIC + 4 * MOST_LOOSE;
 
 /// Most loose masses of a scene.
 pub const MOST_LOOSE: usize = 2;
@@ -66,18 +70,20 @@ pub(super) struct SceneBody<'a> {
     pub(super) corners: [CrushingCorner; 2],
     friction: f64,
     hold_s: f64,
-    /// Shape of each mode at either end, over the mass, 1/kg.
-    driven_per_kg: [[f64; 2]; MOST_MODES],
+    pub(super) modes: Vec<BodyMode>,
+    /// Of each mode at either end, along and across the axis.
+    pub(super) ends: Vec<[[f64; 2]; 2]>,
+    /// Whether the modes move the corners.
+    acts_back: bool,
+    /// Where the state of what is loose begins.
+    loose_from: usize,
 }
 
 impl<'a> SceneBody<'a> {
     /// The body as L touches.
     pub(super) fn new(scene: &'a Scene) -> Self {
-        let mass_kg = scene.cask.mass_kg;
-        let mut driven_per_kg = [[0.0; 2]; MOST_MODES];
-        for (driven, mode) in driven_per_kg.iter_mut().zip(&scene.modes) {
-            *driven = [0.0, 1.0].map(|end| shape(mode.order, end) / mass_kg);
-        }
+        let (mass_kg, modes) = (scene.cask.mass_kg, elastic::modes(scene));
+        let acts_back = scene.elastic.is_some();
         Self {
             scene,
             corners: [
@@ -90,14 +96,17 @@ impl<'a> SceneBody<'a> {
                 Contact::Coulomb(coefficient) => coefficient,
             },
             hold_s: HOLD_SHARE * (mass_kg / scene.first_end.loading_n_m).sqrt(),
-            driven_per_kg,
+            ends: modes.iter().map(|mode| [0, 1].map(|end| mode.of_end(end, scene))).collect(),
+            modes,
+            acts_back,
+            loose_from: if acts_back { ELASTIC_STATE - 4 * MOST_LOOSE } else { CASK_STATE },
         }
     }
 
     /// The state at first contact: L at the target, all of the body at the impact velocity.
-    pub(super) fn at_first_contact(&self) -> [f64; WHOLE_STATE] {
+    pub(super) fn at_first_contact(&self) -> [f64; ELASTIC_STATE] {
         let drop = &self.scene.drop;
-        let mut y = [0.0; WHOLE_STATE];
+        let mut y = [0.0; ELASTIC_STATE];
         y[2] = drop.angle_rad;
         let first = self.corner(0, &y);
         y[1] = -first.z_m;
@@ -116,16 +125,22 @@ impl<'a> SceneBody<'a> {
 
     /// The loose masses, each with its place in the state.
     fn loose(&self) -> impl Iterator<Item = (usize, &LooseMass)> {
-        (CASK_STATE..WHOLE_STATE).step_by(4).zip(&self.scene.extras.contents)
+        (self.loose_from..).step_by(4).zip(&self.scene.extras.contents)
     }
 
     /// The blow of the pads on a loose mass at place `i` of the state.
-    fn blow(loose: &LooseMass, i: usize, y: &[f64]) -> Blow {
+    fn blow(&self, loose: &LooseMass, i: usize, y: &[f64]) -> Blow {
         let (sin, cos) = y[2].sin_cos();
         let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
         let (x_m, z_m) = (y[i] - x, y[i + 1] - z);
-        let (xi_m, eta_m) = (x_m * cos + z_m * sin, z_m * cos - x_m * sin);
-        let rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
+        let (xi_m, mut eta_m) = (x_m * cos + z_m * sin, z_m * cos - x_m * sin);
+        let mut rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
+        if self.acts_back {
+            for (q, mode) in self.modes.iter().enumerate() {
+                let bends = mode.shape(self.share(xi_m));
+                (eta_m, rising_m_s) = (eta_m - bends * y[6 + 2 * q], rising_m_s - bends * y[7 + 2 * q]);
+            }
+        }
         let stiffness_n_m = loose.mass_kg * (PI / loose.pulse_s).powi(2);
         // A pad pushes only; this form has no step in the force as the mass meets it (Hunt & Crossley 1975).
         let pad_n = |crush_m: f64, rate_m_s: f64| {
@@ -136,19 +151,36 @@ impl<'a> SceneBody<'a> {
         Blow { xi_m, force_n: below_n - above_n }
     }
 
-    /// Place and motion of L (0) or R (1).
+    /// The share of the length at which a place lies, m from S along the axis.
+    fn share(&self, xi_m: f64) -> f64 {
+        (xi_m + self.scene.cask.cog_m) / self.scene.cask.length_m
+    }
+
+    /// Place and motion of L (0) or R (1), as the target meets it.
     pub(super) fn corner(&self, end: usize, y: &[f64]) -> CornerMotion {
+        self.corner_bent_by(if self.acts_back { &self.ends } else { &[] }, end, y)
+    }
+
+    /// With the bending of the first of the modes, u along and w across the axis.
+    pub(super) fn corner_bent_by(&self, modes: &[[[f64; 2]; 2]], end: usize, y: &[f64]) -> CornerMotion {
         let cask = &self.scene.cask;
-        let xi_m = if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
-        let eta_m = -cask.height_m / 2.0;
+        let ([mut u_m, mut w_m], [mut u_m_s, mut w_m_s]) = ([0.0; 2], [0.0; 2]);
+        for (i, (ends, mode)) in modes.iter().zip(&self.modes).enumerate() {
+            let [along, across] = ends[end];
+            let [q_m, q_m_s] = [y[6 + 2 * i], y[7 + 2 * i]].map(|q| mode.mode.strength * q);
+            (u_m, w_m) = (u_m + along * q_m, w_m + across * q_m);
+            (u_m_s, w_m_s) = (u_m_s + along * q_m_s, w_m_s + across * q_m_s);
+        }
+        let xi_m = u_m + if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
+        let eta_m = w_m - cask.height_m / 2.0;
         let (sin, cos) = y[2].sin_cos();
         let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
         CornerMotion {
             x_m,
             z_m,
             height_m: y[1] + z_m,
-            sliding_m_s: y[3] - y[5] * z_m,
-            rising_m_s: y[4] + y[5] * x_m,
+            sliding_m_s: y[3] - y[5] * z_m + (u_m_s * cos - w_m_s * sin),
+            rising_m_s: y[4] + y[5] * x_m + (u_m_s * sin + w_m_s * cos),
         }
     }
 
@@ -172,7 +204,7 @@ impl<'a> SceneBody<'a> {
         let second_n = -self.friction.min(SECOND_END_FRICTION) * normal_n[1] * reversal;
         let mut loads = [(0.0, normal_n[0]), (second_n, normal_n[1])];
         if self.corners[0].touches() && self.friction > 0.0 {
-            let hold_n = self.hold_n(y, &at[0], &self.accelerations(y, &loads));
+            let hold_n = self.hold_n(y, &at[0], &loads);
             // As far as Coulomb's bound lets it.
             let bound_n = self.friction_at(at[0].sliding_m_s) * normal_n[0];
             loads[0].0 = hold_n.clamp(-bound_n, bound_n);
@@ -196,13 +228,42 @@ impl<'a> SceneBody<'a> {
         at.x_m + inward * corner.law.footprint * corner.crush_m(at.height_m)
     }
 
-    /// The tangential force on L that stops its sliding within the hold time and keeps it stopped, N.
-    fn hold_n(&self, y: &[f64], at: &CornerMotion, free: &[f64; 3]) -> f64 {
-        let cask = &self.scene.cask;
+    /// The tangential force on L that, beside these, stops its sliding within the hold time and keeps it
+    /// stopped, N.
+    fn hold_n(&self, y: &[f64], at: &CornerMotion, loads: &Loads) -> f64 {
+        let (cask, free) = (&self.scene.cask, self.accelerations(y, loads));
         // ẍ_C = ẍ_S − φ̈ z − φ̇² x without the force, and what one newton adds to it.
-        let without_m_s2 = free[0] - free[2] * at.z_m - y[5] * y[5] * at.x_m;
-        let per_newton = 1.0 / cask.mass_kg + at.z_m * at.z_m / cask.inertia_kg_m2;
+        let mut without_m_s2 = free[0] - free[2] * at.z_m - y[5] * y[5] * at.x_m;
+        let mut per_newton = 1.0 / cask.mass_kg + at.z_m * at.z_m / cask.inertia_kg_m2;
+        if self.acts_back {
+            let (sin, cos) = y[2].sin_cos();
+            // − 2 φ̇ ż′ + ẍ′ of what bends, with its velocity z′ upwards.
+            without_m_s2 -= 2.0 * y[5] * (at.rising_m_s - (y[4] + y[5] * at.x_m));
+            for (i, [[along, across], _]) in self.ends.iter().enumerate() {
+                let towards = along * cos - across * sin;
+                without_m_s2 += towards * self.mode_m_s2(i, y, loads);
+                per_newton += towards * towards / cask.mass_kg;
+            }
+        }
         (-at.sliding_m_s / self.hold_s - without_m_s2) / per_newton
+    }
+
+    /// The rate of the rate of a mode's coordinate under loads on the corners, m/s²: those that bend are the
+    /// forces across the axis and, of an elastic body, those along it below the axis.
+    fn mode_m_s2(&self, i: usize, y: &[f64], loads: &Loads) -> f64 {
+        let (sin, cos) = y[2].sin_cos();
+        let mass_kg = self.scene.cask.mass_kg;
+        let [first, second] = [0, 1].map(|end| {
+            let (t, n) = loads[end];
+            (n * cos - t * sin) * (self.ends[i][end][1] / mass_kg)
+        });
+        let mut drive_m_s2 = first + second;
+        if self.acts_back {
+            for (end, (t, n)) in loads.iter().enumerate() {
+                drive_m_s2 += (t * cos + n * sin) * (self.ends[i][end][0] / mass_kg);
+            }
+        }
+        bending_m_s2(&self.modes[i].mode, drive_m_s2, y[6 + 2 * i], y[7 + 2 * i])
     }
 
     /// ẍ and z̈ of S, m/s², and φ̈, rad/s².
@@ -215,7 +276,7 @@ impl<'a> SceneBody<'a> {
             moment_n_m += self.arm_m(end, &at) * n - at.z_m * t;
         }
         for (i, loose) in self.loose() {
-            let Blow { xi_m, force_n } = Self::blow(loose, i, y);
+            let Blow { xi_m, force_n } = self.blow(loose, i, y);
             let (sin, cos) = y[2].sin_cos();
             tangential_n += force_n * sin;
             normal_n -= force_n * cos;
@@ -230,39 +291,36 @@ impl<'a> SceneBody<'a> {
     }
 
     /// Rates of the state under `loads`.
-    pub(super) fn rates(&self, y: &[f64], loads: &Loads) -> [f64; WHOLE_STATE] {
-        let mut rates = [0.0; WHOLE_STATE];
+    pub(super) fn rates(&self, y: &[f64], loads: &Loads) -> [f64; ELASTIC_STATE] {
+        let mut rates = [0.0; ELASTIC_STATE];
         for (i, acceleration) in self.accelerations(y, loads).into_iter().enumerate() {
             rates[i] = y[3 + i];
             rates[3 + i] = acceleration;
         }
-        let (sin, cos) = y[2].sin_cos();
-        // Only the part of the force across the axis bends.
-        let across_n = loads.map(|(t, n)| n * cos - t * sin);
-        for (i, mode) in self.scene.modes.iter().take(MOST_MODES).enumerate() {
-            let [first, second] = self.driven_per_kg[i];
-            let drive_m_s2 = across_n[0] * first + across_n[1] * second;
-            let (q_m, velocity_m_s) = (y[6 + 2 * i], y[7 + 2 * i]);
-            rates[6 + 2 * i] = velocity_m_s;
-            rates[7 + 2 * i] = bending_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
+        for i in 0..self.modes.len() {
+            rates[6 + 2 * i] = y[7 + 2 * i];
+            rates[7 + 2 * i] = self.mode_m_s2(i, y, loads);
         }
+        let (sin, cos) = y[2].sin_cos();
         let cask = &self.scene.cask;
         for (i, loose) in self.loose() {
-            let Blow { xi_m, force_n } = Self::blow(loose, i, y);
+            let Blow { xi_m, force_n } = self.blow(loose, i, y);
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
             let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
-            for (q, mode) in self.scene.modes.iter().take(MOST_MODES).enumerate() {
-                let share = (xi_m + cask.cog_m) / cask.length_m;
-                rates[7 + 2 * q] -= force_n * shape(mode.order, share) / cask.mass_kg;
+            for (q, mode) in self.modes.iter().enumerate() {
+                rates[7 + 2 * q] -= force_n * mode.shape(self.share(xi_m)) / cask.mass_kg;
             }
         }
         rates
     }
 
-    /// Greatest angular frequency of what is going on, rad/s: of a corner in contact or of a mode.
+    /// Greatest angular frequency of what is going on, rad/s: of a corner in contact or of a mode; of an
+    /// elastic body a third of it, since its fastest modes have little of the motion.
     pub(super) fn fastest_rad_s(&self) -> f64 {
-        let modes = self.scene.modes.iter().map(|mode| std::f64::consts::TAU * mode.frequency_hz);
+        let counts = if self.acts_back { 1.0 / 3.0 } else { 1.0 };
+        let listed = self.scene.modes.iter().chain(self.modes.iter().map(|mode| &mode.mode));
+        let modes = listed.map(|mode| counts * std::f64::consts::TAU * mode.frequency_hz);
         let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
         let pads = self.loose().map(|(_, loose)| PI / loose.pulse_s);
         modes.chain(corners).chain(pads).fold(0.0, f64::max)
@@ -271,8 +329,8 @@ impl<'a> SceneBody<'a> {
 
 /// q̈ = F/m − 2 ζ ω q̇ − ω² q: acceleration of the mode's coordinate, m/s², `drive_m_s2` being F/m.
 ///
-/// The modes ride on the rigid motion and do not act back on the contact, so that k stays a property of the
-/// ends.
+/// Listed modes ride on the rigid motion and do not act back on the contact, so that k stays a property of
+/// the ends.
 pub fn bending_m_s2(mode: &BendingMode, drive_m_s2: f64, q_m: f64, velocity_m_s: f64) -> f64 {
     let omega = std::f64::consts::TAU * mode.frequency_hz;
     drive_m_s2 - 2.0 * mode.damping * omega * velocity_m_s - omega * omega * q_m

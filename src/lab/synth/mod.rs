@@ -8,6 +8,7 @@ mod body;
 mod chain;
 mod contact;
 mod crush;
+mod elastic;
 mod motion;
 mod sensor;
 mod truth;

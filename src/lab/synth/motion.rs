@@ -1,9 +1,9 @@
 //! A scene to the motion of its cask, from first contact to past the slap-down.
 
-use super::body::{CASK_STATE, SceneBody, WHOLE_STATE};
+use super::body::{CASK_STATE, ELASTIC_STATE, SceneBody, WHOLE_STATE};
 use super::contact::CornerPassage;
 use super::truth::{self, ContactChange};
-use crate::lab::data::{MotionStep, Scene, SimulatedMotion};
+use crate::lab::data::{ModeStep, MotionStep, Scene, SimulatedMotion, Truth};
 use ode_solvers::{Dopri5, OutputType, SVector, System};
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,6 +11,9 @@ use std::f64::consts::FRAC_PI_2;
 ///
 /// A stiff end unloads within micrometres; a tenth of this is the rounding of the force of one that rests.
 const TOLERANCE: f64 = 1e-11;
+
+/// The same of an elastic body: its modes of kilohertz alone would ask for steps of a microsecond.
+const ELASTIC_TOLERANCE: f64 = 1e-9;
 
 /// Longest step in the flight, s: a graze that it could overlook is g step²/8 = 0.3 µm deep.
 const LONGEST_STEP_S: f64 = 5e-4;
@@ -60,7 +63,7 @@ fn is_upright(y: &[f64]) -> bool {
 /// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
 /// `MOST_MODES` are left out. The result is the same to the bit at every run.
 pub fn simulate(scene: &Scene) -> SimulatedMotion {
-    follow(scene, TOLERANCE, usize::MAX)
+    follow(scene, tolerance(scene), usize::MAX)
 }
 
 /// [`simulate`] for who wants no drop whose L comes back before R strikes: such a one ends there, without a
@@ -68,7 +71,11 @@ pub fn simulate(scene: &Scene) -> SimulatedMotion {
 ///
 /// A cask that stands on L while its contents rattle takes hundreds of thousands of steps to tell nothing.
 pub fn simulate_one_flight(scene: &Scene) -> SimulatedMotion {
-    follow(scene, TOLERANCE, 0)
+    follow(scene, tolerance(scene), 0)
+}
+
+fn tolerance(scene: &Scene) -> f64 {
+    if scene.elastic.is_some() { ELASTIC_TOLERANCE } else { TOLERANCE }
 }
 
 /// [`simulate`] at a tolerance, so that its convergence can be tested, and while L comes back so often at
@@ -77,7 +84,9 @@ pub fn simulate_one_flight(scene: &Scene) -> SimulatedMotion {
 /// The size of the state is in the integrator's norm of errors: a cask without contents has no places for
 /// them.
 fn follow(scene: &Scene, tolerance: f64, most: usize) -> SimulatedMotion {
-    if scene.extras.contents.is_empty() {
+    if scene.elastic.is_some() {
+        follow_state::<ELASTIC_STATE>(scene, tolerance, most)
+    } else if scene.extras.contents.is_empty() {
         follow_state::<CASK_STATE>(scene, tolerance, most)
     } else {
         follow_state::<WHOLE_STATE>(scene, tolerance, most)
@@ -87,44 +96,48 @@ fn follow(scene: &Scene, tolerance: f64, most: usize) -> SimulatedMotion {
 fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> SimulatedMotion {
     let mut body = SceneBody::new(scene);
     let mut events: Vec<ContactChange> = Vec::new();
-    let (mut time_s, mut end_s, mut returns) = (0.0, LONGEST_S, 0);
+    let (mut time_s, mut end_s, mut is_over) = (0.0, LONGEST_S, false);
     let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
     // Room for the most: of it only what is written to takes memory, where a vector that grows leaves holes
     // of all sizes behind.
-    let mut kept_steps = Vec::with_capacity(MOST_STEPS);
-    kept_steps.push(kept(&body, time_s, y.as_slice()));
+    let (steps, modes) = (Vec::with_capacity(MOST_STEPS), Vec::with_capacity(MOST_STEPS * body.modes.len()));
+    let mut motion = SimulatedMotion { steps, modes, truth: Truth::default() };
+    keep(&mut motion, &body, time_s, y.as_slice());
     while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
         let segment = Segment { body: &body, tolerance, watched: true };
-        let (solver, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - kept_steps.len());
+        let (solver, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - motion.steps.len());
         let Some(one_before) = solver.x_out().len().checked_sub(2) else { break };
         let step = |i: usize| (solver.x_out()[i], solver.y_out()[i]);
         let [before, last] = [one_before, one_before + 1].map(step);
         let change = segment.first_change(&before, &last);
         let (offset_s, state) = change.map_or(last, |c| (before.0 + c.after_s, c.state));
-        let on_way = (1..=one_before).map(step);
-        kept_steps.extend(on_way.map(|(offset_s, state)| kept(&body, time_s + offset_s, state.as_slice())));
+        for (offset_s, state) in (1..=one_before).map(step) {
+            keep(&mut motion, &body, time_s + offset_s, state.as_slice());
+        }
         (time_s, y) = (time_s + offset_s, state);
         let now = y.as_slice();
-        kept_steps.push(kept(&body, time_s, now));
+        keep(&mut motion, &body, time_s, now);
         if let Some(Fallen { watch, .. }) = change {
             let end = watch / 2;
             let passage = body.corners[end].switch(watch % 2, body.corner(end, now).height_m);
             // Once more, under the forces of what follows: acceleration may step.
-            kept_steps.push(kept(&body, time_s, now));
+            keep(&mut motion, &body, time_s, now);
             let struck = events.iter().any(|e| e.end == 1);
             if end == 1 && passage == Some(CornerPassage::Touch) && !struck {
                 end_s = time_s + scene.after_s;
             }
-            let corner = body.corner(end, now);
+            let [corner, local] = [&[][..], &body.ends].map(|modes| body.corner_bent_by(modes, end, now));
             let state = std::array::from_fn(|i| now[i]);
-            events.push(ContactChange { passage, end, time_s, state, corner });
-            returns += usize::from(end == 0 && passage == Some(CornerPassage::Touch) && !struck);
+            events.push(ContactChange { passage, end, time_s, state, corner, local });
+            let has_returned = most < usize::MAX && end == 0 && passage == Some(CornerPassage::Touch);
+            is_over = has_returned && !struck && truth::contacts(scene, &events, 0).len() > most + 1;
         }
-        if !whole || returns > most || kept_steps.len() >= MOST_STEPS {
+        if !whole || is_over || motion.steps.len() >= MOST_STEPS {
             break;
         }
     }
-    SimulatedMotion { steps: kept_steps, truth: truth::truth(scene, &events) }
+    motion.truth = truth::truth(scene, &motion, &events);
+    motion
 }
 
 /// A watch that has fallen below zero.
@@ -205,12 +218,15 @@ impl Segment<'_> {
     }
 }
 
-/// What is written down of one time.
-fn kept(body: &SceneBody, time_s: f64, y: &[f64]) -> MotionStep {
+/// Writes down what is kept of one time.
+fn keep(motion: &mut SimulatedMotion, body: &SceneBody, time_s: f64, y: &[f64]) {
     let loads_n = body.loads(y);
-    let rates = body.rates(y, &loads_n);
-    let [state, rates] = [y, &rates[..]].map(|all| std::array::from_fn(|i| all[i]));
-    MotionStep { time_s, state, rates, loads_n }
+    let all = body.rates(y, &loads_n);
+    let [state, rates] = [y, &all[..]].map(|all| std::array::from_fn(|i| all[i]));
+    let heights_m = [0, 1].map(|end| body.corner(end, y).height_m);
+    motion.steps.push(MotionStep { time_s, state, rates, loads_n, heights_m });
+    let mode = |i| ModeStep { q_m: y[i], rate_m_s: y[i + 1], rate_m_s2: all[i + 1] };
+    motion.modes.extend((6..).step_by(2).take(body.modes.len()).map(mode));
 }
 
 #[cfg(test)]

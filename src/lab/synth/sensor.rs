@@ -1,8 +1,8 @@
 //! A simulated motion to the specific force at a point of the cask.
 
+use super::elastic;
 use crate::data::Axis;
-use crate::lab::data::{BendingMode, MotionStep, Scene, SceneChannel, SimulatedMotion};
-use crate::numerics::free_beam::{MOST_MODES, shape};
+use crate::lab::data::{ModeStep, MotionStep, Scene, SceneChannel, SimulatedMotion};
 
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
@@ -11,8 +11,8 @@ const RELEASE_S: f64 = 2e-3;
 /// contact).
 ///
 /// Before first contact the cask falls, held back by what guides it; before its release, where the scene
-/// shows it, it hangs at rest. Bending and roll are in the transverse axis. After the motion's end the last
-/// value stays.
+/// shows it, it hangs at rest. Roll is in the transverse axis, and so is what rides on the rigid motion; the
+/// sections of an elastic body carry their sensors with them. After the motion's end the last value stays.
 pub fn specific_force_m_s2(
     scene: &Scene,
     motion: &SimulatedMotion,
@@ -27,12 +27,15 @@ pub fn specific_force_m_s2(
     // What turns in the fall hung at another angle before it.
     let hanging_m_s2 = weight_m_s2(drop.angle_rad - drop.angular_velocity_rad_s * release_s);
     let guided_m_s2 = scene.extras.guided * weight_m_s2(drop.angle_rad);
-    let shapes: Vec<f64> = scene
-        .modes
+    let share = channel.position_m / scene.cask.length_m;
+    let bending: Vec<[f64; 2]> = elastic::modes(scene)
         .iter()
-        .take(MOST_MODES)
-        .map(|mode| mode.strength * shape(mode.order, channel.position_m / scene.cask.length_m))
+        .map(|of| {
+            let strength = of.mode.strength;
+            [strength * of.shape(share), of.tilt_1_m(strength, share, scene.cask.length_m)]
+        })
         .collect();
+    let sections = if scene.elastic.is_some() { sections(motion, &bending) } else { Vec::new() };
     let before = |time_s: f64| {
         let hanging = if scene.rest { (0.5 - (time_s - release_s) / RELEASE_S).clamp(0.0, 1.0) } else { 0.0 };
         hanging * hanging_m_s2 + (1.0 - hanging) * guided_m_s2
@@ -43,35 +46,51 @@ pub fn specific_force_m_s2(
         if rolls { scene.extras.roll_rad_s * channel.lateral_m / motion.first_impulse_n_s().1 } else { 0.0 };
     let rolled_s = motion.truth.contact_s.unwrap_or(0.0);
     let during = |time_s: f64| {
-        let at = Between::new(&motion.steps, time_s);
-        let bending_m_s2: f64 = match channel.axis {
-            Axis::Axial => 0.0,
-            Axis::Transverse => shapes.iter().enumerate().map(|(i, shape)| shape * at.slope(7 + 2 * i)).sum(),
+        let at = Between::new(motion, time_s);
+        let (xi_m, eta_m) = (channel.position_m - scene.cask.cog_m, channel.offset_m);
+        let [along_m_s2, across_m_s2] = if scene.elastic.is_some() {
+            at.on_section_m_s2(scene, [xi_m, eta_m], &sections)
+        } else {
+            let [along_m_s2, across_m_s2] = at.rigid_m_s2(scene, [xi_m, eta_m]);
+            let bends: f64 = bending.iter().enumerate().map(|(i, [shape, _])| shape * at.mode_slope(i)).sum();
+            [along_m_s2, across_m_s2 + bends]
         };
         let pressing_n = if time_s < rolled_s { at.pressing_n() } else { 0.0 };
-        at.rigid_m_s2(scene, channel) + bending_m_s2 + roll_m_s2_n * pressing_n
+        let own_m_s2 = if channel.axis == Axis::Axial { along_m_s2 } else { across_m_s2 };
+        own_m_s2 + roll_m_s2_n * pressing_n
     };
     times_s.iter().map(|&t| if t < 0.0 || motion.steps.is_empty() { before(t) } else { during(t) }).collect()
+}
+
+/// How a section of an elastic body stands at a step: w, m, and θ, rad, each with its two rates.
+type SectionStep = [[f64; 3]; 2];
+
+/// The section that each mode moves by `bending`, w and θ, at every step.
+fn sections(motion: &SimulatedMotion, bending: &[[f64; 2]]) -> Vec<SectionStep> {
+    let at_step = |modes: &[ModeStep]| {
+        let sum = |of: usize, quantity: fn(&ModeStep) -> f64| -> f64 {
+            bending.iter().zip(modes).map(|(weights, mode)| weights[of] * quantity(mode)).sum()
+        };
+        [0, 1].map(|of| [sum(of, |m| m.q_m), sum(of, |m| m.rate_m_s), sum(of, |m| m.rate_m_s2)])
+    };
+    motion.modes.chunks_exact(bending.len()).map(at_step).collect()
 }
 
 /// What a perfect angular-rate sensor at this place reads, rad/s, positive brings R down, at `times_s`: the
 /// rotation of the cask, and of its section there as it bends.
 pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, times_s: &[f64]) -> Vec<f64> {
-    const STEP: f64 = 1e-4;
-    let share = position_m / scene.cask.length_m;
-    let tilt_1_m = |mode: &BendingMode| {
-        let [above, below] = [share + STEP, share - STEP].map(|at| shape(mode.order, at));
-        mode.strength * (above - below) / (2.0 * STEP * scene.cask.length_m)
-    };
-    let tilts_1_m: Vec<f64> = scene.modes.iter().take(MOST_MODES).map(tilt_1_m).collect();
+    let length_m = scene.cask.length_m;
+    let modes = elastic::modes(scene);
+    let tilts = modes.iter().map(|of| of.tilt_1_m(of.mode.strength, position_m / length_m, length_m));
+    let tilts_1_m: Vec<f64> = tilts.collect();
     let released_s = if scene.rest { -scene.fall_s() } else { f64::NEG_INFINITY };
     let reads = |time_s: f64| {
         if time_s < 0.0 || motion.steps.is_empty() {
             let turns = ((time_s - released_s) / RELEASE_S + 0.5).clamp(0.0, 1.0);
             return turns * scene.drop.angular_velocity_rad_s;
         }
-        let at = Between::new(&motion.steps, time_s);
-        let bending = tilts_1_m.iter().enumerate().map(|(i, tilt)| tilt * at.value(7 + 2 * i));
+        let at = Between::new(motion, time_s);
+        let bending = tilts_1_m.iter().enumerate().map(|(i, tilt)| tilt * at.mode_value(i));
         -at.value(5) - bending.sum::<f64>()
     };
     times_s.iter().map(|&time_s| reads(time_s)).collect()
@@ -82,34 +101,59 @@ pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, 
 /// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an
 /// acceleration whose integral is exactly the change of velocity, whatever the step.
 struct Between<'a> {
+    places: [usize; 2],
     steps: [&'a MotionStep; 2],
+    modes: [&'a [ModeStep]; 2],
     /// Share of the step that has passed.
     share: f64,
     step_s: f64,
 }
 
 impl<'a> Between<'a> {
-    fn new(steps: &'a [MotionStep], at_s: f64) -> Self {
+    fn new(motion: &'a SimulatedMotion, at_s: f64) -> Self {
+        let steps = &motion.steps;
         let next = steps.partition_point(|step| step.time_s <= at_s).clamp(1, steps.len().max(2) - 1);
-        let steps = [&steps[next - 1], &steps[next.min(steps.len() - 1)]];
+        let places = [next - 1, next.min(steps.len() - 1)];
+        let count = motion.modes.len() / steps.len();
+        let modes = places.map(|i| &motion.modes[i * count..(i + 1) * count]);
+        let steps = places.map(|i| &steps[i]);
         let [from_s, to_s] = steps.map(|step| step.time_s);
         let step_s = to_s - from_s;
         let share = if step_s > 0.0 { ((at_s - from_s) / step_s).clamp(0.0, 1.0) } else { 1.0 };
-        Self { steps, share, step_s }
+        Self { places, steps, modes, share, step_s }
     }
 
     /// Value of the cubic through quantity `i` of the state and its rates at both ends.
     fn value(&self, i: usize) -> f64 {
-        let [values, slopes] = [self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i])];
+        self.cubic(self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i]))
+    }
+
+    /// Its slope.
+    fn slope(&self, i: usize) -> f64 {
+        self.cubic_slope(self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i]))
+    }
+
+    /// The rate of the coordinate of mode `i`, m/s.
+    fn mode_value(&self, i: usize) -> f64 {
+        self.cubic(self.modes.map(|modes| modes[i].rate_m_s), self.modes.map(|modes| modes[i].rate_m_s2))
+    }
+
+    /// The slope of that, m/s².
+    fn mode_slope(&self, i: usize) -> f64 {
+        self.cubic_slope(
+            self.modes.map(|modes| modes[i].rate_m_s),
+            self.modes.map(|modes| modes[i].rate_m_s2),
+        )
+    }
+
+    fn cubic(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
         let (s, h) = (self.share, self.step_s);
         let r = 1.0 - s;
         r * r * ((1.0 + 2.0 * s) * values[0] + s * h * slopes[0])
             + s * s * ((1.0 + 2.0 * r) * values[1] - r * h * slopes[1])
     }
 
-    /// Its slope.
-    fn slope(&self, i: usize) -> f64 {
-        let [values, slopes] = [self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i])];
+    fn cubic_slope(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
         let (s, r) = (self.share, 1.0 - self.share);
         if self.step_s <= 0.0 {
             return slopes[1];
@@ -124,20 +168,36 @@ impl<'a> Between<'a> {
         from_n + self.share * (to_n - from_n)
     }
 
-    /// Specific force of the rigid body at the channel's place along its axis, m/s².
-    fn rigid_m_s2(&self, scene: &Scene, channel: &SceneChannel) -> f64 {
+    /// Specific force of the rigid body at a place from S, m along and across the axis, in these axes, m/s².
+    fn rigid_m_s2(&self, scene: &Scene, [xi_m, eta_m]: [f64; 2]) -> [f64; 2] {
         let (angle_rad, omega, alpha) = (self.value(2), self.value(5), self.slope(5));
         let (along, up) = (self.slope(3), self.slope(4));
         let (sin, cos) = angle_rad.sin_cos();
-        let (xi_m, eta_m) = (channel.position_m - scene.cask.cog_m, channel.offset_m);
         let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
         // Acceleration of the point less that of free fall, in the fixed frame, then turned into the body's.
         let point_x = along - alpha * z_m - omega * omega * x_m;
         let point_z = up + alpha * x_m - omega * omega * z_m + scene.drop.gravity_m_s2;
-        match channel.axis {
-            Axis::Transverse => point_z * cos - point_x * sin,
-            Axis::Axial => point_x * cos + point_z * sin,
-        }
+        [point_x * cos + point_z * sin, point_z * cos - point_x * sin]
+    }
+
+    /// The same of an elastic body, whose section there moves by w across the axis and turns by θ, in the
+    /// axes of the section: that of the axis at w, with ẅ across and −2 φ̇ ẇ along; then −η (φ̇ + θ̇)² across
+    /// and −η (φ̈ + θ̈) along.
+    fn on_section_m_s2(&self, scene: &Scene, [xi_m, eta_m]: [f64; 2], sections: &[SectionStep]) -> [f64; 2] {
+        let between = |which: usize| {
+            let [from, to] = self.places.map(|i| sections[i][which]);
+            let [places, rates, slopes] = [0, 1, 2].map(|i| [from[i], to[i]]);
+            [self.cubic(places, rates), self.cubic(rates, slopes), self.cubic_slope(rates, slopes)]
+        };
+        let ([w_m, w_m_s, w_m_s2], [tilt, tilt_rate, tilt_rate_s]) = (between(0), between(1));
+        let [along, across] = self.rigid_m_s2(scene, [xi_m, w_m]);
+        let (along, across) = (along - 2.0 * self.value(5) * w_m_s, across + w_m_s2);
+        let (sin, cos) = tilt.sin_cos();
+        let turning = self.value(5) + tilt_rate;
+        [
+            along * cos + across * sin - eta_m * (self.slope(5) + tilt_rate_s),
+            across * cos - along * sin - eta_m * turning * turning,
+        ]
     }
 }
 
@@ -195,7 +255,7 @@ mod tests {
         let read =
             |axis| specific_force_m_s2(&scene, &motion, &channel(axis, scene.cask.cog_m, 0.0), &times_s);
         let (across, along) = (read(Axis::Transverse), read(Axis::Axial));
-        let angle: Vec<f64> = times_s.iter().map(|t| Between::new(&motion.steps, *t).value(2)).collect();
+        let angle: Vec<f64> = times_s.iter().map(|t| Between::new(&motion, *t).value(2)).collect();
         let upwards: Vec<f64> =
             (0..angle.len()).map(|i| across[i] * angle[i].cos() + along[i] * angle[i].sin() - 9.81).collect();
         let gained = running_integral(&upwards, end_s / f64::from(steps)).last().copied().expect("samples");
@@ -285,6 +345,6 @@ mod tests {
         let impulse_m_s = motion.steps[left].state[4] - motion.steps[0].state[4];
         let wanted = 2.0 * impulse_m_s * scene.drop.angle_rad.cos();
         // 0.25 ms: ω T = 0.05, of which cos takes 1e-3; gravity and the turn are below that.
-        assert!((motion.steps[left].state[7] / wanted - 1.0).abs() < 2e-3);
+        assert!((motion.modes[left].rate_m_s / wanted - 1.0).abs() < 2e-3);
     }
 }

@@ -1,8 +1,8 @@
 //! The changes of contact of a simulated drop to what a perfect measurement would say of it.
 
-use super::body::{CASK_STATE, CornerMotion};
+use super::body::CornerMotion;
 use super::contact::CornerPassage;
-use crate::lab::data::{Scene, Truth};
+use crate::lab::data::{ImpactTruth, Scene, SimulatedMotion, Truth};
 
 /// A change of a contact.
 #[derive(Debug, Clone, Copy)]
@@ -13,26 +13,64 @@ pub(super) struct ContactChange {
     pub(super) end: usize,
     /// After first contact, s.
     pub(super) time_s: f64,
-    /// The state there.
-    pub(super) state: [f64; CASK_STATE],
-    /// The motion of that end's corner.
+    /// The state of the rigid motion there.
+    pub(super) state: [f64; 6],
+    /// The motion of that end's corner without bending.
     pub(super) corner: CornerMotion,
+    /// The same with all that bends.
+    pub(super) local: CornerMotion,
 }
 
-/// Reads the truth off the events, which are in order; without any, only what the scene itself says.
-pub(super) fn truth(scene: &Scene, events: &[ContactChange]) -> Truth {
-    let is =
-        |e: &&ContactChange, end: usize, passage: CornerPassage| e.end == end && e.passage == Some(passage);
-    let leave = events.iter().find(|e| is(e, 0, CornerPassage::Leave));
-    let strike = events.iter().find(|e| is(e, 1, CornerPassage::Touch));
-    let before = |e: &&ContactChange| strike.is_some_and(|s| e.time_s < s.time_s);
-    let left_before = leave.filter(before).zip(strike);
-    let touches = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Touch)).count();
-    let leaves = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Leave)).count();
+/// A contact of an end, with the pauses in which bending lifts its corner.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ContactSpan<'a> {
+    /// After first contact, s.
+    from_s: f64,
+    /// The change with which it ends; `None` while it lasts.
+    left: Option<&'a ContactChange>,
+}
+
+/// The first touch of R.
+fn strike(events: &[ContactChange]) -> Option<&ContactChange> {
+    events.iter().find(|e| e.end == 1 && e.passage == Some(CornerPassage::Touch))
+}
+
+/// The contacts of an end, in order, of which L's first begins the drop; [`Truth`] says which pauses part
+/// them.
+pub(super) fn contacts<'a>(scene: &Scene, events: &'a [ContactChange], end: usize) -> Vec<ContactSpan<'a>> {
+    let period_s = scene.elastic.map_or(0.0, |body| 1.0 / body.first_bending_hz);
+    let struck_s = strike(events).map_or(f64::INFINITY, |e| e.time_s);
+    let begun = |from_s| ContactSpan { from_s, left: None };
+    let mut spans: Vec<ContactSpan> = (end == 0).then(|| begun(0.0)).into_iter().collect();
+    for event in events.iter().filter(|e| e.end == end) {
+        let Some(passage) = event.passage else { continue };
+        let last = spans.last_mut();
+        let is_pause = last.as_ref().and_then(|span| Some((span.from_s, span.left?.time_s))).is_some_and(
+            |(from_s, left_s)| {
+                let has_struck = end == 0 && left_s < struck_s && struck_s <= event.time_s;
+                event.time_s - left_s < period_s.min(left_s - from_s) && !has_struck
+            },
+        );
+        match (passage, last) {
+            (CornerPassage::Leave, Some(last)) => last.left = Some(event),
+            (CornerPassage::Touch, Some(last)) if is_pause => last.left = None,
+            _ => spans.push(begun(event.time_s)),
+        }
+    }
+    spans
+}
+
+/// Reads the truth off the motion and its events, which are in order; without any, only what the scene itself
+/// says.
+pub(super) fn truth(scene: &Scene, motion: &SimulatedMotion, events: &[ContactChange]) -> Truth {
+    let strike = strike(events);
+    let [of_first, of_second] = [0, 1].map(|end| contacts(scene, events, end));
+    let leave = of_first.first().and_then(|span| span.left);
+    let before_s = strike.map_or(0.0, |e| e.time_s);
+    let left_before = leave.filter(|e| e.time_s < before_s).zip(strike);
+    let before: Vec<_> = of_first.iter().filter(|span| span.from_s < before_s).collect();
+    let is_down = |span: &&&ContactSpan| span.left.is_none_or(|left| left.time_s >= before_s);
     let (v0, cask) = (scene.drop.impact_velocity_m_s, &scene.cask);
-    let kinetic_j = |y: &[f64; CASK_STATE]| {
-        0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
-    };
     Truth {
         v0,
         // Free of the last digits of the conversion.
@@ -48,11 +86,71 @@ pub(super) fn truth(scene: &Scene, events: &[ContactChange]) -> Truth {
         vx: strike.map(|e| e.corner.sliding_m_s),
         vz: strike.map(|e| e.corner.rising_m_s),
         speed: strike.map(|e| e.corner.sliding_m_s.hypot(e.corner.rising_m_s)),
+        local_speed: strike.map(|e| e.local.sliding_m_s.hypot(e.local.rising_m_s)),
         omega: strike.map(|e| -e.state[5]),
         angle_hit_deg: strike.map(|e| e.state[2].to_degrees()),
-        energy_ratio: strike.map(|e| kinetic_j(&e.state) / (0.5 * cask.mass_kg * v0 * v0)),
-        relands: u32::try_from(touches).unwrap_or(u32::MAX),
-        // L begins on the target and leaves once more than it has come back, or not.
-        first_down_at_slap: strike.is_some() && touches == leaves,
+        energy_ratio: strike.map(|e| kinetic_j(scene, &e.state) / (0.5 * cask.mass_kg * v0 * v0)),
+        relands: u32::try_from(before.len().saturating_sub(1)).unwrap_or(u32::MAX),
+        first_down_at_slap: strike.is_some() && before.last().is_some_and(|span| is_down(&span)),
+        impacts: [(0, &of_first), (1, &of_second)]
+            .map(|(end, spans)| spans.first().and_then(|span| impact(scene, motion, end, span))),
+    }
+}
+
+/// Kinetic energy of the rigid motion, J.
+fn kinetic_j(scene: &Scene, y: &[f64; 6]) -> f64 {
+    let cask = &scene.cask;
+    0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
+}
+
+/// What happens in a contact of an end.
+fn impact(scene: &Scene, motion: &SimulatedMotion, end: usize, span: &ContactSpan) -> Option<ImpactTruth> {
+    let until_s = span.left.map_or(f64::INFINITY, |left| left.time_s);
+    let from = motion.count_before(|time_s| time_s < span.from_s);
+    let to = motion.count_before(|time_s| time_s <= until_s);
+    let steps = &motion.steps[from..to];
+    let deepest = steps.iter().min_by(|a, b| a.heights_m[end].total_cmp(&b.heights_m[end]))?;
+    let weight_n = scene.cask.mass_kg * scene.drop.gravity_m_s2;
+    let energy_j = |state: &[f64; 6]| kinetic_j(scene, state) + weight_n * state[1];
+    let last = span.left.map_or(&deepest.state, |left| &left.state);
+    Some(ImpactTruth {
+        contact_s: span.left.map(|left| left.time_s - span.from_s),
+        crush_m: -deepest.heights_m[end],
+        force_n: steps.iter().map(|step| step.loads_n[end].1).fold(0.0, f64::max),
+        energy_j: energy_j(&steps[0].state) - energy_j(last),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::example::anf18;
+    use super::*;
+    use crate::lab::data::ElasticBody;
+    use CornerPassage::{Leave, Touch};
+
+    fn change((end, passage, time_s): (usize, CornerPassage, f64)) -> ContactChange {
+        let at = CornerMotion { x_m: 0.0, z_m: 0.0, height_m: 0.0, sliding_m_s: 0.0, rising_m_s: 0.0 };
+        ContactChange { passage: Some(passage), end, time_s, state: [0.0; 6], corner: at, local: at }
+    }
+
+    #[test]
+    fn a_pause_of_a_bending_corner_is_no_flight() {
+        let mut scene = anf18();
+        // L leaves after 5 ms, touches 3 ms later for 1 ms, then 10 ms later; R strikes for a while.
+        let events =
+            [(0, Leave, 5e-3), (0, Touch, 8e-3), (0, Leave, 9e-3), (0, Touch, 19e-3), (0, Leave, 20e-3)];
+        let events: Vec<ContactChange> = events.into_iter().map(change).collect();
+        let ends = |scene: &Scene, events: &[ContactChange]| {
+            let spans = contacts(scene, events, 0);
+            spans.iter().filter_map(|span| Some(span.left?.time_s)).collect::<Vec<f64>>()
+        };
+        assert_eq!(ends(&scene, &events), [5e-3, 9e-3, 20e-3], "a body that does not bend");
+        scene.elastic = Some(ElasticBody { first_bending_hz: 100.0, damping: 0.01 });
+        assert_eq!(ends(&scene, &events), [9e-3, 20e-3], "longer than the contact of 9 ms");
+        scene.elastic = Some(ElasticBody { first_bending_hz: 400.0, damping: 0.01 });
+        assert_eq!(ends(&scene, &events), [5e-3, 9e-3, 20e-3], "longer than a period of 2.5 ms");
+        scene.elastic = Some(ElasticBody { first_bending_hz: 100.0, damping: 0.01 });
+        let struck = [(0, Leave, 5e-3), (1, Touch, 6e-3), (0, Touch, 8e-3), (0, Leave, 9e-3)].map(change);
+        assert_eq!(ends(&scene, &struck), [5e-3, 9e-3], "R strikes in the pause");
     }
 }

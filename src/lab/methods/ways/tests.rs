@@ -52,12 +52,18 @@ fn first_contact_is_found() {
             1.0,
         ),
         (NOISY, 2.2),
-        (DropClass { name: "20 ms pulse", make: |plan, _, _| plan.pulse_s = 0.02 }, 1.0),
-        (DropClass { name: "25 a pulse", make: |plan, _, _| plan.rate_hz = 25.0 / plan.pulse_s }, 2.0),
+        (DropClass { name: "20 ms pulse", make: |plan, _, _| plan.ends[0].duration_s = 0.02 }, 1.0),
+        (
+            DropClass {
+                name: "25 a pulse",
+                make: |plan, _, _| plan.rate_hz = 25.0 / plan.ends[0].duration_s,
+            },
+            2.0,
+        ),
         (
             DropClass {
                 name: "force plateau",
-                make: |plan, _, share| plan.yield_share = Some(0.4 + 0.4 * share),
+                make: |plan, _, share| plan.ends[0].yield_share = Some(0.4 + 0.4 * share),
             },
             1.0,
         ),
