@@ -328,8 +328,12 @@ impl Search<'_> {
         let most_left_m_s = EXPLAINED_M_S.max(SHOWN * self.file.drop.impact_velocity_m_s);
         let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
         if is_shown {
-            let later_half_s = f64::midpoint(flight.from_s, flight.to_s)..flight.to_s;
-            let calm_m_s2 = second.largest_m_s2(&later_half_s);
+            // The calmest quarter but the first: fast modes ring at the beginning, and the end may hold the
+            // slap-down's foot.
+            let quarter_s = (flight.to_s - flight.from_s) / 4.0;
+            let quarters_s = [1.0, 2.0, 3.0].map(|n| flight.from_s + n * quarter_s);
+            let largest_m_s2 = |from_s: f64| second.largest_m_s2(&(from_s..from_s + quarter_s));
+            let calm_m_s2 = quarters_s.into_iter().map(largest_m_s2).fold(f64::INFINITY, f64::min);
             let from_s = self.earliest_s.max(attempt.free_s);
             attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2));
         }

@@ -136,6 +136,9 @@ const STRONG_DAMPING: f64 = 0.08;
 /// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits
 /// on a node by chance.
 const WHOLLY_ALONE: f64 = 30.0;
+/// An overtone of the slowest mode has its nodes at 0.13 and 0.09 of the length, where sensors often sit: the
+/// second mode of a short cask is 1.6 times as fast as the first.
+const OVERTONE: f64 = 1.5;
 /// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
 const SLOWEST_HZ: f64 = 16.5;
 
@@ -167,6 +170,9 @@ impl FlightFit {
         };
         let (first, second) = (largest_m_s(End::First), largest_m_s(End::Second));
         let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
+        if mode > 0 && frequency_hz > OVERTONE * self.modes[0].frequency_hz && damping < STRONG_DAMPING {
+            return is_slow && first.max(second) > ALONE * first.min(second);
+        }
         let alone = if is_slow || damping > STRONG_DAMPING { ALONE } else { WHOLLY_ALONE };
         first.max(second) > alone * first.min(second)
     }
