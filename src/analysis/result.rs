@@ -142,7 +142,7 @@ fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoi
     for body in predict::bodies(&file.cask) {
         all.extend(predict::borderline_cases(&body, &file.drop));
         all.extend(measured.map(|(measured, taken)| {
-            let contact = compare::contact_as_measured(file.contact, measured);
+            let contact = compare::contact_as_measured(file, measured);
             let is_timed = taken.is_some_and(|m| m.rung == Rung::FinitePulse && m.name == body.model);
             let contact_duration_s = if is_timed { measured.duration.value.max(0.0) } else { 0.0 };
             let drop = Drop { contact_duration_s, ..file.drop };

@@ -14,12 +14,11 @@ const U_UNKNOWN: f64 = 0.33;
 /// much.
 pub(super) fn by_law(file: &CaskFile, contact: Contact, needed: f64) -> (AxialClosure, AssumedFriction) {
     let share_u = file.tolerances.friction / 2.0;
-    let is_bound = file.defaults.iter().any(|key| key == "tolerance.friction_percent");
     let sliding = |friction: f64| AxialClosure::Sliding { friction };
     let (axial, ratio, u) = match contact {
         Contact::Rough => (AxialClosure::Sticking, needed, share_u * needed),
         Contact::Smooth => (sliding(0.0), 0.0, share_u * needed),
-        Contact::Coulomb(mu) if is_bound => {
+        Contact::Coulomb(mu) if file.has_open_friction() => {
             let most = needed.clamp(-mu, mu);
             (sliding(MIDDLE * most), MIDDLE * most, U_UNKNOWN * most)
         }

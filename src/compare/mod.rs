@@ -38,7 +38,7 @@ pub fn compare(
     predict: PredictBy,
 ) -> Option<(ModelChoice, Option<Comparison>)> {
     let (rod, body) = (bodies.first()?, bodies.last()?);
-    let contact = contact_as_measured(cask_file.contact, measured);
+    let contact = contact_as_measured(cask_file, measured);
     let drop = Drop { contact_duration_s: measured.duration.value.max(0.0), ..cask_file.drop };
     let scene = Comparing { rod, body, file: cask_file, drop, contact, measured, predict };
     let candidates = scene.candidates();
@@ -146,9 +146,9 @@ impl Comparing<'_> {
         let (taken, share) = (predicted(self.contact), self.file.tolerances.friction / 2.0);
         let needed = taken.friction_to_stick;
         let other = match self.file.contact {
-            Contact::Unknown => (value - u95 / 2.0).max(0.0),
+            _ if self.file.has_open_friction() => (value - u95 / 2.0).max(0.0),
             Contact::Smooth => share * needed,
-            Contact::Rough => (1.0 - share) * needed,
+            Contact::Rough | Contact::Unknown => (1.0 - share) * needed,
             Contact::Coulomb(mu) => (1.0 - share) * mu,
         };
         let other = predicted(Contact::Coulomb(other)).slap_down_speed_m_s;
@@ -168,11 +168,9 @@ impl Comparing<'_> {
 }
 
 /// The contact law that the prediction goes by: the stated one, else the friction that was measured.
-pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
-    match stated {
-        Contact::Unknown => Contact::Coulomb(measured.friction.value.max(0.0)),
-        stated => stated,
-    }
+pub fn contact_as_measured(file: &CaskFile, measured: &Quantities) -> Contact {
+    let by_ratio = Contact::Coulomb(measured.friction.value.max(0.0));
+    if file.has_open_friction() { by_ratio } else { file.contact }
 }
 
 /// What keeps the first of these models, the others being richer, from being taken; `None` if nothing does.

@@ -70,6 +70,13 @@ impl CaskFile {
         Cow::Owned(all)
     }
 
+    /// Whether the impulse ratio of L lies anywhere between none and a bound: nobody states the friction, or a
+    /// coefficient whose tolerance nobody states.
+    pub fn has_open_friction(&self) -> bool {
+        let is_bound = || self.defaults.iter().any(|key| key == "tolerance.friction_percent");
+        self.contact == Contact::Unknown || (matches!(self.contact, Contact::Coulomb(_)) && is_bound())
+    }
+
     /// A file that states cask, drop and contact alone, with the usual tolerances.
     pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
         Self { path: "cask.toml".into(), cask, drop, contact, ..Self::default() }

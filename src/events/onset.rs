@@ -347,7 +347,7 @@ mod tests {
         let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
         let long = Signal { force_m_s2, ..plain };
         for is_calm in [true, false] {
-            let found = slap_down(&long, 5.0, 0.03..0.19, 2.0, is_calm).expect("an onset");
+            let found = slap_down(&long, 5.0, 0.03..0.19, 2.0, is_calm.then_some(0.0)).expect("an onset");
             assert!((found.time_s - 0.08).abs() < 1e-4 && found.u_s < 1e-3, "{found:?}");
         }
         // Where R cannot have struck before, no rise is seen: the time is as uncertain as the means are long.

@@ -9,6 +9,9 @@ use crate::data::{
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
+/// Nearer than this to the angle at which the corner lies under the centre of gravity, as a share of it, a cask
+/// hardly turns.
+const STEEP_SHARE: f64 = 0.97;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a
 /// slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.1;
@@ -58,7 +61,14 @@ pub fn judge_motion(
         add(DropFinding::Restitution { k });
     }
     if quantities.angular_velocity.value <= 0.0 {
-        add(DropFinding::TurnsTheWrongWay);
+        let cask = &cask_file.cask;
+        let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
+        let angle_deg = cask_file.drop.angle_rad.to_degrees();
+        add(if angle_deg > STEEP_SHARE * limit_deg {
+            DropFinding::TooSteep { angle_deg, limit_deg }
+        } else {
+            DropFinding::TurnsTheWrongWay
+        });
     }
     let slip = quantities.slip_velocity;
     let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);

@@ -9,7 +9,7 @@ use super::text::{
     styled_lines, tail, true_minus, verdict_sentence, verdict_style, verdict_word,
 };
 use crate::data::{
-    Analysis, CaskFile, ClosureKind, Contact, DropResult, Estimate, Finding, IssueCode, LimitState,
+    Analysis, CaskFile, ClosureKind, DropResult, Estimate, Finding, IssueCode, LimitState,
     ReconstructionRung, Rung, Severity, Untested,
 };
 
@@ -89,7 +89,7 @@ fn compared(result: &DropResult, file: &CaskFile) -> Option<String> {
 /// What the prediction takes from the recording that it is held against: "by the measured k, friction".
 pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
     let rung = result.model.as_ref().map_or(Rung::Rod, |model| model.rung);
-    let is_friction = file.contact == Contact::Unknown && rung >= Rung::Friction;
+    let is_friction = file.has_open_friction() && rung >= Rung::Friction;
     let friction = if is_friction { ", friction" } else { "" };
     let time = if rung == Rung::FinitePulse { ", contact time" } else { "" };
     format!("by the measured k{friction}{time}")

@@ -239,8 +239,11 @@ pub(super) fn assumed(file: &CaskFile, budget: &[Contribution]) -> Option<String
             format!("inertia of a uniform block ± {inertia} %"),
         ),
         (
-            is_input("friction_percent") && file.contact == Contact::Unknown,
-            "friction anywhere from none to sticking".to_owned(),
+            is_input("friction_percent") && file.has_open_friction(),
+            match file.contact {
+                Contact::Coulomb(most) => format!("impulse ratio anywhere up to {}", plain(most, 4)),
+                _ => "friction anywhere from none to sticking".to_owned(),
+            },
         ),
     ];
     let all: Vec<String> = all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words).collect();

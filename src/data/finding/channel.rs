@@ -198,7 +198,7 @@ pub enum ChannelFinding {
     /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in
     /// spreads of what ringing leaves.
     Struck { after_s: Vec<f64>, far: f64 } => (Code::SecondContact, Warning),
-        ("shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing \
+        ("shows shocks in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing \
          and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix \
          what was before with what came after, so k and the slap-down speed are not determined; fasten the \
          contents, or read the speed from the film", times_ms(after_s));

@@ -57,6 +57,11 @@ pub enum DropFinding of Drop {
     TurnsTheWrongWay => (Code::EndsExchanged, Error),
         ("the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong \
          in the cask file");
+    /// The second end rises, as it does where L's corner lies behind the centre of gravity.
+    TooSteep { angle_deg: f64, limit_deg: f64 } => (Code::NoSlapDown, Error),
+        ("the second end is not expected to strike: at {angle_deg:.1}° the first end's corner lies under the \
+         centre of gravity or behind it (from {limit_deg:.1}° on for this section), and the cask turns back; \
+         analyse the first impact alone");
     /// The axial channel has L slide on a contact that is called rough.
     Slides { slip: Estimate } => (Code::Friction, Warning),
         ("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls \
