@@ -139,12 +139,13 @@ fn moved(
     let stated = motion::outcome(integrated, &flight, events, &setup)?;
     // What rings behind a touch is not what rang before it: neither the second impact nor the corner is told.
     let is_whole = flight.landing.is_none();
-    let second =
-        is_whole.then(|| SecondImpact::find(file, &integrated.signals, &stated, &measured)).flatten();
+    let find = |is_open| SecondImpact::find(file, &integrated.signals, &stated, &measured, is_open);
+    let second = is_whole.then(|| find(false)).flatten();
     let taken = taken(integrated, &measured, second.as_ref())?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
-    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
+    let up_to_crush = (is_whole && second.is_none()).then(|| find(true)).flatten();
+    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref().or(up_to_crush.as_ref()))
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.untested(&|flight| {

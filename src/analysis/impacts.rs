@@ -33,6 +33,8 @@ pub(super) struct Tabulated {
     tables: [Option<ImpactTable>; 2],
     /// When R leaves, s.
     left_s: Option<f64>,
+    /// Whether the second is known up to its greatest crush alone.
+    is_open: bool,
 }
 
 impl Tabulated {
@@ -65,10 +67,10 @@ impl Tabulated {
 
     /// The finding where the motion tells the first impact alone, though there is another.
     pub fn untold(&self, recorded: &[Signal], events: &Events) -> Option<Finding> {
-        let struck_s = events.slap_down_s().filter(|_| self.tables[1].is_none())?;
-        Some(
-            DropFinding::SecondUntold { recorded_s: flight_search::record_end_s(recorded) - struck_s }.into(),
-        )
+        let is_open = self.tables[1].is_some();
+        let struck_s = events.slap_down_s().filter(|_| self.is_open || !is_open)?;
+        let recorded_s = flight_search::record_end_s(recorded) - struck_s;
+        Some(DropFinding::SecondUntold { recorded_s, is_open }.into())
     }
 }
 
@@ -138,13 +140,34 @@ pub(super) fn tabulated(
         RESTITUTION_RANGE.contains(&numbers.restitution.0) && numbers.duration.0 > 0.0
     };
     let of_second = known.get(1).filter(|_| is_one).filter(is_passive);
+    let is_open = second.is_some_and(|second| second.is_open);
+    // A corner that goes on sinking has not reached its greatest crush.
+    let after = after.filter(|course| !is_open || course.contact.rises_again());
+    let of_second = after.zip(of_second).map(|(course, numbers)| {
+        let table = both.table(End::Second, &course, numbers);
+        if is_open { up_to_crush(table) } else { table }
+    });
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
-        tables: [
-            Some(both.table(End::First, &first, known.first()?)),
-            after.zip(of_second).map(|(course, numbers)| both.table(End::Second, &course, numbers)),
-        ],
+        tables: [Some(both.table(End::First, &first, known.first()?)), of_second],
+        is_open,
     })
+}
+
+/// Without what the contact gives in all, where no flight after it tells that.
+fn up_to_crush(mut table: ImpactTable) -> ImpactTable {
+    let ImpactNumbers { energy_before, energy_absorbed, energy_ratio, absorbed_ratio, .. } = table.numbers;
+    let ImpactNumbers { crush, force_peak, .. } = table.numbers;
+    table.numbers = ImpactNumbers {
+        energy_before,
+        energy_absorbed,
+        energy_ratio,
+        absorbed_ratio,
+        crush,
+        force_peak,
+        ..ImpactNumbers::default()
+    };
+    table
 }
 
 impl BothImpacts<'_> {
@@ -174,7 +197,14 @@ impl BothImpacts<'_> {
                 ..read
             }
         };
-        Some([Some(&first), second.as_ref()].into_iter().flatten().map(numbers).collect())
+        let mut all: Vec<_> = [Some(&first), second.as_ref()].into_iter().flatten().map(numbers).collect();
+        if let (Some(own), Some(course)) = (all.get_mut(1), &second)
+            && self.second.is_some_and(|second| second.is_open)
+        {
+            own.energy_absorbed = course.contact.work_to_greatest_crush_m2_s2();
+            own.absorbed_ratio = own.energy_absorbed / before_m2_s2;
+        }
+        Some(all)
     }
 
     /// These with their standard uncertainties: what else could have told the course of the force says how

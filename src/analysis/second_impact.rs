@@ -4,19 +4,20 @@
 use super::flight_search;
 use super::setup::by_law;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Contact, Drop, Events, FlightFit, Motion,
-    MotionState, Setup, Signal,
+    AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Contact, Drop, End, Events, FlightFit, Motion,
+    MotionState, Setup, Signal, transverse,
 };
-use crate::fit;
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
+use crate::{events, fit};
 
 /// A flight after the impact of R that is shorter than this share of it tells nothing of what came before.
 const LEAST_FLIGHT: f64 = 1.0;
 /// A fit of it that leaves more than this share of the speed at which R strikes has not explained it.
 const MOST_LEFT: f64 = 0.015;
 /// A rotation that is off by more than this share of itself is not that of one contact at R: L strikes
-/// meanwhile. A length off by 5 % makes 0.1.
+/// meanwhile. A length off by 5 % makes 0.1; where no flight shows the rotation, ringing is in it.
 const OF_TWO_CONTACTS: f64 = 0.2;
+const OF_TWO_CONTACTS_RINGING: f64 = 0.8;
 
 /// What one contact says of itself.
 pub(super) struct Course {
@@ -29,8 +30,10 @@ pub(super) struct SecondImpact {
     /// What its own channels read, in a mirror.
     integrated: Integrated<'static>,
     pub flight: FlightFit,
-    /// When R leaves.
+    /// When R leaves; where no flight tells that, when the force on it has gone.
     pub left: At,
+    /// Whether no flight tells what the contact gave in all, but its course up to the greatest crush is known.
+    pub is_open: bool,
     axial: AxialClosure,
     friction: Option<AssumedFriction>,
     /// Whether that is measured or stated.
@@ -96,14 +99,23 @@ fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
     is_told.then_some((left, flight))
 }
 
+/// When the force on R has gone, and what the integrals give there: it ends what no flight follows.
+fn pressed(integrated: &Integrated) -> Option<(At, FlightFit)> {
+    let record_end_s = flight_search::record_end_s(&integrated.signals);
+    let struck = transverse(&integrated.signals, End::First)?;
+    let time_s = events::first_separation(struck, integrated.contact_s, record_end_s)?;
+    Some((At { time_s, u_s: 0.0 }, motion::at_once(integrated, time_s)))
+}
+
 impl SecondImpact {
     /// The impact of R after a flight with this motion, where the recording tells when R leaves the target
-    /// and what velocity that gives.
+    /// and what velocity that gives; or up to its greatest crush, where `is_open`.
     pub fn find(
         file: &CaskFile,
         recorded: &[Signal],
         motion: &Motion,
         measured: &fit::FitData,
+        is_open: bool,
     ) -> Option<Self> {
         let (before, first) = (measured.flight, measured.setup);
         let slap_down = measured.events.slap_down?;
@@ -111,7 +123,8 @@ impl SecondImpact {
         let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;
         let signals = motion::mirrored(recorded, before, turning_rad_s, first.length_m, first.cog_m);
         let integrated = Integrated::over(&signals, slap_down.time_s).into_owned();
-        let (left, flight) = told(&in_mirror(file, &setup), &integrated)?;
+        let end = if is_open { pressed(&integrated) } else { told(&in_mirror(file, &setup), &integrated) };
+        let (left, flight) = end?;
         let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };
         let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
         let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
@@ -132,7 +145,8 @@ impl SecondImpact {
         let moved = motion::outcome(&integrated, &flight, &times, &setup)?;
         let turned_rad_s = moved.separation.angular_velocity_rad_s - moved.contact.angular_velocity_rad_s;
         let by_impulse_rad_s = moved.angular_impulse_m2_s * file.cask.mass_kg / file.cask.inertia_kg_m2;
-        let is_one = (turned_rad_s - by_impulse_rad_s).abs() < OF_TWO_CONTACTS * turned_rad_s.abs();
+        let most_off = if is_open { OF_TWO_CONTACTS_RINGING } else { OF_TWO_CONTACTS };
+        let is_one = (turned_rad_s - by_impulse_rad_s).abs() < most_off * turned_rad_s.abs();
         let along = |s: &MotionState| {
             s.horizontal_velocity_m_s * s.angle_rad.cos() + s.vertical_velocity_m_s * s.angle_rad.sin()
         };
@@ -143,6 +157,7 @@ impl SecondImpact {
             integrated,
             flight,
             left,
+            is_open,
             axial: setup.axial,
             friction: friction.map(|(_, assumed)| assumed),
             is_known,
@@ -189,8 +204,13 @@ impl SecondImpact {
     /// Setup, flight and times of the mirror after a first impact with these inputs and this motion.
     fn moved(&self, inputs: &fit::Inputs, first: &Motion) -> Option<MovedMirror> {
         let mut setup = mirrored(&inputs.setup, first, self.axial)?;
-        let (steps, rest) = inputs.second_u.split_at_checked(self.u_steps_m_s.len())?;
-        let [by_left, by_friction] = *rest.first_chunk()?;
+        // No closure of the fit moves the inputs of an open one.
+        let (steps, [by_left, by_friction]) = if self.is_open {
+            (&[][..], [0.0; 2])
+        } else {
+            let (steps, rest) = inputs.second_u.split_at_checked(self.u_steps_m_s.len())?;
+            (steps, *rest.first_chunk()?)
+        };
         if let Some(AssumedFriction { ratio, u }) = self.friction {
             setup.axial = AxialClosure::Sliding { friction: ratio + by_friction * u };
         }

@@ -24,7 +24,8 @@ named_numbers! {
         friction: "1",
         /// Kinetic energy of the rigid body before, J.
         energy_before: "J",
-        /// What the contact takes, J: kinetic energy before less that after, and what S comes down.
+        /// What the contact takes, J: kinetic energy before less that after, and what S comes down; where no
+        /// flight follows, the work of the vertical force up to the greatest crush.
         energy_absorbed: "J",
         /// Kinetic energy after, J.
         energy_after: "J",

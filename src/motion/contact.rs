@@ -75,6 +75,19 @@ impl ContactCourse {
         })
     }
 
+    /// Whether the corner has passed its greatest crush.
+    pub fn rises_again(&self) -> bool {
+        self.crush_m.last().is_some_and(|last_m| *last_m < largest(&self.crush_m))
+    }
+
+    /// Work of the vertical force up to the greatest crush over the mass, m²/s².
+    pub fn work_to_greatest_crush_m2_s2(&self) -> f64 {
+        let greatest_m = largest(&self.crush_m);
+        let steps = self.crush_m.windows(2).zip(self.up_m_s2.windows(2));
+        let sinking = steps.take_while(|(crush_m, _)| crush_m[0] < greatest_m);
+        sinking.map(|(crush_m, up)| (crush_m[1] - crush_m[0]) * f64::midpoint(up[0], up[1])).sum()
+    }
+
     /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and
     /// after them; as long as they are.
     pub fn low_passed<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {

@@ -24,7 +24,7 @@ pub use late_blow::strike;
 pub use local::{CornerRinging, ringing_of_second_end};
 pub use others::{other_curve, strongest_line};
 pub use reconstruct::{outcome, reconstruct, with_states};
-pub use refit::with_modes;
+pub use refit::{at_once, with_modes};
 pub use ringing::{RingingRemoved, mirrored, rotation_by, rotation_rad_s, turned_rad_s};
 pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 

@@ -129,11 +129,15 @@ pub enum DropFinding of Drop {
          ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are not \
          determined; look at the curves, and state only what they show",
          1e3 * flight_s, modes_hz.len(), joined(modes_hz, |f| format!("{f:.0}"), ", "));
-    /// The second impact is not told by what is recorded after the slap-down.
-    SecondUntold { recorded_s: f64 } => (Code::SecondImpact, Note),
+    /// No flight after the slap-down determines what the second impact gives.
+    SecondUntold { recorded_s: f64, is_open: bool } => (Code::SecondImpact, Note),
         ("the {:.0} ms that are recorded after the slap-down do not show the end of the second end's impact: \
-         it may not have left the target by then, or something else strikes meanwhile; record until the cask \
-         lies still", 1e3 * recorded_s);
+         it may not have left the target by then, or something else strikes meanwhile; {}", 1e3 * recorded_s,
+         if *is_open {
+             "its force, deceleration, crush and energy are those up to the greatest crush"
+         } else {
+             "record until the cask lies still"
+         });
     /// Measured and predicted lie apart.
     Disagreement { comparison: Comparison, e_n: f64, severity: Severity } => (Code::Disagreement, *severity),
         ("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = \
