@@ -29,8 +29,8 @@ const LEAST_SLAP_DOWN: f64 = 0.08;
 const FIRST_CLEARANCE: f64 = 0.4;
 const LONGEST_CLEARANCE_S: f64 = 0.022;
 
-/// Most modes of the first fits: those of a cask below 400 Hz; and where they do not explain the flight, since
-/// a short contact excites more of them.
+/// Most modes of the first fits: those of a cask below 400 Hz; and where they do not explain the flight: a
+/// short contact excites more of them.
 const FEW_MODES: usize = 3;
 const MANY_MODES: usize = 6;
 

@@ -32,7 +32,7 @@ pub(super) struct SecondImpact {
     pub flight: FlightFit,
     /// When R leaves; where no flight tells that, when the force on it has gone.
     pub left: At,
-    /// Whether no flight tells what the contact gave in all, but its course up to the greatest crush is known.
+    /// Whether no flight determines what the contact gave in all, and it is followed to its greatest crush.
     pub is_open: bool,
     axial: AxialClosure,
     friction: Option<AssumedFriction>,

@@ -9,8 +9,7 @@ use crate::data::{
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
-/// Nearer than this to the angle at which the corner lies under the centre of gravity, as a share of it, a cask
-/// hardly turns.
+/// From this share of the angle on at which the corner lies under the centre of gravity, a cask hardly turns.
 const STEEP_SHARE: f64 = 0.97;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a
 /// slap-down.

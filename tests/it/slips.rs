@@ -202,8 +202,11 @@ fn the_free_fall_is_the_one_that_is_recorded() {
 
 #[test]
 fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_there() {
-    let drawn = (0..140).map(|n| campaign::scene(20_261_202, SceneNumber::Undamaged(n), true));
-    let is_axial = |file: &SceneFile| file.stated.channels.iter().any(|c| c.axis == Axis::Axial);
+    let drawn = (0..280).map(|n| campaign::scene(20_261_202, SceneNumber::Undamaged(n), true));
+    // Of a rigid body: bending covers as much on an elastic one.
+    let is_axial = |file: &SceneFile| {
+        file.scene.elastic.is_none() && file.stated.channels.iter().any(|c| c.axis == Axis::Axial)
+    };
     let is_told = |c: &Closure| c.kind == ClosureKind::SecondTurning;
     let (mut told, mut found, mut held) = (0, 0, 0);
     for (file, recording) in drawn.filter(|(file, _)| is_axial(file)) {
@@ -233,8 +236,11 @@ fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_t
 
 #[test]
 fn sensors_on_the_skin_that_are_stated_on_the_axis_are_named_and_never_wrong() {
-    let drawn = (0..140).map(|n| campaign::scene(20_261_127, SceneNumber::Undamaged(n), true).0);
-    let is_axial = |file: &SceneFile| file.stated.channels.iter().any(|c| c.axis == Axis::Axial);
+    let drawn = (0..280).map(|n| campaign::scene(20_261_127, SceneNumber::Undamaged(n), true).0);
+    // Of a rigid body: bending covers as much on an elastic one.
+    let is_axial = |file: &SceneFile| {
+        file.scene.elastic.is_none() && file.stated.channels.iter().any(|c| c.axis == Axis::Axial)
+    };
     let (mut passed, mut named, mut told) = (0, 0, 0);
     for mut file in drawn.filter(is_axial).take(8) {
         let motion = synth::simulate(&file.scene);
