@@ -74,6 +74,7 @@ impl Middle {
             to_s: self.flight.to_s,
             drift: true,
             angular_velocity_rad_s: 5.0,
+            most_modes: 3,
         }
     }
 
@@ -156,7 +157,7 @@ fn quantities(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {
         let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
-        stages::ladder(&measured, None, &moved).expect("quantities")
+        stages::ladder(&measured, &moved).expect("quantities")
     });
 }
 
