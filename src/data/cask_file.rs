@@ -70,8 +70,8 @@ impl CaskFile {
         Cow::Owned(all)
     }
 
-    /// Whether the impulse ratio of L lies anywhere between none and a bound: the friction is not stated, or it
-    /// is without its tolerance.
+    /// Whether the impulse ratio of L lies anywhere up to a bound: its friction is not stated, or without its
+    /// tolerance.
     pub fn has_open_friction(&self) -> bool {
         let is_bound = || self.defaults.iter().any(|key| key == "tolerance.friction_percent");
         self.contact == Contact::Unknown || (matches!(self.contact, Contact::Coulomb(_)) && is_bound())
