@@ -1,6 +1,7 @@
 //! A mode of the free uniform beam and a place on it to its deflection there, and what shear and the inertia
 //! of its sections make of the mode.
 
+#[cfg(any(test, feature = "lab"))]
 use std::f64::consts::PI;
 
 /// Shapes that [`shape`] knows.
@@ -21,6 +22,7 @@ pub fn shape(order: u8, share: f64) -> f64 {
     at.cosh() + at.cos() - sigma * (at.sinh() + at.sin())
 }
 
+#[cfg(any(test, feature = "lab"))]
 /// Wave number times length of the mode of any order from 1 on: β = (n + ½) π − (−1)ⁿ/cosh((n + ½) π) but for
 /// the first three, within 1e-11.
 pub fn wave_number(order: u8) -> f64 {
@@ -29,6 +31,7 @@ pub fn wave_number(order: u8) -> f64 {
     WAVE_NUMBERS.get(usize::from(order.max(1)) - 1).copied().unwrap_or(asymptote + beyond)
 }
 
+#[cfg(any(test, feature = "lab"))]
 /// [`shape`] of any order: about the middle, u = share − ½, sines and hyperbolic sines each over its value at
 /// the end. There the form of the first orders would be a difference of numbers of e^β.
 pub fn high_shape(order: u8, share: f64) -> f64 {
@@ -42,6 +45,7 @@ pub fn high_shape(order: u8, share: f64) -> f64 {
     }
 }
 
+#[cfg(any(test, feature = "lab"))]
 /// What shear and the inertia of the sections make of a mode (Timoshenko 1921): of a wave of its wave number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThickBeam {
@@ -51,6 +55,7 @@ pub struct ThickBeam {
     pub turning: f64,
 }
 
+#[cfg(any(test, feature = "lab"))]
 impl ThickBeam {
     /// Of a rectangular section of `height` lengths; `shear` is E/(κG): with a = β² height²/12 and u the
     /// squared slowing, 1 − u (1 + a (1 + shear)) + shear a² u² = 0.

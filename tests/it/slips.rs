@@ -230,8 +230,8 @@ fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_t
         let speed = result.slap_down.speed.expect("a number");
         held += usize::from((speed.value - truth_m_s).abs() < 2.0 * speed.u95);
     }
-    // Six of nine stand 3 u and more out of what the other closures and all tolerances explain; the others are
-    // what `untested` names.
+    // Six of nine stand 3 u and more out of what the other closures and all tolerances explain; `untested`
+    // names the others.
     assert!(told >= 8 && 2 * found >= told && found + held + 3 >= told, "{found} and {held} of {told}");
 }
 
