@@ -4,7 +4,7 @@ use super::flight_search;
 use super::impact::Impact;
 use super::impacts::{self, Tabulated};
 use super::rotation;
-use super::second_impact::SecondImpact;
+use super::second_impact::{Mirror, SecondImpact};
 use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
@@ -139,12 +139,13 @@ fn moved(
     let stated = motion::outcome(integrated, &flight, events, &setup)?;
     // What rings behind a touch is not what rang before it: neither the second impact nor the corner is told.
     let is_whole = flight.landing.is_none();
-    let find = |is_open| SecondImpact::find(file, &integrated.signals, &stated, &measured, is_open);
-    let second = is_whole.then(|| find(false)).flatten();
+    let mirror = is_whole.then(|| Mirror::of(&integrated.signals, &stated, &measured)).flatten();
+    let find = |is_open| SecondImpact::find(mirror.as_ref()?, file, &measured, is_open);
+    let second = find(false);
     let taken = taken(integrated, &measured, second.as_ref())?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
-    let up_to_crush = (is_whole && second.is_none()).then(|| find(true)).flatten();
+    let up_to_crush = if second.is_none() { find(true) } else { None };
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref().or(up_to_crush.as_ref()))
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });

@@ -33,8 +33,6 @@ pub(super) struct Tabulated {
     tables: [Option<ImpactTable>; 2],
     /// When R leaves, s.
     left_s: Option<f64>,
-    /// Whether the second is known up to its greatest crush alone.
-    is_open: bool,
 }
 
 impl Tabulated {
@@ -65,10 +63,13 @@ impl Tabulated {
         (deepest < TWO_TOUCHES).then(|| DropFinding::TwoMaxima { dip: deepest }.into())
     }
 
-    /// The finding where the motion tells the first impact alone, though there is another.
+    /// The finding where the motion does not determine what the second impact gives in all, though there is
+    /// one.
     pub fn untold(&self, recorded: &[Signal], events: &Events) -> Option<Finding> {
-        let is_open = self.tables[1].is_some();
-        let struck_s = events.slap_down_s().filter(|_| self.is_open || !is_open)?;
+        let second = self.tables[1].as_ref();
+        let is_whole = second.is_some_and(|table| table.numbers.restitution.is_some());
+        let struck_s = events.slap_down_s().filter(|_| !is_whole)?;
+        let is_open = second.is_some();
         let recorded_s = flight_search::record_end_s(recorded) - struck_s;
         Some(DropFinding::SecondUntold { recorded_s, is_open }.into())
     }
@@ -119,7 +120,7 @@ fn low_pass(file: &CaskFile) -> (String, f64) {
 struct BothImpacts<'a> {
     file: &'a CaskFile,
     integrated: &'a Integrated<'a>,
-    second: Option<&'a SecondImpact>,
+    second: Option<&'a SecondImpact<'a>>,
     cutoff_hz: f64,
 }
 
@@ -150,22 +151,20 @@ pub(super) fn tabulated(
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
         tables: [Some(both.table(End::First, &first, known.first()?)), of_second],
-        is_open,
     })
 }
 
 /// Without what the contact gives in all, where no flight after it tells that.
 fn up_to_crush(mut table: ImpactTable) -> ImpactTable {
-    let ImpactNumbers { energy_before, energy_absorbed, energy_ratio, absorbed_ratio, .. } = table.numbers;
-    let ImpactNumbers { crush, force_peak, .. } = table.numbers;
     table.numbers = ImpactNumbers {
-        energy_before,
-        energy_absorbed,
-        energy_ratio,
-        absorbed_ratio,
-        crush,
-        force_peak,
-        ..ImpactNumbers::default()
+        duration: None,
+        velocity_change: None,
+        impulse_x: None,
+        impulse_z: None,
+        restitution: None,
+        friction: None,
+        energy_after: None,
+        ..table.numbers
     };
     table
 }

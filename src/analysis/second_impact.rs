@@ -25,10 +25,18 @@ pub(super) struct Course {
     pub contact: ContactCourse,
 }
 
-/// The impact of R, seen in a mirror: what strikes is its first end.
-pub(super) struct SecondImpact {
-    /// What its own channels read, in a mirror.
+/// The drop seen in a mirror, from the state in which R strikes: what strikes is its first end.
+pub(super) struct Mirror {
+    setup: Setup,
+    struck: At,
+    signals: Vec<Signal>,
+    /// Of these signals.
     integrated: Integrated<'static>,
+}
+
+/// The impact of R, seen in a mirror.
+pub(super) struct SecondImpact<'a> {
+    mirror: &'a Mirror,
     pub flight: FlightFit,
     /// When R leaves; where no flight tells that, when the force on it has gone.
     pub left: At,
@@ -107,34 +115,36 @@ fn pressed(integrated: &Integrated) -> Option<(At, FlightFit)> {
     Some((At { time_s, u_s: 0.0 }, motion::at_once(integrated, time_s)))
 }
 
-impl SecondImpact {
-    /// The impact of R after a flight with this motion, where the recording tells when R leaves the target
-    /// and what velocity that gives; or up to its greatest crush, where `is_open`.
-    pub fn find(
-        file: &CaskFile,
-        recorded: &[Signal],
-        motion: &Motion,
-        measured: &fit::FitData,
-        is_open: bool,
-    ) -> Option<Self> {
+impl Mirror {
+    /// After a flight with this motion; `None` where R does not strike.
+    pub fn of(recorded: &[Signal], motion: &Motion, measured: &fit::FitData) -> Option<Self> {
         let (before, first) = (measured.flight, measured.setup);
-        let slap_down = measured.events.slap_down?;
+        let struck = measured.events.slap_down?;
         let turning_rad_s = motion.separation.angular_velocity_rad_s;
-        let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;
+        let setup = mirrored(first, motion, AxialClosure::Sticking)?;
         let signals = motion::mirrored(recorded, before, turning_rad_s, first.length_m, first.cog_m);
-        let integrated = Integrated::over(&signals, slap_down.time_s).into_owned();
-        let end = if is_open { pressed(&integrated) } else { told(&in_mirror(file, &setup), &integrated) };
+        let integrated = Integrated::over(&signals, struck.time_s).into_owned();
+        Some(Self { setup, struck, signals, integrated })
+    }
+}
+
+impl<'a> SecondImpact<'a> {
+    /// The impact of R, where the recording shows when R leaves the target and what velocity that gives; or
+    /// up to its greatest crush, where `is_open`.
+    pub fn find(mirror: &'a Mirror, file: &CaskFile, measured: &fit::FitData, is_open: bool) -> Option<Self> {
+        let (before, first) = (measured.flight, measured.setup);
+        let Mirror { mut setup, struck, ref signals, ref integrated } = *mirror;
+        let end = if is_open { pressed(integrated) } else { told(&in_mirror(file, &setup), integrated) };
         let (left, flight) = end?;
-        let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };
-        let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
+        let times = Events { first_contact: Some(struck), separation: Some(left), ..Events::default() };
+        let needed = motion::outcome(integrated, &flight, &times, &setup)?.impulse_ratio;
         let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
         // What sticks at L may slide at R, and what slides there may turn round or stick here.
         let law = if file.contact == Contact::Smooth { Contact::Smooth } else { Contact::Unknown };
         let friction = (!is_measured).then(|| by_law(file, law, needed));
         let is_known = is_measured || law != Contact::Unknown;
         setup.axial = friction.map_or(AxialClosure::Measured, |(axial, _)| axial);
-        let basis =
-            fit::FitData { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
+        let basis = fit::FitData { signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
         let u_step_m_s = |i: usize| {
@@ -142,7 +152,7 @@ impl SecondImpact {
             own_m_s.hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i))
         };
         let u_steps_m_s = (0..flight.plateaus.len()).map(u_step_m_s).collect();
-        let moved = motion::outcome(&integrated, &flight, &times, &setup)?;
+        let moved = motion::outcome(integrated, &flight, &times, &setup)?;
         let turned_rad_s = moved.separation.angular_velocity_rad_s - moved.contact.angular_velocity_rad_s;
         let by_impulse_rad_s = moved.angular_impulse_m2_s * file.cask.mass_kg / file.cask.inertia_kg_m2;
         let most_off = if is_open { OF_TWO_CONTACTS_RINGING } else { OF_TWO_CONTACTS };
@@ -152,9 +162,9 @@ impl SecondImpact {
         };
         let along_m_s = along(&moved.separation) - along(&moved.contact);
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
-        let gained_rad_s = motion::rotation_rad_s(&signals, &flight);
+        let gained_rad_s = motion::rotation_rad_s(signals, &flight);
         is_one.then_some(Self {
-            integrated,
+            mirror,
             flight,
             left,
             is_open,
@@ -173,7 +183,7 @@ impl SecondImpact {
     /// uncertainty.
     pub fn inputs(&self) -> Vec<[String; 2]> {
         let own = |what: &str, size: String| [format!("{what} of the second impact"), size];
-        let steps = self.integrated.signals.iter().zip(&self.u_steps_m_s);
+        let steps = self.mirror.integrated.signals.iter().zip(&self.u_steps_m_s);
         let steps = steps.map(|(s, u)| own(&format!("velocity step of {}", s.name), format!("{u:.3} m/s")));
         let u = self.friction.map_or(0.0, |friction| friction.u);
         let left = own("end", format!("{:.3} ms", 1e3 * self.left.u_s));
@@ -190,14 +200,14 @@ impl SecondImpact {
     pub fn turned_beyond_rad_s(&self, inputs: &fit::Inputs, first: &Motion) -> Option<f64> {
         let inertia_m2 = inputs.inertia_m2?;
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
-        let motion = motion::outcome(&self.integrated, &flight, &times, &setup)?;
+        let motion = motion::outcome(&self.mirror.integrated, &flight, &times, &setup)?;
         Some(motion.turned_beyond_rad_s(inertia_m2))
     }
 
     /// The contact of R after a first impact with these inputs and this motion.
     pub fn course(&self, inputs: &fit::Inputs, first: &Motion, by: ForceCourse) -> Option<Course> {
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
-        let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;
+        let (motion, states) = motion::with_states(&self.mirror.integrated, &flight, &times, &setup)?;
         Some(Course { motion, contact: ContactCourse::of(&states, &setup, by)? })
     }
 
@@ -223,7 +233,7 @@ impl SecondImpact {
             // Farther from R by δ a sensor in the mirror reads −ω δ more; so do all in a cask that is longer
             // than stated.
             let farther_m = inputs.setup.length_m - self.length_m - of_channel(&inputs.places_m);
-            let across = self.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
+            let across = self.mirror.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
                 self.along_m_s * of_channel(&inputs.crosses) + self.gained_rad_s * farther_m
             } else {
