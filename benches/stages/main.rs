@@ -74,7 +74,6 @@ impl Middle {
             to_s: self.flight.to_s,
             drift: true,
             angular_velocity_rad_s: 5.0,
-            most_modes: 3,
         }
     }
 
@@ -124,7 +123,7 @@ fn flight_fit(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher
         .counter(m.conditioned())
-        .bench(|| stages::fit_flights(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
+        .bench(|| stages::fit_flights(&integrated, &m.window(), None, m.cask_file.cask.cog_m, 3));
 }
 
 #[divan::bench(args = SIZES)]

@@ -301,7 +301,6 @@ impl Search<'_> {
         let window = motion::Window {
             from_s: attempt.free_s,
             to_s: attempt.end_s - motion::BEFORE_SLAP_DOWN_S,
-            most_modes: attempt.most_modes,
             drift: self.file.corrections.zero_shift,
             angular_velocity_rad_s: before
                 .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
@@ -310,7 +309,9 @@ impl Search<'_> {
         let drive = self
             .to_target
             .then(|| motion::drive(self.integrated, before, attempt.separation.time_s, window.from_s, cog_m));
-        (window, motion::fit_flights(self.integrated, &window, drive.flatten().as_ref(), cog_m))
+        let drive = drive.flatten();
+        let fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m, attempt.most_modes);
+        (window, fits)
     }
 
     /// Takes off the signals of both ends what rings in the flight.
@@ -336,13 +337,11 @@ impl Search<'_> {
             let calm_m_s2 = quarters_s.into_iter().map(largest_m_s2).fold(f64::INFINITY, f64::min);
             let from_s = self.earliest_s.max(attempt.free_s);
             attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2));
+            attempt.end_s = self.flight_end_s(attempt.slap_down);
         }
         attempt.separation =
             events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.separation);
         attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.separation.time_s);
-        if is_shown {
-            attempt.end_s = self.flight_end_s(attempt.slap_down);
-        }
     }
 
     /// What the last round ended with, the separation by the impulse.

@@ -69,10 +69,11 @@ pub fn fit_flights(
     window: &Window,
     drive: Option<&Drive>,
     cog_m: f64,
+    most_modes: usize,
 ) -> Vec<FlightFit> {
     let cut = Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
     let series = series(integrated, &cut, cog_m);
-    let mut fits = candidates(&series, &cut, drive);
+    let mut fits = candidates(&series, &cut, drive, most_modes);
     let Integrated { signals, peaks_m_s2, .. } = integrated;
     fits.retain(|f| has_plausible_drift(peaks_m_s2, f));
     let Some(richest) = fits.iter().max_by_key(|f| f.parameters).map(|f| f.correlation) else {
@@ -113,7 +114,7 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
 
 /// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are
 /// not clear.
-fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<Fit> {
+fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>, most_modes: usize) -> Vec<Fit> {
     let length_s = window.to_s - window.from_s;
     let fewest = series.iter().map(|s| s.value.len()).min().unwrap_or(0);
     if length_s <= 0.0 || fewest < 8 {
@@ -124,10 +125,7 @@ fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<
     let drifts = if window.drift { &[false, true][..] } else { &[false] };
     let chains = |drive: Option<&Drive>, periods: f64| -> Vec<Vec<Fit>> {
         let seeds = Seeds::new(series, band_hz(periods), drive);
-        drifts
-            .par_iter()
-            .map(|&drift| chain(series, &seeds, Form { drift, drive }, window.most_modes))
-            .collect()
+        drifts.par_iter().map(|&drift| chain(series, &seeds, Form { drift, drive }, most_modes)).collect()
     };
     let mut fits = chains(None, LEAST_PERIODS).concat();
     if drive.is_some() && fits.iter().all(|f| !is_clear(series, f, length_s)) {

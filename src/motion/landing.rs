@@ -194,7 +194,7 @@ impl Touched<'_> {
         let Self { integrated, window, before, .. } = self;
         let cog_m = self.cask.cog_m;
         let angular_velocity_rad_s = window.angular_velocity_rad_s + gained_rad_s;
-        let over = Window { from_s, to_s, drift: false, angular_velocity_rad_s, most_modes: 0 };
+        let over = Window { from_s, to_s, drift: false, angular_velocity_rad_s };
         let mut all = series(integrated, &over, cog_m);
         let since_s = from_s - before.from_s;
         for ((own, signal), plateau) in all.iter_mut().zip(&*integrated.signals).zip(&before.plateaus) {
@@ -280,10 +280,9 @@ mod tests {
         if is_axial {
             signals.push(signal("A3", (End::First, Axis::Axial), [4.0, along], [0.1, 0.0], touches_s));
         }
-        let window =
-            Window { from_s: 0.026, to_s: 0.2995, drift: true, angular_velocity_rad_s: 0.0, most_modes: 3 };
+        let window = Window { from_s: 0.026, to_s: 0.2995, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::over(&signals, 0.02);
-        let flight = fit_flights(&integrated, &window, None, 2.5).swap_remove(0);
+        let flight = fit_flights(&integrated, &window, None, 2.5, 3).swap_remove(0);
         landing(&flight, &integrated, &window, &Cask::block("a", 4000.0, 5.0, 1.0))
     }
 

@@ -99,10 +99,9 @@ mod tests {
             signal("A1", End::First, 19.0, 2.0, -0.4 * blow_m_s),
             signal("A2", End::Second, -7.0, 1.8, blow_m_s),
         ];
-        let window =
-            Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0, most_modes: 3 };
+        let window = Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::over(&signals, 0.02);
-        let flight = fit_flights(&integrated, &window, None, 2.5).swap_remove(0);
+        let flight = fit_flights(&integrated, &window, None, 2.5, 3).swap_remove(0);
         strike(&flight, &integrated, &window, 2.5).expect("a flight without gaps")
     }
 

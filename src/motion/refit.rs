@@ -14,7 +14,7 @@ pub fn with_modes(
     cog_m: f64,
 ) -> Option<FlightFit> {
     let &FlightFit { from_s, to_s, drift, .. } = best;
-    let window = Window { from_s, to_s, drift, angular_velocity_rad_s: turning_rad_s, most_modes: 0 };
+    let window = Window { from_s, to_s, drift, angular_velocity_rad_s: turning_rad_s };
     let series = series(integrated, &window, cog_m);
     let again = describe(&series, best.modes.iter().map(oscillation).collect(), Form::free(drift))?;
     Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })

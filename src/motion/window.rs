@@ -23,6 +23,4 @@ pub struct Window {
     /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off, put back where
     /// it is negative; else 0.
     pub angular_velocity_rad_s: f64,
-    /// Most modes that a fit may have.
-    pub most_modes: usize,
 }

@@ -104,11 +104,10 @@ fn step_error_percent(of: &Prepared) -> f64 {
         to_s: of.contact_s + slap_s - 5e-4,
         drift: true,
         angular_velocity_rad_s: truth.omega_rebound.expect("a separation"),
-        most_modes: 3,
     };
     let integrated = motion::Integrated::over(&of.signals, of.contact_s);
     let drive = motion::drive(&integrated, None, left_s, window.from_s, cog_m);
-    let fit = motion::fit_flights(&integrated, &window, drive.as_ref(), cog_m).swap_remove(0);
+    let fit = motion::fit_flights(&integrated, &window, drive.as_ref(), cog_m, 3).swap_remove(0);
     let steps_m_s = velocity_steps_m_s(&of.drop.scene, length_s);
     let off = |(found_m_s, step_m_s): (f64, &f64)| 100.0 * (found_m_s - step_m_s).abs() / step_m_s.abs();
     fit.plateaus.iter().map(|p| p.velocity_step_m_s).zip(&steps_m_s).map(off).fold(0.0, f64::max)
