@@ -170,10 +170,13 @@ impl FlightFit {
         };
         let (first, second) = (largest_m_s(End::First), largest_m_s(End::Second));
         let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
-        if mode > 0 && frequency_hz > OVERTONE * self.modes[0].frequency_hz && damping < STRONG_DAMPING {
-            return is_slow && first.max(second) > ALONE * first.min(second);
-        }
-        let alone = if is_slow || damping > STRONG_DAMPING { ALONE } else { WHOLLY_ALONE };
+        let is_overtone =
+            self.modes.first().is_some_and(|slowest| frequency_hz > OVERTONE * slowest.frequency_hz);
+        let alone = match is_slow || damping > STRONG_DAMPING {
+            true => ALONE,
+            false if is_overtone => f64::INFINITY,
+            false => WHOLLY_ALONE,
+        };
         first.max(second) > alone * first.min(second)
     }
 

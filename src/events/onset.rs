@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
-/// It is so many times as high as what rings on in the flight, but no higher than this share of the peak.
+/// The foot stands this many times above what rings on in the flight, but at most at this share of the peak.
 const ABOVE_RINGING: f64 = 1.2;
 const HIGHEST_FOOT: f64 = 0.3;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.

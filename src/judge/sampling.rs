@@ -25,7 +25,7 @@ const BAND: f64 = 0.4;
 /// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of
 /// 25 samples and more that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
 const MOST_CONTENT: f64 = 0.05;
-/// Less than this share there leaves of a pulse's area, that the trapezoid misses, less than this share too.
+/// Content below this share there shows a filter: the trapezoid then misses less than that of a pulse's area.
 const LEAST_CONTENT: f64 = 0.01;
 /// Content of less than this many times the noise in the band is noise.
 const OVER_NOISE: f64 = 3.0;
