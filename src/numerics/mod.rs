@@ -14,6 +14,8 @@ pub mod robust;
 pub mod root;
 pub mod sinusoid;
 pub mod spectrum;
+#[cfg(feature = "lab")]
+pub mod thick_beam;
 
 /// A count of samples or the like as a number; exact below 2^53.
 #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]

@@ -2,7 +2,8 @@
 //! has.
 
 use crate::lab::data::{BendingMode, Scene};
-use crate::numerics::free_beam::{MOST_MODES, ThickBeam, high_shape, wave_number};
+use crate::numerics::free_beam::MOST_MODES;
+use crate::numerics::thick_beam::{ThickBeam, high_shape, wave_number};
 
 /// Most modes of an elastic body.
 pub(super) const MOST_ELASTIC: usize = 12;
