@@ -5,10 +5,14 @@ use dropcheck::data::{
     Axis, CaskFile, Channel, Closure, ClosureKind, Finding, IssueCode, Recording, Samples, Severity,
     Tolerances, Verdict,
 };
-use dropcheck::lab::data::{SceneFile, SceneNumber};
-use dropcheck::lab::{campaign, in_memory, synth};
+use dropcheck::lab::data::{SceneFile, SimulatedMotion};
+use dropcheck::lab::{self, in_memory, synth};
 use dropcheck::{analyze, ingest, stages};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use std::fs;
 use std::mem::swap;
+use std::ops::Range;
 use std::path::Path;
 
 const G_M_S2: f64 = 9.806_65;
@@ -200,16 +204,61 @@ fn the_free_fall_is_the_one_that_is_recorded() {
     }
 }
 
+/// A drop from 9 m of the paper's casks, two in five stretched, with an axial channel at the first end.
+fn drawn_drop(seed: u64) -> SceneFile {
+    const CASKS: [[f64; 3]; 4] =
+        [[315.0, 4.538, 0.15], [1429.0, 4.725, 0.565], [4466.0, 5.512, 0.792], [20_950.0, 4.486, 1.156]];
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut even = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+    let [mass_kg, length_m, section_m] = CASKS[usize::try_from(seed % 4).expect("a place")];
+    let [length_m, section_m] = if even(0.0, 1.0) < 0.4 {
+        [length_m * even(0.7, 1.3), section_m * even(0.5, 1.2)]
+    } else {
+        [length_m, section_m]
+    };
+    let (angle_deg, [k, second_k]) = (even(5.0, 30.0), [even(0.02, 0.98), even(0.05, 0.7)]);
+    let [pulse_ms, bending_hz] =
+        [(2.0_f64, 20.0_f64), (30.0, 160.0)].map(|(low, high)| even(low.ln(), high.ln()).exp());
+    let second_ms = pulse_ms * even(0.5, 1.5);
+    let mut scene = format!(
+        "seed = {seed}\n[cask]\nmass_kg = {mass_kg}\nlength_m = {length_m}\nheight_m = {section_m}\n\
+         [drop]\nheight_m = 9.0\nangle_deg = {angle_deg}\n[first_end]\npulse_ms = {pulse_ms}\nk = {k}\n\
+         [second_end]\npulse_ms = {second_ms}\nk = {second_k}\n\
+         [[mode]]\nfrequency_hz = {bending_hz}\ndamping = 0.03\n[recording]\nbefore_s = 0.15\nafter_s = 0.1\n"
+    );
+    for (name, end, axis, position_m) in [
+        ("A1", "first", "transverse", 0.15),
+        ("A2", "second", "transverse", length_m - 0.15),
+        ("A3", "first", "axial", 0.15),
+    ] {
+        scene += &format!(
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"{axis}\"\nposition_m = {position_m}\n\
+             sample_rate_hz = 20000\nanti_alias_hz = 6000.0\nwhite_noise_g = 0.1\n"
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene).expect("a scene");
+    lab::scene_file::read(&path).expect("a scene")
+}
+
+/// So many of them, with their motion, whose first end strikes once before a flight of 8 ms and more.
+fn sound(seeds: Range<u64>, count: usize) -> impl Iterator<Item = (SceneFile, SimulatedMotion)> {
+    let simulated = seeds.map(drawn_drop).map(|file| {
+        let motion = synth::simulate(&file.scene);
+        (file, motion)
+    });
+    simulated
+        .filter(|(_, m)| m.truth.relands == 0 && m.truth.flight_s.is_some_and(|flight_s| flight_s > 8e-3))
+        .take(count)
+}
+
 #[test]
 fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_there() {
-    let drawn = (0..280).map(|n| campaign::scene(20_261_202, SceneNumber::Undamaged(n), true));
-    // Of a rigid body: bending covers as much on an elastic one.
-    let is_axial = |file: &SceneFile| {
-        file.scene.elastic.is_none() && file.stated.channels.iter().any(|c| c.axis == Axis::Axial)
-    };
     let is_told = |c: &Closure| c.kind == ClosureKind::SecondTurning;
     let (mut told, mut found, mut held) = (0, 0, 0);
-    for (file, recording) in drawn.filter(|(file, _)| is_axial(file)) {
+    for (file, motion) in sound(0..100, 20) {
+        let recording = synth::record(&file.scene, &motion);
         let read = in_memory::synthetic(&recording, &file.stated).expect("a recording");
         // A cask whose centre of gravity and inertia nobody knows hides its length.
         let stated = CaskFile { tolerances: Tolerances::default(), ..file.stated.clone() };
@@ -226,25 +275,18 @@ fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_t
             found += 1;
             continue;
         }
-        let truth_m_s = synth::simulate(&file.scene).truth.speed.expect("R strikes");
+        let truth_m_s = motion.truth.speed.expect("R strikes");
         let speed = result.slap_down.speed.expect("a number");
         held += usize::from((speed.value - truth_m_s).abs() < 2.0 * speed.u95);
     }
-    // Six of nine stand 3 u and more out of what the other closures and all tolerances explain; `untested`
-    // names the others.
-    assert!(told >= 8 && 2 * found >= told && found + held + 3 >= told, "{found} and {held} of {told}");
+    // Six of twelve stand 3 u and more out of what the other closures and all tolerances explain.
+    assert!(told >= 10 && 2 * found >= told && found + held + 2 >= told, "{found} and {held} of {told}");
 }
 
 #[test]
 fn sensors_on_the_skin_that_are_stated_on_the_axis_are_named_and_never_wrong() {
-    let drawn = (0..280).map(|n| campaign::scene(20_261_127, SceneNumber::Undamaged(n), true).0);
-    // Of a rigid body: bending covers as much on an elastic one.
-    let is_axial = |file: &SceneFile| {
-        file.scene.elastic.is_none() && file.stated.channels.iter().any(|c| c.axis == Axis::Axial)
-    };
     let (mut passed, mut named, mut told) = (0, 0, 0);
-    for mut file in drawn.filter(is_axial).take(8) {
-        let motion = synth::simulate(&file.scene);
+    for (mut file, motion) in sound(100..200, 8) {
         let half_m = file.stated.cask.height_m / 2.0;
         for (channel, spec) in file.scene.channels.iter_mut().zip(&mut file.stated.channels) {
             (channel.offset_m, spec.offset_m) = (-half_m, 0.0);
@@ -259,9 +301,5 @@ fn sensors_on_the_skin_that_are_stated_on_the_axis_are_named_and_never_wrong() {
         named += usize::from(result.quality.iter().any(says));
         told += usize::from(result.verdict != Verdict::Pass);
     }
-    // The skin of a slender cask moves what its sensors read by less than the tolerances do.
-    assert!(
-        passed == 0 && 5 * named >= 2 * told && told > 0,
-        "{named} of {told} named, {passed} pass wrongly"
-    );
+    assert!(passed == 0 && 2 * named >= told && told > 0, "{named} of {told} named, {passed} pass wrongly");
 }
