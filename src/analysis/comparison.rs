@@ -5,8 +5,10 @@ use super::flight::Flown;
 use super::impact::Impact;
 use super::impacts::Tabulated;
 use crate::data::{
-    BodyModel, CaskFile, Comparison, DropFinding, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice,
+    BodyModel, CaskFile, Comparison, DropFinding, Events, Finding, FlightFit, GRAZE_SHARE, IssueCode,
+    ModelChoice,
 };
+use crate::motion::{self, Integrated};
 use crate::{compare, judge, predict};
 
 /// L falls on with more than this share of v0: what is left of it is a stage of one contact.
@@ -52,13 +54,9 @@ impl Measured {
             }));
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
-                findings.extend(judge::judge_blows(
-                    impact.recorded(),
-                    flight,
-                    events,
-                    findings,
-                    file.cask.length_m,
-                ));
+                let length_m = file.cask.length_m;
+                let blows = judge::judge_blows(impact.recorded(), flight, events, findings, length_m);
+                findings.extend(blows.filter(|blows| moves_the_cask(blows, flight, impact, events, file)));
             }
         }
         let is_contradicted = findings.iter().any(judge::contradicts_motion);
@@ -99,6 +97,30 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let left_out = || judge::judge_touch(motion, quantities, touched_m_s, &file.cask);
     found.extend((!is_followed).then(left_out).flatten());
     found
+}
+
+/// Whether shocks in the flight change the motion where the first or the last of them is, or too little of the
+/// flight is there to tell: modes that a prediction has no room for look like shocks and change nothing.
+fn moves_the_cask(
+    shocks: &Finding,
+    flight: &FlightFit,
+    impact: &Impact,
+    events: &Events,
+    file: &CaskFile,
+) -> bool {
+    let (signals, drop) = (&impact.signals, &file.drop);
+    let window = motion::Window {
+        from_s: flight.from_s,
+        to_s: events.slap_down_s().map_or(flight.to_s, |struck_s| struck_s - motion::BEFORE_SLAP_DOWN_S),
+        drift: flight.drift,
+        angular_velocity_rad_s: motion::turned_rad_s(signals, flight, drop.angular_velocity_rad_s),
+    };
+    let integrated = Integrated::over(signals, impact.contact.time_s);
+    let step_m_s = |at_s| motion::step_m_s(flight, &integrated, &window, file.cask.cog_m, at_s);
+    [shocks.from_s, shocks.to_s]
+        .into_iter()
+        .flatten()
+        .any(|at_s| step_m_s(at_s).is_none_or(|by| judge::moves_the_cask(by, drop.impact_velocity_m_s)))
 }
 
 /// What touches of L that are too shallow to count as impacts change of the predicted slap-down speed, m/s.

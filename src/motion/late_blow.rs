@@ -3,7 +3,7 @@
 use super::flight::{oscillation, series};
 use super::{Integrated, Window};
 use crate::data::{Axis, FlightFit, Strike};
-use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, fit};
+use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, Series, fit};
 
 /// Places tried over the flight, and about the best of them.
 const PLACES: u32 = 24;
@@ -12,6 +12,8 @@ const REFINED: u32 = 8;
 /// slap-down.
 const FIRST_PART: f64 = 0.1;
 const LAST_PART: f64 = 0.06;
+/// Of a long flight so much on either side of a step tells its size, s.
+const ABOUT_S: f64 = 0.05;
 /// Fewest points of a flight in which a step is told from a mode.
 const FEWEST: usize = 30;
 
@@ -24,7 +26,7 @@ const FEWEST: usize = 30;
 pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) -> Option<Strike> {
     let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };
     let series = series(integrated, &window, cog_m);
-    if series.iter().any(|s| !s.steps_s.is_empty() || s.value.len() < FEWEST) {
+    if !is_told(&series) {
         return None;
     }
     let mut strongest: Vec<_> = flight.modes.iter().collect();
@@ -48,15 +50,41 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
     if !(share(0)..=share(PLACES)).contains(&(after_s / length_s)) {
         return None;
     }
-    let jumps = steps[form].at(after_s)?;
-    let of_transverse = integrated.signals.iter().zip(jumps).filter(|(s, _)| s.axis == Axis::Transverse);
     Some(Strike {
         time_s: window.from_s + after_s,
-        step_m_s: of_transverse
-            .map(|(_, (jump_m_s, _))| jump_m_s)
-            .max_by(|a, b| a.abs().total_cmp(&b.abs()))?,
+        step_m_s: largest_m_s(integrated, steps[form].at(after_s)?)?,
         gain: taken.bic(&series, taken.correlation) - bic,
     })
+}
+
+/// The largest step of a transverse channel's velocity at a time within the window, beside the flight's
+/// modes, m/s; `None` where too little of it lies on either side, or samples are missing.
+pub fn step_m_s(
+    flight: &FlightFit,
+    integrated: &Integrated,
+    window: &Window,
+    cog_m: f64,
+    at_s: f64,
+) -> Option<f64> {
+    let (from_s, to_s) = (window.from_s.max(at_s - ABOUT_S), window.to_s.min(at_s + ABOUT_S));
+    let series = series(integrated, &Window { from_s, to_s, ..*window }, cog_m);
+    if !is_told(&series) {
+        return None;
+    }
+    let modes: Vec<Oscillation> = flight.modes.iter().map(oscillation).collect();
+    let steps = CommonStep::new(&series, &modes, Form::free(flight.drift))?;
+    largest_m_s(integrated, steps.at(at_s - from_s)?)
+}
+
+/// Whether the series have points enough for a step, and no gaps.
+fn is_told(series: &[Series]) -> bool {
+    series.iter().all(|s| s.steps_s.is_empty() && s.value.len() >= FEWEST)
+}
+
+/// The largest of the channels' jumps that a transverse one shows, m/s.
+fn largest_m_s(integrated: &Integrated, jumps: Vec<(f64, f64)>) -> Option<f64> {
+    let of_transverse = integrated.signals.iter().zip(jumps).filter(|(s, _)| s.axis == Axis::Transverse);
+    of_transverse.map(|(_, (jump_m_s, _))| jump_m_s).max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown
 pub use flight::{compare_late, fit_flights};
 pub use histories::drive;
 pub use landing::landing;
-pub use late_blow::strike;
+pub use late_blow::{step_m_s, strike};
 pub use local::{CornerRinging, ringing_of_second_end};
 pub use others::{other_curve, strongest_line};
 pub use reconstruct::{outcome, reconstruct, with_states};
