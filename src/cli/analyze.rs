@@ -6,10 +6,9 @@ use super::output::{Folder, JsonTarget, columns, note, print};
 use super::pdf;
 use super::progress::with_progress;
 use super::rerun::{self, EarlierResult};
-use super::tuning::{keep_freed_memory, keep_threads_awake};
 use crate::analysis::{read_within, take_rest};
 use crate::data::keys::CORRECTIONS;
-use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting, Verdict};
+use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, Setting, Verdict};
 use crate::{ingest, report};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
@@ -160,17 +159,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let repeated = earlier.as_ref().and_then(EarlierResult::rest);
     cask_file.rest = arguments.rest.clone().or(repeated).or(cask_file.rest);
     let recording = with_progress("reading", |progress| {
-        let read = || read_within(&arguments.recording, &cask_file, limits, progress);
-        // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all
-        // threads at work.
-        let is_mcap = matches!(ingest::format(&arguments.recording), Ok(RecordingFormat::Mcap));
-        if is_mcap { keep_threads_awake(read) } else { read() }
+        read_within(&arguments.recording, &cask_file, limits, progress)
     })?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
         folder.spares_others(&recording.sha256)?;
     }
-    keep_freed_memory();
-    let mut analysis = keep_threads_awake(|| crate::analyze(&recording, &cask_file));
+    let mut analysis = crate::analyze(&recording, &cask_file);
     switched_off.in_settings(&mut analysis.result);
     rerun::stamp(&mut analysis.result, rerun::words())?;
     let ([same, otherwise], repeated) = match &earlier {

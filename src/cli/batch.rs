@@ -16,7 +16,6 @@ use super::limits::Bounds;
 use super::lines::{self, LineOutput, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print};
 use super::rerun::stamp;
-use super::tuning::keep_freed_memory;
 use crate::analysis::read_within;
 use crate::data::{Analysis, CaskFile};
 use crate::ingest::bytes_of;
@@ -84,7 +83,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         .jobs
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let mut batch = Batch::new(plan.source.clone());
-    keep_freed_memory();
     let make = |number: usize, earlier: Option<&str>| {
         let is_done = earlier.is_some_and(|line| is_done(line, &plan.tests[number], arguments));
         Ok((!is_done).then(|| line(&plan, number, arguments)))

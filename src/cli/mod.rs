@@ -20,7 +20,6 @@ mod progress;
 mod protected_folders;
 mod replace;
 mod rerun;
-mod tuning;
 
 pub use crate::report::message;
 #[cfg(feature = "lab")]
