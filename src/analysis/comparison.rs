@@ -99,8 +99,8 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     found
 }
 
-/// Whether shocks in the flight change the motion where the first or the last of them is, or too little of the
-/// flight is there to tell: modes that a prediction has no room for look like shocks and change nothing.
+/// Whether shocks in the flight change the motion where the first or the last of them is, or too little of
+/// the flight is there to tell: modes that a prediction has no room for look like shocks and change nothing.
 fn moves_the_cask(
     shocks: &Finding,
     flight: &FlightFit,
