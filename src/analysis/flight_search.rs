@@ -412,7 +412,7 @@ impl Search<'_> {
     /// what is allowed; below 1 nothing speaks against it.
     fn cost(&self, found: &FoundFlight) -> f64 {
         let Some(flight) = &found.flight else { return f64::INFINITY };
-        let left_m_s = flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+        let left_m_s = flight.plateaus.iter().map(|p| p.slow_residual_m_s).fold(0.0, f64::max);
         let most_left_m_s = if flight.is_told_apart() {
             EXPLAINED_M_S
         } else {
@@ -436,7 +436,7 @@ impl Search<'_> {
 }
 
 fn is_explained(flight: &FlightFit) -> bool {
-    flight.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S)
+    flight.plateaus.iter().all(|p| p.slow_residual_m_s < EXPLAINED_M_S)
 }
 
 /// Whether the flight is explained by modes that it shows for long enough: another beginning would end there

@@ -46,6 +46,9 @@ pub struct Plateau {
     pub u_zero_shift_m_s2: f64,
     /// RMS of what the fit leaves, m/s.
     pub residual_m_s: f64,
+    /// RMS of that in means over a 24th of the window, m/s: what of it may move the plateau.
+    #[serde(skip)]
+    pub slow_residual_m_s: f64,
     /// Cosine and sine amplitude of each mode at the window's start, m/s.
     pub ringing_m_s: Vec<(f64, f64)>,
     /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long
@@ -180,6 +183,13 @@ impl FlightFit {
         first.max(second) > alone * first.min(second)
     }
 
+    /// Largest amplitude of a mode over the transverse channels, m/s.
+    pub fn size_m_s(&self, mode: usize, signals: &[Signal]) -> f64 {
+        let across = signals.iter().zip(&self.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
+        let sizes_m_s = across.filter_map(|(_, p)| p.ringing_m_s.get(mode)).map(|(a, b)| a.hypot(*b));
+        sizes_m_s.fold(0.0, f64::max)
+    }
+
     /// How far the outermost channel on the first end goes along with that on the second in a mode, as a
     /// share of it; negative where it goes the other way.
     pub fn goes_along(&self, mode: usize, signals: &[Signal]) -> f64 {
@@ -198,10 +208,12 @@ impl FlightFit {
     /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
     /// slowest in which they go together; or as far as one another where bending would let them differ.
     pub fn swinging(&self, signals: &[Signal], length_m: f64) -> usize {
-        let largest_m_s = self.modes.iter().map(|m| m.amplitude_m_s).fold(0.0, f64::max);
+        // What axial channels show of a mode is its slope.
+        let sizes_m_s: Vec<f64> = (0..self.modes.len()).map(|mode| self.size_m_s(mode, signals)).collect();
+        let largest_m_s = sizes_m_s.iter().fold(0.0, |a: f64, b| a.max(*b));
         let goes = |(i, m): (usize, &Mode)| {
             let along = self.goes_along(i, signals);
-            (m.amplitude_m_s > SHOWN * largest_m_s).then_some((m.frequency_hz, along))
+            (sizes_m_s[i] > SHOWN * largest_m_s).then_some((m.frequency_hz, along))
         };
         let shown: Vec<(f64, f64)> = self.modes.iter().enumerate().filter_map(goes).collect();
         let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ALONE);
@@ -332,6 +344,29 @@ mod tests {
         // At 0.06 and 0.86 of its length a beam that bends goes twice as far at the first place.
         assert_eq!(of_modes(&[(45.0, 1.9), (150.0, 1.9)], 4.3), 0);
         assert_eq!(of_modes(&[(45.0, 1.0), (150.0, 1.9)], 4.3), 1, "ends that go as far as one another");
+    }
+
+    #[test]
+    fn a_mode_that_axial_channels_show_is_no_swing() {
+        let signal = |end, axis| Signal { end, axis, ..example::signal(1e4, vec![]) };
+        let (first, second) = ((End::First, 1.0), (End::Second, -1.0));
+        let channels = [
+            (first, Axis::Transverse),
+            (second, Axis::Transverse),
+            (first, Axis::Axial),
+            (second, Axis::Axial),
+        ];
+        let signals = channels.map(|((end, _), axis)| signal(end, axis));
+        let plateau = |((_, sign), axis): ((End, f64), Axis)| {
+            let ringing_m_s = if axis == Axis::Axial {
+                vec![(0.0, 0.1), (0.0, 1.0)]
+            } else {
+                vec![(0.0, 1.0), (0.0, 0.05 * sign)]
+            };
+            Plateau { ringing_m_s, ..example::plateau("A", 0.0) }
+        };
+        let plateaus = channels.map(plateau).into();
+        assert_eq!(FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) }.swinging(&signals, 5.0), 0);
     }
 
     #[test]

@@ -163,7 +163,7 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, le
         let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
         findings.extend(mismatch_m_s.map(late));
         let short_m_s = if flight.is_told_apart() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
-        let &Plateau { residual_m_s, u_m_s, .. } = plateau;
+        let &Plateau { slow_residual_m_s: residual_m_s, u_m_s, .. } = plateau;
         if residual_m_s > LARGE_RESIDUAL_M_S.min(short_m_s) || u_m_s > LARGE_U_SHARE * v0_m_s {
             let found = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
             findings.push(found.on(&plateau.channel).between(flight.from_s, flight.to_s));
@@ -209,11 +209,7 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 
 /// The slowest mode where a cask that bends has none, and both ends go along.
 fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, length_m: f64) -> Option<Finding> {
-    let across = || signals.iter().zip(&flight.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
-    let size_m_s = |mode: usize| {
-        let sizes_m_s = across().filter_map(|(_, p)| p.ringing_m_s.get(mode)).map(|(a, b)| a.hypot(*b));
-        sizes_m_s.fold(0.0, f64::max)
-    };
+    let size_m_s = |mode| flight.size_m_s(mode, signals);
     let mut modes = (0..flight.swinging(signals, length_m)).filter(|mode| !flight.is_bend(*mode, signals));
     let mode = modes.find(|mode| size_m_s(*mode) > LARGE_BEND * v0_m_s)?;
     let found =

@@ -366,6 +366,7 @@ pub(super) fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<P
                 zero_shift_m_s2: own.drift,
                 u_zero_shift_m_s2: own.u_drift,
                 residual_m_s: own.residual,
+                slow_residual_m_s: own.slow_residual,
                 ringing_m_s: own.amplitudes.clone(),
                 late_mismatch_m_s: None,
             }

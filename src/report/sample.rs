@@ -265,6 +265,7 @@ fn flight() -> FlightFit {
         zero_shift_m_s2: 0.0,
         u_zero_shift_m_s2: 0.0,
         residual_m_s: 0.032,
+        slow_residual_m_s: 0.032,
         ringing_m_s: vec![(0.7, -0.4)],
         late_mismatch_m_s: None,
     };

@@ -4,7 +4,11 @@ use super::drive::Form;
 use super::projection::{Projected, rms};
 use super::series::{Fit, Oscillation, Series, SeriesFit};
 use crate::numerics::as_f64;
+use crate::numerics::reduce::finite_block_means;
 use nalgebra::{DMatrix, DVector};
+
+/// Stretches of a series over whose means what is left counts as slow.
+const STRETCHES: usize = 24;
 
 /// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points
 /// over.
@@ -33,6 +37,7 @@ fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form, projecte
             u_drift: 0.0,
             amplitudes: form.amplitudes(&modes, &solution.as_slice()[fixed + jumps..]),
             residual: rms(residual),
+            slow_residual: rms(&stretch_means(residual)),
             jumps: solution.as_slice()[fixed..fixed + jumps].to_vec(),
         });
     }
@@ -45,6 +50,11 @@ fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form, projecte
         correlation: (1.0 + lag) / (1.0 - lag),
         parameters,
     }
+}
+
+/// Means over a 24th of the series each.
+fn stretch_means(residual: &DVector<f64>) -> DVector<f64> {
+    DVector::from_vec(finite_block_means(residual.as_slice(), residual.len().div_ceil(STRETCHES)))
 }
 
 /// Lag-one autocorrelation.

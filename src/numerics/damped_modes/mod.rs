@@ -93,6 +93,23 @@ mod tests {
     }
 
     #[test]
+    fn what_oscillates_fast_is_left_but_not_slowly() {
+        let left = |change: fn(f64) -> f64| {
+            let mut series = ringing(&[], 0.0);
+            for s in &mut series {
+                s.value.iter_mut().zip(&s.time_s).for_each(|(value, t)| *value += change(*t));
+            }
+            let fit = fit(&series, &[], None, Form::free(false)).expect("a line");
+            (fit.series[0].residual, fit.series[0].slow_residual)
+        };
+        // A sine of 600 Hz has 1.5 periods in a 24th of 60 ms, of which the mean is 2/3π times half of it.
+        let (fast, slow) = left(|t| (TAU * 600.0 * t).sin());
+        assert!((fast - 0.5_f64.sqrt()).abs() < 0.01 && (slow - 0.212).abs() < 0.02, "{fast}, {slow}");
+        let (step, slow) = left(|t| if t > 0.03 { 1.0 } else { 0.0 });
+        assert!((step - 0.5).abs() < 0.01 && (slow - step).abs() < 0.01, "{step}, {slow}");
+    }
+
+    #[test]
     fn the_criterion_counts_the_modes() {
         let two = [
             Oscillation { frequency_hz: 62.0, damping: 0.02 },

@@ -39,6 +39,8 @@ pub struct SeriesFit {
     pub amplitudes: Vec<(f64, f64)>,
     /// RMS of what is left.
     pub residual: f64,
+    /// RMS of its means over a 24th of the series: of what oscillates faster than that next to nothing.
+    pub slow_residual: f64,
     /// Jumps at `steps_s`.
     pub jumps: Vec<f64>,
 }
