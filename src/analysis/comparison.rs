@@ -56,7 +56,7 @@ impl Measured {
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
                 let length_m = file.cask.length_m;
                 let blows = judge::judge_blows(impact.recorded(), flight, events, findings, length_m);
-                findings.extend(blows.filter(|blows| moves_the_cask(blows, flight, impact, events, file)));
+                findings.extend(blows.filter(|blows| change_the_motion(blows, flight, impact, events, file)));
             }
         }
         let is_contradicted = findings.iter().any(judge::contradicts_motion);
@@ -101,7 +101,7 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
 
 /// Whether shocks in the flight change the motion where the first or the last of them is, or too little of
 /// the flight is there to tell: modes that a prediction has no room for look like shocks and change nothing.
-fn moves_the_cask(
+fn change_the_motion(
     shocks: &Finding,
     flight: &FlightFit,
     impact: &Impact,

@@ -158,9 +158,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let limits = arguments.bounds.limits();
     let repeated = earlier.as_ref().and_then(EarlierResult::rest);
     cask_file.rest = arguments.rest.clone().or(repeated).or(cask_file.rest);
-    let recording = with_progress("reading", |progress| {
-        read_within(&arguments.recording, &cask_file, limits, progress)
-    })?;
+    let recording =
+        with_progress("reading", |progress| read_within(&arguments.recording, &cask_file, limits, progress))?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
         folder.spares_others(&recording.sha256)?;
     }
