@@ -15,8 +15,8 @@ const PARTS: f64 = 32.0;
 /// Rounds of the search for the force, and the rebound that ends it, m/s: one more secant follows it.
 const ROUNDS: usize = 30;
 const CLOSE_M_S: f64 = 1e-5;
-/// More energy than this, over that before it, no contact gives: half sines that swing a short rod through the
-/// target in a long contact would.
+/// More energy than this, over that before it, no contact gives: half sines that swing a short rod through
+/// the target in a long contact would.
 const MOST_ENERGY: f64 = 1.05;
 /// R lower than this above the target as L strikes strikes with it, m.
 const FLAT_M: f64 = 1e-9;
@@ -36,8 +36,8 @@ struct Pulse<'a> {
 /// impulse   (41)
 ///
 /// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by
-/// moment. Where no such force is found, or one that adds energy, the impulse stands. Where R strikes while L is still pressed on, the
-/// motion is that, with the time since first contact, s.
+/// moment. Where no such force is found, or one that adds energy, the impulse stands. Where R strikes while L
+/// is still pressed on, the motion is that, with the time since first contact, s.
 pub(super) fn push_first_end(
     body: &Body,
     before: &State,
