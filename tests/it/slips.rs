@@ -226,16 +226,17 @@ fn drawn_drop(seed: u64) -> SceneFile {
          [second_end]\npulse_ms = {second_ms}\nk = {second_k}\n\
          [[mode]]\nfrequency_hz = {bending_hz}\ndamping = 0.03\n[recording]\nbefore_s = 0.15\nafter_s = 0.1\n"
     );
-    for (name, end, axis, position_m) in [
+    let channels = [
         ("A1", "first", "transverse", 0.15),
         ("A2", "second", "transverse", length_m - 0.15),
         ("A3", "first", "axial", 0.15),
-    ] {
-        scene += &format!(
+    ];
+    scene += &channels.map(|(name, end, axis, position_m)| {
+        format!(
             "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"{axis}\"\nposition_m = {position_m}\n\
              sample_rate_hz = 20000\nanti_alias_hz = 6000.0\nwhite_noise_g = 0.1\n"
-        );
-    }
+        )
+    }).concat();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.toml");
     fs::write(&path, scene).expect("a scene");
