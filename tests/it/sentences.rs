@@ -127,13 +127,17 @@ fn hold_reconstruction(result: &DropResult, text: &str, name: &str) -> Option<()
         within(a.speed, b.speed) && within(a.k, b.k)
     };
     let first = (0..all.len()).find(|&i| all[i].consistent && all[i + 1..].iter().all(|b| stays(&all[i], b)));
-    assert_eq!(all[first.unwrap_or(all.len() - 1)].rung, choice.rung, "{name}");
+    // Where a finding takes the numbers away the table has none to hold the rung to.
+    let is_told = all.iter().any(|candidate| candidate.k.is_some());
+    assert!(!is_told || all[first.unwrap_or(all.len() - 1)].rung == choice.rung, "{name}");
     if let Some((before, said)) = text.split_once(" closures the worst, ") {
         let count = before.rsplit(' ').next().and_then(|count| count.parse().ok());
         assert_eq!(count, Some(choice.closures.len()), "{name}");
-        let worst =
-            choice.closures.iter().find(|closure| said.starts_with(&closure.name)).expect("a closure");
-        assert!(choice.closures.iter().all(|closure| closure.most_in_u() <= worst.most_in_u()), "{name}");
+        // Of "level of A1" and "level of A11" it is the longer one.
+        let named = choice.closures.iter().filter(|closure| said.starts_with(&closure.name));
+        let worst = named.max_by_key(|closure| closure.name.len()).expect("a closure");
+        let most_in_u = choice.closures.iter().map(dropcheck::data::Closure::most_in_u);
+        assert!(most_in_u.max_by(f64::total_cmp) <= Some(worst.most_in_u()), "{name}: {said:.200}");
     }
     let moved = choice.adjustments.iter().map(|input| input.moved_in_u.abs());
     assert!(moved.is_sorted_by(|a, b| a >= b), "{name}: what the joint fit moves, the largest first");
