@@ -30,9 +30,6 @@ const HOLD_SHARE: f64 = 0.02;
 /// Held without a bound, a corner that comes back would be thrown off by the hold itself, again and again.
 const ROUGH: f64 = 100.0;
 
-/// Loose masses farther from their pads than the modes could bend the cask, so many times, fly.
-const BENDS: f64 = 1.5;
-
 /// Greatest friction at R: there, both ends may be down, and two corners that stick would fight over one
 /// body.
 const SECOND_END_FRICTION: f64 = 0.5;
@@ -139,13 +136,6 @@ impl<'a> SceneBody<'a> {
         let (xi_m, mut eta_m) = (x_m * cos + z_m * sin, z_m * cos - x_m * sin);
         let mut rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
         if self.acts_back {
-            // No beam bends farther within than at its ends.
-            let bent_m =
-                |(q, [[_, l], [_, r]]): (usize, &[[f64; 2]; 2])| l.abs().max(r.abs()) * y[6 + 2 * q].abs();
-            let most_m = BENDS * self.ends.iter().enumerate().map(bent_m).sum::<f64>();
-            if (most_m - loose.gap_m..loose.play_m - loose.gap_m - most_m).contains(&eta_m) {
-                return Blow { xi_m, force_n: 0.0 };
-            }
             for (q, mode) in self.modes.iter().enumerate() {
                 let bends = mode.shape(self.share(xi_m));
                 (eta_m, rising_m_s) = (eta_m - bends * y[6 + 2 * q], rising_m_s - bends * y[7 + 2 * q]);
@@ -315,11 +305,10 @@ impl<'a> SceneBody<'a> {
         let cask = &self.scene.cask;
         for (i, loose) in self.loose() {
             let Blow { xi_m, force_n } = self.blow(loose, i, y);
-            let is_struck = force_n != 0.0;
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
             let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
-            for (q, mode) in self.modes.iter().enumerate().filter(|_| is_struck) {
+            for (q, mode) in self.modes.iter().enumerate() {
                 rates[7 + 2 * q] -= force_n * mode.shape(self.share(xi_m)) / cask.mass_kg;
             }
         }
