@@ -77,6 +77,8 @@ pub(super) struct SceneBody<'a> {
     acts_back: bool,
     /// Where the state of what is loose begins.
     loose_from: usize,
+    /// Deflection of each mode where each loose mass lies, at its pads.
+    at_pads: Vec<Vec<f64>>,
 }
 
 impl<'a> SceneBody<'a> {
@@ -84,8 +86,12 @@ impl<'a> SceneBody<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let (mass_kg, modes) = (scene.cask.mass_kg, elastic::modes(scene));
         let acts_back = scene.elastic.is_some();
+        let at_pads = |loose: &LooseMass| {
+            modes.iter().map(|mode| mode.shape(loose.position_m / scene.cask.length_m)).collect()
+        };
         Self {
             scene,
+            at_pads: scene.extras.contents.iter().map(at_pads).collect(),
             corners: [
                 CrushingCorner::new(scene.first_end, mass_kg, true),
                 CrushingCorner::new(scene.second_end, mass_kg, false),
@@ -114,7 +120,7 @@ impl<'a> SceneBody<'a> {
         y[5] = -drop.angular_velocity_rad_s;
         y[4] = -drop.impact_velocity_m_s - y[5] * first.x_m;
         let (sin, cos) = drop.angle_rad.sin_cos();
-        for (i, loose) in self.loose() {
+        for (i, loose, _) in self.loose() {
             let xi_m = loose.position_m - self.scene.cask.cog_m;
             let (x_m, z_m) = (xi_m * cos, xi_m * sin);
             let start = [x_m, y[1] + z_m, y[3] - y[5] * z_m, y[4] + y[5] * x_m];
@@ -123,21 +129,21 @@ impl<'a> SceneBody<'a> {
         y
     }
 
-    /// The loose masses, each with its place in the state.
-    fn loose(&self) -> impl Iterator<Item = (usize, &LooseMass)> {
-        (self.loose_from..).step_by(4).zip(&self.scene.extras.contents)
+    /// The loose masses, each with its place in the state and the deflections at its pads.
+    fn loose(&self) -> impl Iterator<Item = (usize, &LooseMass, &[f64])> {
+        let masses = (self.loose_from..).step_by(4).zip(&self.scene.extras.contents);
+        masses.zip(&self.at_pads).map(|((i, loose), bends)| (i, loose, &bends[..]))
     }
 
     /// The blow of the pads on a loose mass at place `i` of the state.
-    fn blow(&self, loose: &LooseMass, i: usize, y: &[f64]) -> Blow {
+    fn blow(&self, (i, loose, bends): (usize, &LooseMass, &[f64]), y: &[f64]) -> Blow {
         let (sin, cos) = y[2].sin_cos();
         let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
         let (x_m, z_m) = (y[i] - x, y[i + 1] - z);
         let (xi_m, mut eta_m) = (x_m * cos + z_m * sin, z_m * cos - x_m * sin);
         let mut rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
         if self.acts_back {
-            for (q, mode) in self.modes.iter().enumerate() {
-                let bends = mode.shape(self.share(xi_m));
+            for (q, bends) in bends.iter().enumerate() {
                 (eta_m, rising_m_s) = (eta_m - bends * y[6 + 2 * q], rising_m_s - bends * y[7 + 2 * q]);
             }
         }
@@ -149,11 +155,6 @@ impl<'a> SceneBody<'a> {
         let below_n = pad_n(-loose.gap_m - eta_m, -rising_m_s);
         let above_n = pad_n(eta_m - (loose.play_m - loose.gap_m), rising_m_s);
         Blow { xi_m, force_n: below_n - above_n }
-    }
-
-    /// The share of the length at which a place lies, m from S along the axis.
-    fn share(&self, xi_m: f64) -> f64 {
-        (xi_m + self.scene.cask.cog_m) / self.scene.cask.length_m
     }
 
     /// Place and motion of L (0) or R (1), as the target meets it.
@@ -275,8 +276,8 @@ impl<'a> SceneBody<'a> {
             normal_n += n;
             moment_n_m += self.arm_m(end, &at) * n - at.z_m * t;
         }
-        for (i, loose) in self.loose() {
-            let Blow { xi_m, force_n } = self.blow(loose, i, y);
+        for loose in self.loose() {
+            let Blow { xi_m, force_n } = self.blow(loose, y);
             let (sin, cos) = y[2].sin_cos();
             tangential_n += force_n * sin;
             normal_n -= force_n * cos;
@@ -303,13 +304,13 @@ impl<'a> SceneBody<'a> {
         }
         let (sin, cos) = y[2].sin_cos();
         let cask = &self.scene.cask;
-        for (i, loose) in self.loose() {
-            let Blow { xi_m, force_n } = self.blow(loose, i, y);
+        for (i, loose, bends) in self.loose() {
+            let Blow { force_n, .. } = self.blow((i, loose, bends), y);
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
             let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
-            for (q, mode) in self.modes.iter().enumerate() {
-                rates[7 + 2 * q] -= force_n * mode.shape(self.share(xi_m)) / cask.mass_kg;
+            for (q, bends) in bends.iter().enumerate() {
+                rates[7 + 2 * q] -= force_n * bends / cask.mass_kg;
             }
         }
         rates
@@ -322,7 +323,7 @@ impl<'a> SceneBody<'a> {
         let listed = self.scene.modes.iter().chain(self.modes.iter().map(|mode| &mode.mode));
         let modes = listed.map(|mode| counts * std::f64::consts::TAU * mode.frequency_hz);
         let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
-        let pads = self.loose().map(|(_, loose)| PI / loose.pulse_s);
+        let pads = self.loose().map(|(_, loose, _)| PI / loose.pulse_s);
         modes.chain(corners).chain(pads).fold(0.0, f64::max)
     }
 }
