@@ -245,7 +245,17 @@ fn no_file_is_opened_but_the_recording() {
     // One file a thread and process.
     let traces = std::fs::read_dir(folder.path()).unwrap().flatten();
     let traces: Vec<String> = traces.map(|entry| std::fs::read_to_string(entry.path()).unwrap()).collect();
-    let of_system = ["/proc/self/", "/sys/fs/cgroup/", "/etc/ld.so.", "/lib", "/usr/lib", "/dev/null"];
+    // The last two are what glibc's heap asks of the system where more than eight threads use it.
+    let of_system = [
+        "/proc/self/",
+        "/sys/fs/cgroup/",
+        "/etc/ld.so.",
+        "/lib",
+        "/usr/lib",
+        "/dev/null",
+        "/proc/sys/vm/overcommit_memory",
+        "/sys/devices/system/cpu/online",
+    ];
     let is_known = |path: &str| {
         of_system.iter().any(|place| path.starts_with(place))
             || [&recording, &cask].iter().any(|input| Path::new(path) == input.as_path())
