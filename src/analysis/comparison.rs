@@ -54,8 +54,7 @@ impl Measured {
             }));
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
-                let length_m = file.cask.length_m;
-                let blows = judge::judge_blows(impact.recorded(), flight, events, findings, length_m);
+                let blows = judge::judge_blows(impact.recorded(), flight, events, findings, &file.cask);
                 findings.extend(blows.filter(|blows| change_the_motion(blows, flight, impact, events, file)));
             }
         }

@@ -389,8 +389,7 @@ impl Search<'_> {
             slap_down: found.slap_down,
             ..Events::default()
         };
-        let length_m = self.file.cask.length_m;
-        let blows = judge::judge_blows(signals, found.flight.as_ref()?, &times, &[], length_m)?;
+        let blows = judge::judge_blows(signals, found.flight.as_ref()?, &times, &[], &self.file.cask)?;
         let struck = signals.iter().find(|s| blows.channel.as_ref() == Some(&s.name))?;
         let left_s = found.separation.time_s;
         let is_stage = |at_s: &f64| *at_s - left_s < STAGE * (left_s - contact_s);

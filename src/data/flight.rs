@@ -146,13 +146,19 @@ const OVERTONE: f64 = 1.5;
 const SLOWEST_HZ: f64 = 16.5;
 
 /// The second bending mode, in which the ends go apart, is faster than the first by more than this: 2.76
-/// times in a uniform beam.
+/// times in a slender uniform beam.
 const SECOND_MODE: f64 = 1.8;
+/// The same of a beam of one height, and how it grows with the slenderness: 1.5 at two heights, where shear
+/// leaves 1.60 of it, 1.74 at 2.6, where it leaves 1.81 (Timoshenko beams of steel).
+const SECOND_MODE_THICK: (f64, f64) = (0.7, 0.4);
 /// No mount of contents that weigh tons is stiffer, Hz.
 const FASTEST_SWING_HZ: f64 = 100.0;
 /// In its first bending mode a uniform beam goes nearly straight from its end to a node at this share of its
 /// length.
 const NODE: f64 = 0.2155;
+/// Sensors farther in than this share of the length on either end stand so near to that node, or beyond it,
+/// that their signs tell no shape.
+const NEAR_NODE: f64 = 0.175;
 /// Ends that would differ by this factor in bending tell it from swinging.
 const TELLS: f64 = 1.3;
 /// A mode with less than this share of the largest says nothing of how the cask moves.
@@ -206,8 +212,14 @@ impl FlightFit {
 
     /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
     /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
-    /// slowest in which they go together; or as far as one another where bending would let them differ.
-    pub fn swinging(&self, signals: &[Signal], length_m: f64) -> usize {
+    /// slowest in which they go together; or as far as one another where bending would let them differ. Of a
+    /// cask of `height_m`; 0 where it is slender.
+    pub fn swinging(&self, signals: &[Signal], length_m: f64, height_m: f64) -> usize {
+        let second_mode = if height_m > 0.0 {
+            SECOND_MODE.min(SECOND_MODE_THICK.0 + SECOND_MODE_THICK.1 * length_m / height_m)
+        } else {
+            SECOND_MODE
+        };
         // What axial channels show of a mode is its slope.
         let sizes_m_s: Vec<f64> = (0..self.modes.len()).map(|mode| self.size_m_s(mode, signals)).collect();
         let largest_m_s = sizes_m_s.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -220,7 +232,7 @@ impl FlightFit {
         let mut apart = shown.iter().filter(|(_, along)| (-ALONE..-1.0 / ALONE).contains(along));
         let (slowest, next, apart) = (together.next(), together.next(), apart.next());
         let length_s = self.to_s - self.from_s;
-        let is_near = |hz: f64, than_hz: f64| hz < SECOND_MODE * than_hz;
+        let is_near = |hz: f64, than_hz: f64| hz < second_mode * than_hz;
         let apart_hz = apart.map(|apart| apart.0).filter(|apart_hz| {
             slowest.map_or(*apart_hz < FASTEST_SWING_HZ, |slowest| is_near(*apart_hz, slowest.0))
         });
@@ -230,14 +242,16 @@ impl FlightFit {
                 || apart_hz.is_some_and(|apart_hz| is_near(*hz, apart_hz))
         };
         let together_hz = slowest.filter(swings).map(|(hz, _)| *hz);
-        let up_to_hz = [apart_hz, together_hz].into_iter().flatten().fold(SLOWEST_BENDING_HZ, f64::max);
+        let by_shape_hz = [apart_hz, together_hz].into_iter().flatten();
+        let by_shape_hz = by_shape_hz.filter(|_| shows_shapes(signals, length_m));
+        let up_to_hz = by_shape_hz.fold(SLOWEST_BENDING_HZ, f64::max);
         self.modes.iter().take_while(|m| m.frequency_hz <= up_to_hz).count()
     }
 
     /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
     /// together, and which of these it is; 0 where the cask swings.
-    pub fn bending_orders(&self, signals: &[Signal], length_m: f64) -> Vec<u8> {
-        let (swinging, mut together) = (self.swinging(signals, length_m), 0);
+    pub fn bending_orders(&self, signals: &[Signal], length_m: f64, height_m: f64) -> Vec<u8> {
+        let (swinging, mut together) = (self.swinging(signals, length_m, height_m), 0);
         let order = |mode: usize| {
             let goes = mode >= swinging && self.goes_along(mode, signals) > 0.0;
             together += u8::from(goes);
@@ -283,10 +297,21 @@ impl FlightFit {
     }
 }
 
+/// Where the outermost transverse channels sit, as shares of the length.
+fn outermost(signals: &[Signal], length_m: f64) -> (f64, f64) {
+    let across = || signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.position_m / length_m);
+    (across().fold(f64::INFINITY, f64::min), across().fold(0.0, f64::max))
+}
+
+/// Whether the outermost channels stand clear of the first mode's nodes, so that their signs tell its shape.
+fn shows_shapes(signals: &[Signal], length_m: f64) -> bool {
+    let (first, last) = outermost(signals, length_m);
+    first.max(1.0 - last) < NEAR_NODE
+}
+
 /// Whether both ends go nearly as far as one another, where the first bending mode would let them differ.
 fn goes_straight(along: f64, signals: &[Signal], length_m: f64) -> bool {
-    let across = || signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.position_m / length_m);
-    let (first, last) = (across().fold(f64::INFINITY, f64::min), across().fold(0.0, f64::max));
+    let (first, last) = outermost(signals, length_m);
     let bent = (NODE - first) / (NODE - (1.0 - last));
     bent.ln().abs() > TELLS.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
 }
@@ -325,7 +350,7 @@ mod tests {
             };
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
             let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
-            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0)
+            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0, 0.0)
         };
         let swinging = |modes: &[(f64, f64)]| of_modes(modes, 4.7);
         assert_eq!(swinging(&[(80.0, 1.0), (220.0, -1.0)]), 0, "a uniform beam");
@@ -366,7 +391,7 @@ mod tests {
             Plateau { ringing_m_s, ..example::plateau("A", 0.0) }
         };
         let plateaus = channels.map(plateau).into();
-        assert_eq!(FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) }.swinging(&signals, 5.0), 0);
+        assert_eq!(FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) }.swinging(&signals, 5.0, 0.0), 0);
     }
 
     #[test]

@@ -11,6 +11,9 @@ const ABOVE_RINGING: f64 = 1.2;
 const HIGHEST_FOOT: f64 = 0.3;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
+/// Where noise lifts the foot above this share of the peak, it is sought on means: converters with a range
+/// for a slap-down of hundreds of g show a first impact of 20 g in their noise.
+const HIGHEST_NOISE: f64 = 0.1;
 /// Noise is passed by this many of its standard deviations.
 pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
@@ -183,9 +186,14 @@ fn onset(
     ringing_m_s2: f64,
 ) -> Option<OnsetFound> {
     let from = stretch.start;
-    let force = signal.force_m_s2.get(stretch)?;
-    let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
-    let foot = (FOOT * peak).max(NOISE_FACTOR * signal.noise_m_s2);
+    let sampled = signal.force_m_s2.get(stretch)?;
+    let peak_of = |force: &[f64]| force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
+    let (noise, largest) = (NOISE_FACTOR * signal.noise_m_s2, peak_of(sampled));
+    let calm = reduce::calmed(sampled, noise, HIGHEST_NOISE * largest, largest);
+    let width = calm.as_ref().map_or(1, |(_, width)| *width);
+    let force = calm.as_ref().map_or(sampled, |(means, _)| &means[..]);
+    let peak = peak_of(force);
+    let foot = (FOOT * peak).max(noise / as_f64(width).sqrt());
     if peak <= 2.0 * foot {
         return None;
     }
@@ -214,7 +222,9 @@ fn onset(
     // zero later.
     let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
     let steep = zero_of_line(&upper).map_or(0.0, |zero| zero.min(as_f64(high)) - position);
-    let u_s = ((crossing - position).max(steep).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
+    // What the foot hides of a rise that bends takes about as long as from there to twice the foot.
+    let hidden = (doubled - crossing).max(crossing - position);
+    let u_s = (hidden.max(steep).max(0.5 * as_f64(width)) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
     let border = match low {
         0 if sign * force[0] >= shoulder => Border::Shoulder,
         0 if sign * force[0] >= foot => Border::Foot,

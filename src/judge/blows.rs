@@ -2,7 +2,7 @@
 //! or in a train.
 
 use super::turned::turned_m_s2;
-use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
+use crate::data::{Cask, ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
 use crate::numerics::reduce::{self, block_means, block_of, converter_step, peak};
 use crate::numerics::{as_count, as_f64};
@@ -38,13 +38,13 @@ pub fn judge_blows(
     flight: &FlightFit,
     events: &Events,
     found: &[Finding],
-    length_m: f64,
+    cask: &Cask,
 ) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
     let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
     let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
-    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, length_m).abs();
+    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, cask).abs();
     let struck = whole.map(|s| (s, blows(s, &span_s, least_m_s2(s))));
     let (signal, blows) = struck.max_by(|a, b| hardest(&a.1).total_cmp(&hardest(&b.1)))?;
     let mut times_s: Vec<f64> = blows.iter().filter(|b| b.far > LIMIT).map(|b| b.time_s).collect();
@@ -147,7 +147,7 @@ mod tests {
     fn found(signal: &Signal, to_s: f64) -> Option<Finding> {
         let flight = example::flight(0.025, 0.1, vec![]);
         let events = example::events(0.02, to_s);
-        judge_blows(std::slice::from_ref(signal), &flight, &events, &[], 5.0)
+        judge_blows(std::slice::from_ref(signal), &flight, &events, &[], &example::cask(1.0, 5.0, 0.0))
     }
 
     #[test]

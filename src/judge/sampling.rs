@@ -1,7 +1,7 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
 use crate::data::{ChannelFinding, End, Events, Finding, Signal, transverse};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, reduce};
 use crate::numerics::spectrum::magnitude;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -40,14 +40,16 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
         return Vec::new();
     };
     let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
-    let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
+    let Some((pulse_s, Sampled { length_s, share })) = pulse(struck, contact_s..to_s) else {
+        return Vec::new();
+    };
     let contents: Vec<Option<BandContent>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
     let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
     let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut findings = Vec::new();
     for (signal, content) in signals.iter().zip(contents) {
         let is_filtered = content.as_ref().is_some_and(|found| found.in_band < LEAST_CONTENT * largest);
-        let low = low_rate(&signal.name, signal.sample_rate_hz, length_s).filter(|_| !is_filtered);
+        let low = low_rate(&signal.name, signal.sample_rate_hz, length_s, share).filter(|_| !is_filtered);
         findings.extend(low.map(|found| found.between(pulse_s.0, pulse_s.1)));
         if !disturbed.contains(&signal.name.as_str()) {
             findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
@@ -56,15 +58,29 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     findings
 }
 
-/// Where the force of the first pulse passes the lower flank and falls below it, and the length of a half
-/// sine as wide, s.
-fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
+/// A pulse as it was sampled.
+struct Sampled {
+    /// Of a half sine as wide, s.
+    length_s: f64,
+    /// What it has of the contact's change of velocity.
+    share: f64,
+}
+
+/// Where the force of the first pulse passes the lower flank and falls below it, s, and how it was sampled.
+fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), Sampled)> {
     let from = signal.index_from(contact_s.start).saturating_sub(1);
     let force = signal.force_m_s2.get(from..)?;
     let within = force.get(..signal.index_from(contact_s.end).saturating_sub(from) + 2).unwrap_or(force);
-    let peak = within.iter().fold(0.0_f64, |m, f| m.max(*f));
+    let largest = |force: &[f64]| force.iter().fold(0.0_f64, |m, f| m.max(*f));
+    let (noise, peak) = (NOISE_FACTOR * signal.noise_m_s2, largest(within));
+    let calm = reduce::calmed(within, noise, FLANKS[0].0 * peak, peak);
+    let (force, within, noise) = match &calm {
+        Some((means, width)) => (&means[..], &means[..], noise / as_f64(*width).sqrt()),
+        None => (force, within, noise),
+    };
+    let peak = largest(within);
     let reached = within.iter().position(|f| *f > REACHED * peak)?;
-    let [foot, shoulder] = FLANKS.map(|(share, _)| (share * peak).max(NOISE_FACTOR * signal.noise_m_s2));
+    let [foot, shoulder] = FLANKS.map(|(share, _)| (share * peak).max(noise));
     let low = (0..reached).rev().find(|&i| force[i] <= foot)?;
     let high = (reached..force.len()).find(|&i| force[i] <= foot)?;
     // Dips of ringing on the pulse do not end its upper half.
@@ -75,7 +91,9 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     let half = fall(high_half, shoulder) - rise(reached - 1, shoulder);
     let samples = ((whole.1 - whole.0) / FLANKS[0].1).min(half / FLANKS[1].1);
     let at_s = |position: f64| signal.time_s(from) + position / signal.sample_rate_hz;
-    (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), samples / signal.sample_rate_hz))
+    let share = (reduce::sum(&force[low..high]) / reduce::sum(within)).clamp(0.0, 1.0);
+    let sampled = Sampled { length_s: samples / signal.sample_rate_hz, share };
+    (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), sampled))
 }
 
 /// A sample rate that a pulse of this length asks for, Hz: twice the least, which leaves 0.2 % of its area.
@@ -88,12 +106,12 @@ pub fn nothing_from_hz(sample_rate_hz: f64) -> f64 {
     BAND * sample_rate_hz
 }
 
-/// Too few samples over a pulse of this length.
-pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64) -> Option<Finding> {
+/// Too few samples over a pulse of this length that makes a `share` of the velocity step.
+pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64, share: f64) -> Option<Finding> {
     let samples = length_s * sample_rate_hz;
-    (samples < LEAST_SAMPLES).then(|| {
+    (samples / share.sqrt() < LEAST_SAMPLES).then(|| {
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
-        let off_percent = 100.0 * PI * PI / 12.0 / (samples * samples);
+        let off_percent = 100.0 * share * PI * PI / 12.0 / (samples * samples);
         let least_hz = fit_rate_hz(length_s);
         let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
         found.on(name)

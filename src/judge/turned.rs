@@ -1,6 +1,6 @@
 //! The bending of an axial channel's place to what it reads because that turns it.
 
-use crate::data::{Axis, FlightFit, Mode, Signal};
+use crate::data::{Axis, Cask, FlightFit, Mode, Signal};
 use crate::numerics::free_beam::shape;
 use std::f64::consts::TAU;
 
@@ -9,7 +9,8 @@ const STEP: f64 = 1e-4;
 
 /// What a channel along the axis reads in the flight, in the mean, m/s²: the bending by w turns it by w′
 /// towards a force of ẅ across the axis; 0 of one across   (49)
-pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFit, length_m: f64) -> f64 {
+pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFit, cask: &Cask) -> f64 {
+    let length_m = cask.length_m;
     let across = signals.iter().filter(|s| signal.axis == Axis::Axial && s.axis == Axis::Transverse);
     let far_m = |s: &Signal| (s.position_m - signal.position_m).abs();
     let nearest = across.min_by(|a, b| far_m(a).total_cmp(&far_m(b)));
@@ -27,7 +28,7 @@ pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFi
     flight
         .modes
         .iter()
-        .zip(flight.bending_orders(signals, length_m))
+        .zip(flight.bending_orders(signals, length_m, cask.height_m))
         .zip(&plateau.ringing_m_s)
         .map(of_mode)
         .sum()
@@ -57,7 +58,7 @@ mod tests {
         let mode = Mode { frequency_hz: 80.0, damping: 0.0, amplitude_m_s: 5.0 };
         let plateaus = vec![plateau("A1"), plateau("A2"), plateau("X1"), plateau("X2")];
         let flight = FlightFit { modes: vec![mode], ..example::flight(0.0, 0.1, plateaus) };
-        let reads = |i: usize| turned_m_s2(&signals[i], &signals, &flight, 5.0);
+        let reads = |i: usize| turned_m_s2(&signals[i], &signals, &flight, &example::cask(1.0, 5.0, 0.0));
         // w′ ẅ of w = φ q: −φ′ φ (ω q)²/2 in the mean; φ = 1.536, φ′ = −9.25/5 m at 0.05 of the length.
         let wanted = 0.5 * 9.25 / 5.0 / 1.536 * 25.0;
         assert!((reads(2) / wanted - 1.0).abs() < 0.01, "{} {wanted}", reads(2));

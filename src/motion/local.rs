@@ -42,7 +42,7 @@ pub fn ringing_of_second_end(
     let gained_m_s = integrated.velocities[channel].at(before_s);
     let own_m_s = gained_m_s - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
-    let orders = flight.bending_orders(&integrated.signals, setup.length_m);
+    let orders = flight.bending_orders(&integrated.signals, setup.length_m, setup.height_m);
     for (i, (mode, order)) in flight.modes.iter().zip(orders).enumerate() {
         let Some(size) = plateau.ringing_m_s.get(i) else { continue };
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };

@@ -19,6 +19,26 @@ pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
     samples.chunks_exact(block).map(|chunk| sum(chunk) / as_f64(block)).collect()
 }
 
+/// A moving mean of the values, and how many it takes: so many that white noise of `noise` falls to `least`,
+/// but no more than a tenth of the pulse they hold is long, which is their sum over their `peak`. `None`
+/// where fewer than three do.
+pub fn calmed(values: &[f64], noise: f64, least: f64, peak: f64) -> Option<(Vec<f64>, usize)> {
+    let longest = as_count(sum(values).abs() / peak / 10.0);
+    let half = as_count((noise / least).powi(2)).min(longest) / 2;
+    if half == 0 || half >= values.len() {
+        return None;
+    }
+    let mut sums = vec![0.0; values.len() + 1];
+    for (i, value) in values.iter().enumerate() {
+        sums[i + 1] = sums[i] + value;
+    }
+    let mean = |i: usize| {
+        let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
+        (sums[to] - sums[from]) / as_f64(to - from)
+    };
+    Some(((0..values.len()).map(mean).collect(), 2 * half + 1))
+}
+
 /// Means of blocks, the last one as long as it is, of their finite values each; NaN where there is none.
 pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> Vec<f64> {
     let mean = |chunk: &[T]| {
