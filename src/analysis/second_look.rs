@@ -53,7 +53,11 @@ pub(super) fn closes(analysis: &Analysis) -> bool {
 /// `found`, or what is found without the one transverse channel that the others and the closures speak
 /// against, whatever the order of all.
 pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analysis) -> Analysis {
-    let is_doubted = found.result.quality.iter().any(|f| f.severity > Severity::Note);
+    // A warning that contradicts neither the motion nor the other channels has another reason.
+    let result = &found.result;
+    let is_off_line = |f: &Finding| f.code == IssueCode::NotRigid && f.severity > Severity::Note;
+    let has_numbers = result.slap_down.speed.is_some() && result.k.is_some();
+    let is_doubted = !has_numbers || !closes(&found) || result.quality.iter().any(is_off_line);
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let spare: Vec<&str> = across.map(|c| c.name.as_str()).collect();
     if !is_doubted || spare.len() < 3 || is_too_large(recording) {

@@ -342,7 +342,7 @@ mod tests {
     fn ends_that_go_apart_slowly_swing_and_do_not_bend() {
         let signal = |end, position_m| Signal { end, position_m, ..example::signal(1e4, vec![]) };
         // Of each mode the frequency and how the first end goes along; the place of the second sensor.
-        let of_modes = |modes: &[(f64, f64)], second_m: f64| {
+        let placed = |modes: &[(f64, f64)], second_m: f64, height_m: f64| {
             let signals = [signal(End::First, 0.3), signal(End::Second, second_m)];
             let plateau = |share: fn(f64) -> f64| Plateau {
                 ringing_m_s: modes.iter().map(|mode| (0.0, share(mode.1))).collect(),
@@ -350,8 +350,9 @@ mod tests {
             };
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
             let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
-            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0, 0.0)
+            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0, height_m)
         };
+        let of_modes = |modes: &[(f64, f64)], second_m: f64| placed(modes, second_m, 0.0);
         let swinging = |modes: &[(f64, f64)]| of_modes(modes, 4.7);
         assert_eq!(swinging(&[(80.0, 1.0), (220.0, -1.0)]), 0, "a uniform beam");
         assert_eq!(swinging(&[(20.0, 1.0), (80.0, 1.0)]), 1, "slower than any cask");
@@ -366,6 +367,10 @@ mod tests {
             "a beam goes together in one of two such modes"
         );
         assert_eq!(swinging(&[(86.0, 0.9), (87.0, 0.7)]), 0, "one mode that is fitted as two");
+        let close = [(75.0, 1.0), (132.0, -1.0)];
+        assert_eq!(placed(&close, 4.7, 0.0), 2, "of a slender cask");
+        assert_eq!(placed(&close, 4.7, 2.17), 0, "shear brings the second mode of a thick one near");
+        assert_eq!(placed(&[(75.0, -0.5), (120.0, 1.0)], 4.0, 0.0), 0, "beyond the node of the first mode");
         // At 0.06 and 0.86 of its length a beam that bends goes twice as far at the first place.
         assert_eq!(of_modes(&[(45.0, 1.9), (150.0, 1.9)], 4.3), 0);
         assert_eq!(of_modes(&[(45.0, 1.0), (150.0, 1.9)], 4.3), 1, "ends that go as far as one another");

@@ -377,6 +377,25 @@ mod tests {
         }
     }
 
+    /// A half sine of 6 ms and 300 m/s² in so much noise.
+    fn noisy(noise_m_s2: f64) -> Signal {
+        let plain = signal(End::First, 1e5, 0.08, 300.0);
+        // White in [−½, ½], of variance 1/12.
+        let white = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 16) / 65_536.0 - 0.5;
+        let wave = |(i, force): (u32, &f64)| force + 12.0_f64.sqrt() * noise_m_s2 * white(i);
+        let force_m_s2 = (0..).zip(&plain.force_m_s2).map(wave).collect();
+        Signal { force_m_s2, noise_m_s2, ..plain }
+    }
+
+    #[test]
+    fn a_soft_pulse_is_found_in_the_noise_of_a_wide_range() {
+        let coarse = CoarseEvent { near_s: 0.07, spread_s: 0.025, velocity_step_m_s: 1.1 };
+        let found = first_contact(&[noisy(40.0)], &coarse).expect("an onset");
+        // Six standard deviations are 80 % of the peak; means over a tenth of the pulse show its foot.
+        assert!((found.time_s - 0.08).abs() < 6e-4 && found.u_s < 6e-4, "{found:?}");
+        assert!((found.time_s - 0.08).abs() < 3.0 * found.u_s, "{found:?}");
+    }
+
     #[test]
     fn a_quiet_record_has_no_slap_down() {
         assert!(slap_down(&signal(End::Second, 1e5, 0.08, 1.0), 5.0, 0.03..0.19, 2.0, Some(0.0)).is_none());

@@ -115,8 +115,9 @@ pub fn judge_touch(
     let depth_m = -motion.lowest_first_end_m;
     let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
     let by_landing_m_s = share_of_landing(motion, cask) * (1.0 + quantities.k.value) * down_m_s.max(0.0);
-    let above_m = motion.last_first_end_m;
-    let u_m = open_height_m(quantities, cask.cog_m) / 2.0;
+    // R is at the target then: beside it L is as high as the angle tells, whatever is open of the rebound.
+    let above_m = motion.last_first_end_m - motion.second_end_height_m.unwrap_or(0.0);
+    let u_m = quantities.angle.map_or(0.0, |angle| angle.u95.to_radians()) * cask.length_m / 2.0;
     if depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s {
         Some(DropFinding::Settles { depth_m, effect_m_s }.into())
     } else {

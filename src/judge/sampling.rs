@@ -211,6 +211,16 @@ mod tests {
     }
 
     #[test]
+    fn a_spike_that_makes_little_of_the_step_may_be_sampled_coarsely() {
+        // A spike of three samples before 20 ms of crush: a twentieth of the step, and a third.
+        let spike = |area: f64| {
+            move |t: f64| half_sine(t, 3e-4) * area + 0.05 * half_sine(t, 0.02) + 100.0 * f64::from(t < 0.02)
+        };
+        assert!(!codes(1e4, 0.02, spike(0.3)).contains(&IssueCode::LowRate));
+        assert!(codes(1e4, 0.02, spike(3.0)).contains(&IssueCode::LowRate));
+    }
+
+    #[test]
     fn what_rings_up_to_half_the_rate_is_aliasing_and_below_a_filter_it_is_not() {
         let resonance = |f: f64, height: f64| {
             move |t: f64| half_sine(t, 0.005) + height * (-300.0 * t).exp() * (2.0 * PI * f * t).sin()
