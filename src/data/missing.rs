@@ -41,14 +41,25 @@ pub(super) fn missing_in(result: &Value, found: &[Finding]) -> Vec<MissingQuanti
         let takes = |f: &Finding| f.takes(part) || f.takes(ResultPart::Motion);
         // The mass properties replace an end in all but in the course of a contact.
         let is_end = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::MissingEnd { .. }));
-        let is_pulse = quantity.contains(".channels[");
-        let took = found.iter().position(takes).or_else(|| found.iter().position(is_end));
-        let because = took.filter(|_| !is_pulse);
-        let reason = because.is_none().then_some(if is_pulse { PULSE_NOT_SHOWN } else { NOT_SHOWN });
+        let channel = channel(result, &quantity);
+        let takes_pulse = |f: &Finding| f.takes(ResultPart::Channel) && f.channel.as_deref() == channel;
+        let because = match channel {
+            Some(_) => found.iter().position(takes_pulse),
+            None => found.iter().position(takes).or_else(|| found.iter().position(is_end)),
+        };
+        let reason = if channel.is_some() { PULSE_NOT_SHOWN } else { NOT_SHOWN };
+        let reason = because.is_none().then_some(reason);
         let words = because.map_or(reason.unwrap_or_default().into(), |place| found[place].with_channel());
         MissingQuantity { quantity, because, reason, words }
     };
     PLACES.iter().flat_map(|place| nulls(&result[place], (*place).to_owned())).map(missing).collect()
+}
+
+/// The name of the channel that a pulse of an impact belongs to.
+fn channel<'a>(result: &'a Value, place: &str) -> Option<&'a str> {
+    let (impact, pulse) = place.strip_prefix("impacts[")?.split_once("].channels[")?;
+    let number = pulse.split(']').next()?;
+    result.pointer(&format!("/impacts/{impact}/channels/{number}/name"))?.as_str()
 }
 
 fn nulls(value: &Value, place: String) -> Vec<String> {

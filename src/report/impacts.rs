@@ -16,7 +16,7 @@ struct ImpactRow(&'static str, &'static str, f64, bool, fn(&ImpactTable) -> Opti
 impl ImpactRow {
     fn words(&self, impact: &ImpactTable) -> String {
         let Self(_, unit, factor, _, number) = self;
-        scaled(number(impact), *factor, *unit)
+        scaled(number(impact), *factor, unit)
     }
 }
 

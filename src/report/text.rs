@@ -260,6 +260,7 @@ pub(super) fn reasons<'a>(result: &'a DropResult, places: &[&str]) -> Vec<&'a st
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::IssueCode;
 
     #[test]
     fn a_name_cannot_move_the_cursor() {

@@ -48,7 +48,7 @@ findings! {
 pub enum ChannelFinding {
     /// Samples stand at a limit; `takes_step` where more velocity is cut off than a result may miss.
     Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
-        => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Nothing) },
+        => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more head-room",
          limit_m_s2 / G, cut_off(*during, *lost_m_s, *takes_step));
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.

@@ -1,6 +1,5 @@
 //! What a finding does to the result: the parts that it takes away, and where it weighs.
 
-use super::{IssueCode, Severity};
 use serde::{Serialize, Serializer};
 
 /// A part of the result that a finding may take away.
@@ -34,7 +33,7 @@ pub enum Effect {
     Disturbance,
     /// Takes nothing; the cask file may state a place wrongly.
     DoubtfulPlace,
-    /// Takes a channel, which the others or the mass properties replace.
+    /// Takes a channel's peak, or a channel that the others or the mass properties replace.
     Channel,
     /// Takes a channel's velocity step, and the motion unless the other channels determine that step.
     VelocityStep,
@@ -86,6 +85,3 @@ impl Serialize for Effect {
         self.takes().serialize(to)
     }
 }
-
-/// A finding's row but for its sentence: the check that speaks, the severity, and the effect.
-pub(super) struct FindingRow(pub IssueCode, pub Severity, pub Effect);

@@ -23,13 +23,13 @@ macro_rules! findings {
         impl $name {
             /// The check that speaks, its severity, and what it takes away.
             #[allow(unused_variables, clippy::match_same_arms, reason = "a variant's fields, one arm each")]
-            pub(super) fn row(&self) -> super::effect::FindingRow {
+            pub(super) fn row(&self) -> super::FindingRow {
                 #[allow(unused_imports, clippy::enum_glob_use, reason = "few need all")]
                 use {super::Effect::*, Severity::*};
                 let (code, severity, effect) = match self {$(
                     Self::$variant $({ $($field),* })? $(($inner))? => $row,
                 )*};
-                super::effect::FindingRow(code, severity, effect)
+                super::FindingRow(code, severity, effect)
             }
         }
 
@@ -74,7 +74,6 @@ pub use rest::{RestCause, RestFinding};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
-use effect::FindingRow;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -98,6 +97,9 @@ pub enum FindingKind {
     /// About a recording at rest.
     Rest(RestFinding),
 }
+
+/// A finding's row but for its sentence: the check that speaks, the severity, and the effect.
+struct FindingRow(IssueCode, Severity, Effect);
 
 /// One finding about a recording or a result; a row of `quality` in the result.
 #[derive(Debug, Clone, PartialEq, Serialize)]

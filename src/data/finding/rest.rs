@@ -16,9 +16,8 @@ pub enum RestCause {
     #[error("that is the other axis of the cask; correct `axis`, or how the sensor sits")]
     Axis,
     #[error(
-        "it feels no gravity: AC-coupled (state `coupling`, or switch it to DC), unplugged, or its \
-             scale far \
-             too small"
+        "it feels no gravity: AC-coupled (state `coupling`, or switch it to DC), unplugged, or its scale far \
+         too small"
     )]
     Nothing,
     #[error("{0:.4} times as much, the factor between two units; correct `unit` or `sensitivity`")]
