@@ -66,7 +66,7 @@ fn nulls(value: &Value, place: &str, found: &mut Vec<String>) {
     match value {
         Value::Null => found.push(place.to_owned()),
         Value::Object(all) => {
-            all.iter().for_each(|(key, part)| nulls(part, &format!("{place}.{key}"), found))
+            all.iter().for_each(|(key, part)| nulls(part, &format!("{place}.{key}"), found));
         }
         Value::Array(all) => {
             all.iter().enumerate().for_each(|(i, part)| nulls(part, &format!("{place}[{i}]"), found));
