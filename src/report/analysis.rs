@@ -5,7 +5,7 @@ use super::document::{
     TableShape, Tone, Words,
 };
 use super::first_screen::{RIGID, agreement, built_in, by_measured, of_corner, untested};
-use super::impacts::{impacts, prototype};
+use super::impacts::{impacts, not_determined, prototype};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, GUARD_BAND, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
@@ -173,12 +173,6 @@ fn quantities(result: &DropResult) -> Chapter {
         estimates("First impact", first_impact.collect(), &["first_impact.", "k"]),
         estimates("Slap-down", slap_down.collect(), &["slap_down."]),
     ]))
-}
-
-/// A note for each reason why quantities at these places are missing.
-pub(super) fn not_determined(result: &DropResult, places: &[&str]) -> impl Iterator<Item = ChapterPart> {
-    let note = |reason| ChapterPart::note(format!("{MISSING} not determined: {reason}"));
-    reasons(result, places).into_iter().map(note)
 }
 
 /// The measured speed beside the predicted one, the model taken and why, and all that were held against the

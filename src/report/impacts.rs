@@ -1,10 +1,9 @@
 //! Both impacts to the chapter that tabulates them, in short on a terminal, one table per impact on a page;
 //! and what holds of the prototype of a scale model to a table.
 
-use super::analysis::not_determined;
 use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
-use super::text::distinct;
+use super::text::{distinct, reasons};
 use crate::data::{
     CaskFile, ChannelPeak, DropResult, Estimate, ImpactTable, QuantityRow, RigidBodyDeceleration,
     STANDARD_GRAVITY_M_S2,
@@ -46,6 +45,12 @@ fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String
 /// What a terminal shows of one impact: names and words.
 pub(super) fn in_short(impact: &ImpactTable) -> Vec<(&'static str, String)> {
     ROWS.iter().filter(|row| row.3).map(|row| (row.0, row.words(impact))).collect()
+}
+
+/// A note for each reason why quantities at these places are missing.
+pub(super) fn not_determined(result: &DropResult, places: &[&str]) -> impl Iterator<Item = ChapterPart> {
+    let note = |reason| ChapterPart::note(format!("{MISSING} not determined: {reason}"));
+    reasons(result, places).into_iter().map(note)
 }
 
 /// The chapter; nothing where neither impact is told.
