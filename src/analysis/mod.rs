@@ -53,6 +53,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let result = &mut found.result;
     result.verdict = judge::verdict(&mut result.quality);
     judge::behind_the_motion(&mut result.quality, &result.other_channels);
+    result.find_missing();
     found
 }
 

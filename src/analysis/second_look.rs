@@ -89,17 +89,12 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     let speed_and_k = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
     let finding =
         ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.on(&name);
-    add(&mut better, finding);
+    better.result.quality.push(finding);
+    better.result.verdict = judge::verdict(&mut better.result.quality);
     better
 }
 
 pub(super) fn is_too_large(recording: &Recording) -> bool {
     let samples: usize = recording.channels.iter().map(|c| c.samples.len()).sum();
     recording.channels.len() > MOST_CHANNELS_TRIED || samples > MOST_SAMPLES
-}
-
-/// Adds a finding, and weighs all of them again.
-pub(super) fn add(analysis: &mut Analysis, finding: Finding) {
-    analysis.result.quality.push(finding);
-    analysis.result.verdict = judge::verdict(&mut analysis.result.quality);
 }

@@ -3,11 +3,11 @@
 
 use super::analyzed;
 use super::flight_search::Patience;
-use super::second_look::{CLEARLY, Doubt, add, closes, is_too_large};
+use super::second_look::{CLEARLY, Doubt, closes, is_too_large};
 use crate::data::{
     Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, DropResult, Finding,
-    FindingKind, FlightFit, IssueCode, MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G,
-    Samples, Severity, Slip,
+    FindingKind, FlightFit, IssueCode, MISSED_U, Recording, RecordingFormat, ResultPart,
+    STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip,
 };
 use crate::judge;
 use rayon::prelude::*;
@@ -50,8 +50,7 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
         is_cured(&analysis).then(|| (Doubt::of(&analysis), Cure { slips, speed, k }))
     };
     // Where all closes without one channel, nothing else is wrong.
-    let is_left_out = |f: &&Finding| matches!(f.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }));
-    let left_out = found.result.quality.iter().find(is_left_out).and_then(|f| f.channel.as_ref());
+    let left_out = found.result.quality.iter().find(|f| is_left_out(f)).and_then(|f| f.channel.as_ref());
     let is_of_it =
         |slips: &Vec<Slip>| left_out.is_none_or(|name| slips.iter().any(|slip| slip.names.contains(name)));
     let may_be = hypotheses(recording, file).into_par_iter().filter(is_of_it).filter(may_cure);
@@ -67,9 +66,7 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
         1 | 2 => Some(DropFinding::UsualSlip { cures, severity }),
         _ => None,
     };
-    if let Some(told) = told {
-        add(found, told.into());
-    }
+    found.result.quality.extend(told.map(Finding::from));
 }
 
 /// Whether all closes, at a k and with intervals that a sound drop has, and nothing is left that speaks of
@@ -77,41 +74,32 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
 fn is_cured(analysis: &Analysis) -> bool {
     let result = &analysis.result;
     let (Some(k), Some(speed)) = (result.k, result.slap_down.speed) else { return false };
-    let is_doubted = |f: &Finding| judge::contradicts_motion(f) || is_stated(f) || f.code == IssueCode::Skew;
+    let is_doubted =
+        |f: &Finding| f.takes(ResultPart::Motion) || f.effect.doubts_cask_file() || f.code == IssueCode::Skew;
     let mut left = result.quality.iter().filter(|f| f.severity > Severity::Note);
     let is_usual = k.u95 < MOST_U95_K && speed.u95 < MOST_U95_SPEED * speed.value;
     is_usual && LIKELY_K.contains(&k.value) && closes(analysis) && !left.any(is_doubted)
 }
 
-fn is_stated(finding: &Finding) -> bool {
-    use IssueCode::{Geometry, NotRigid, Scale, SensorPosition};
-    matches!(finding.code, Geometry | NotRigid | Scale | SensorPosition)
+fn is_left_out(finding: &Finding) -> bool {
+    matches!(finding.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }))
 }
 
-fn is_overlap(found: &DropFinding) -> bool {
-    use DropFinding::{NoFlight, Overlap, Pressed};
-    matches!(found, Pressed { .. } | Overlap { .. } | NoFlight { .. })
-}
-
-/// How much weighs what a slip may be behind: errors of the motion and no other, or a warning on what the
-/// cask file says of the channels.
+/// How severe the findings are that a slip may explain: errors of which none takes a channel, or a warning on
+/// what the cask file says of the channels.
 fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
-    use IssueCode::{EndsEarly, EndsExchanged, FlightFit, NoImpact, NoSlapDown, Polarity, RestitutionRange};
-    let is_of_motion = |f: &Finding| match f.code {
-        EndsEarly | EndsExchanged | FlightFit | NoImpact | NoSlapDown | Polarity | RestitutionRange => true,
-        _ => match &f.what {
-            FindingKind::Drop(found) => is_stated(f) || is_overlap(found),
-            FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => *lost_m_s > MOST_LOST * v0_m_s,
-            _ => is_stated(f),
-        },
+    // No slip gives back what a clipped or dead channel lost.
+    let is_lost = |f: &Finding| match f.what {
+        FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
+        _ => f.takes(ResultPart::Channel),
     };
     let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
     if errors.peek().is_some() {
-        // No slip gives back what a clipped or dead channel lost.
-        return errors.all(is_of_motion).then_some(Severity::Error);
+        return (!errors.any(is_lost)).then_some(Severity::Error);
     }
-    let warns = findings.iter().any(|f| is_stated(f) && f.severity == Severity::Warning);
-    warns.then_some(Severity::Warning)
+    let warns =
+        |f: &Finding| f.severity == Severity::Warning && (f.effect.doubts_cask_file() || is_left_out(f));
+    findings.iter().any(warns).then_some(Severity::Warning)
 }
 
 /// What is usually confused, as far as it may be by what is stated.

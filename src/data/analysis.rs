@@ -8,6 +8,7 @@ use super::finding::Finding;
 use super::flight::FlightFit;
 use super::impacts::ImpactTable;
 use super::ladder::Rung;
+use super::missing::{MissingQuantity, missing_in};
 use super::other::OtherSummary;
 use super::prediction::{BodyModel, Prediction};
 use super::prototype::Prototype;
@@ -271,6 +272,8 @@ pub struct DropResult {
     pub limits: Vec<Limit>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
+    /// Every quantity that is null, with the finding that took it.
+    pub missing: Vec<MissingQuantity>,
     /// The overall word.
     pub verdict: Verdict,
     /// Times of the events.
@@ -297,6 +300,12 @@ pub struct DropResult {
 }
 
 impl DropResult {
+    /// Names every quantity that is null, with the finding that took it.
+    pub fn find_missing(&mut self) {
+        let result = serde_json::to_value(&*self).unwrap_or_default();
+        self.missing = missing_in(&result, &self.quality);
+    }
+
     /// Whether a limit of the cask file is exceeded.
     pub fn exceeds_a_limit(&self) -> bool {
         self.limits.iter().any(|limit| limit.state == LimitState::Exceeded)

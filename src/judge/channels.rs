@@ -2,7 +2,7 @@
 
 use super::sampling;
 use crate::data::{
-    Axis, CaskFile, ChannelFinding, During, End, Events, Finding, IssueCode, MOST_LOST_M_S,
+    Axis, CaskFile, ChannelFinding, During, Effect, End, Events, Finding, MOST_LOST_M_S,
     STANDARD_GRAVITY_M_S2, Severity, Signal,
 };
 use crate::numerics::noise::integral_uncertainty_by;
@@ -45,9 +45,8 @@ pub fn judge_channels(
             findings.extend(lost(signal, from, to, events.slap_down_s()));
         }
     }
-    let is_disturbance = |code| matches!(code, IssueCode::Spikes | IssueCode::Dropout);
-    let disturbed: Vec<&str> =
-        found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
+    let disturbances = found.iter().filter(|f| f.effect == Effect::Disturbance);
+    let disturbed: Vec<&str> = disturbances.filter_map(|f| f.channel.as_deref()).collect();
     findings.extend(sampling::judge_sampling(signals, events, &disturbed));
     findings.extend(judge_by_themselves(signals, events, cask_file));
     findings

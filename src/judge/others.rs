@@ -3,7 +3,7 @@
 use super::silent::SILENT;
 use super::weigh_by_distance;
 use crate::data::{
-    AtRest, Channel, ChannelFinding, Events, Finding, IssueCode, MeasuredRotation, OtherSummary, RestFinding,
+    AtRest, Channel, ChannelFinding, Effect, Events, Finding, MeasuredRotation, OtherSummary, RestFinding,
     RotationCause, Severity,
 };
 use std::cmp::Reverse;
@@ -32,7 +32,7 @@ pub fn judge_other(
     let mut findings: Vec<Finding> = issues.iter().filter(is_own).cloned().collect();
     weigh_by_distance(&mut findings, events);
     for finding in &mut findings {
-        let is_loss = matches!(finding.code, IssueCode::Gap | IssueCode::NonFinite);
+        let is_loss = finding.effect == Effect::LostSamples;
         finding.severity = finding.severity.min(if is_loss { Severity::Warning } else { Severity::Note });
     }
     findings.extend(clipped(channel, told));
@@ -99,7 +99,7 @@ pub fn judge_rate_level(channel: &Channel, rest: AtRest, unit_rad_s: f64) -> Fin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Extreme, Span, TimesFinding, example};
+    use crate::data::{At, Extreme, IssueCode, Span, TimesFinding, example};
 
     fn told(noise: f64, farthest: f64) -> OtherSummary {
         let extreme = |value| Some(Extreme { value, time_s: 0.0 });

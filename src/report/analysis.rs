@@ -4,42 +4,21 @@ use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
     TableShape, Tone, Words,
 };
-use super::first_screen::{RIGID, agreement, built_in, by_measured, cause, of_corner, untested};
-use super::impacts::{impacts, prototype};
+use super::first_screen::{RIGID, agreement, built_in, by_measured, of_corner, untested};
+use super::impacts::{impacts, not_determined, prototype};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, GUARD_BAND, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::text::{
-    Style, determined, dropped, json_word, reason, sentence, span_text, tail, taken_mark, true_minus,
-    verdict_sentence, verdict_style, verdict_word, yes,
+    Style, causes, determined, dropped, json_word, reasons, sentence, span_text, tail, taken_mark,
+    true_minus, verdict_sentence, verdict_style, verdict_word, yes,
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Finding, FlightRegime, IssueCode, Prediction, Program, QuantityRow,
+    Analysis, CaskFile, DropResult, Finding, FlightRegime, Prediction, Program, QuantityRow,
     STANDARD_GRAVITY_M_S2, Setting, Severity,
 };
-
-/// Findings that take away what the first impact would give.
-const FIRST_IMPACT_CODES: [IssueCode; 5] = [
-    IssueCode::NoImpact,
-    IssueCode::BeginsLate,
-    IssueCode::MissingChannel,
-    IssueCode::DeadChannel,
-    IssueCode::Truncated,
-];
-
-/// Findings that take away what the slap-down would give.
-const SLAP_DOWN_CODES: [IssueCode; 8] = [
-    IssueCode::NoSlapDown,
-    IssueCode::EndsEarly,
-    IssueCode::NoImpact,
-    IssueCode::MissingChannel,
-    IssueCode::DeadChannel,
-    IssueCode::SecondContact,
-    IssueCode::FlightFit,
-    IssueCode::Truncated,
-];
 
 /// The whole document. A terminal has the findings last, where the eye rests; a page has them with the
 /// results.
@@ -128,7 +107,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         json_word(result.input.format),
         tail(&result.input.cask, 24)
     );
-    let cause = cause(result).map(|said| sentence(&said));
+    let causes = Some(causes(result).join(" ")).filter(|said| !said.is_empty());
     let assumed = record::assumed(file, &result.budget)
         .map(|words| format!("The cask file does not state, and the intervals cover: {words}."));
     let interval_by = defaults_that_weigh(result, file).map(|words| sentence(&words));
@@ -142,7 +121,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
     let alarm = alarm.map(|said| banner(Style::Red, LIMIT_EXCEEDED, said));
     let banners = alarm.into_iter().chain([verdict]).map(ChapterPart::from);
-    let said = [limits.map(|said| format!("Limits: {said}")), cause, assumed, interval_by, untested];
+    let said = [limits.map(|said| format!("Limits: {said}")), causes, assumed, interval_by, untested];
     let said = said.into_iter().flatten().map(ChapterPart::text);
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
@@ -185,24 +164,15 @@ fn quantities(result: &DropResult) -> Chapter {
     let k = row("restitution k", "rebound over impact velocity", result.k);
     let first_impact = time("first contact", first.time).chain(first.rows()).chain([k]);
     let slap_down = second.rows().into_iter().chain(time("time", second.time));
-    Chapter::new(Words::or("Results, ± 95 %", "")).with(PartContent::Beside([
-        estimates(result, "First impact", first_impact, &FIRST_IMPACT_CODES),
-        estimates(result, "Slap-down", slap_down, &SLAP_DOWN_CODES),
-    ]))
-}
-
-/// Estimates; the reason for the missing ones stands once below them.
-fn estimates(
-    result: &DropResult,
-    caption: &str,
-    rows: impl Iterator<Item = QuantityRow>,
-    codes: &[IssueCode],
-) -> Vec<ChapterPart> {
     let fact = |row: QuantityRow| Fact::number(row.name, interval(row.value.as_ref())).note(row.remark);
-    let facts: Vec<Fact> = rows.map(fact).collect();
-    let is_missing = facts.iter().any(|fact| fact.value == MISSING);
-    let why = || ChapterPart::note(format!("{MISSING} not determined: {}", reason(result, codes)));
-    [ChapterPart::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
+    let estimates = |caption, rows: Vec<QuantityRow>, places: &[&str]| {
+        let facts = ChapterPart::facts(caption, rows.into_iter().map(fact).collect());
+        [facts].into_iter().chain(not_determined(result, places)).collect()
+    };
+    Chapter::new(Words::or("Results, ± 95 %", "")).with(PartContent::Beside([
+        estimates("First impact", first_impact.collect(), &["first_impact.", "k"]),
+        estimates("Slap-down", slap_down.collect(), &["slap_down."]),
+    ]))
 }
 
 /// The measured speed beside the predicted one, the model taken and why, and all that were held against the
@@ -210,7 +180,10 @@ fn estimates(
 fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(
-        || ChapterPart::text(format!("{MISSING} not compared: {}", reason(result, &SLAP_DOWN_CODES))),
+        || {
+            let reasons = reasons(result, &["comparison"]).join("; ");
+            ChapterPart::text(format!("{MISSING} not compared: {reasons}"))
+        },
         |c| {
             let (style, by) =
                 (if c.agrees { Style::Green } else { Style::Yellow }, by_measured(result, file));
@@ -329,22 +302,23 @@ fn program(result: &DropResult) -> String {
 /// Which files, which version, which settings.
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     let input = &result.input;
-    let mut facts = vec![
-        Fact::words("Recording", format!("{} ({})", input.recording, json_word(input.format))),
-        Fact::code("SHA-256 of the recording", &input.recording_sha256[..]),
-        Fact::words("Cask file", &input.cask[..]),
-        Fact::code("SHA-256 of the cask file", &input.cask_sha256[..]),
-        Fact::words("Program", program(result)),
-        Fact::words("Schema of result.json", result.schema),
-    ];
-    facts.extend(input.reader.as_ref().map(|reader| Fact::words("Recording read by", &reader[..])));
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
-    let rest = input.rest.as_deref().zip(input.rest_sha256.as_deref());
-    let rest = rest.map(|(path, sha256)| {
-        [Fact::words("Rest before the drop", path), Fact::code("SHA-256 of the rest", sha256)]
-    });
-    facts.splice(5..5, own.map(|sha256| Fact::code("SHA-256 of the program", sha256)));
-    facts.splice(4..4, rest.into_iter().flatten());
+    let words = |name: &'static str, words: Option<&str>| words.map(|words| Fact::words(name, words));
+    let hash = |name: &'static str, hash: Option<&str>| hash.map(|hash| Fact::code(name, hash));
+    let recording = format!("{} ({})", input.recording, json_word(input.format));
+    let facts = [
+        words("Recording", Some(&recording)),
+        hash("SHA-256 of the recording", Some(&input.recording_sha256)),
+        words("Cask file", Some(&input.cask)),
+        hash("SHA-256 of the cask file", Some(&input.cask_sha256)),
+        words("Rest before the drop", input.rest.as_deref()),
+        hash("SHA-256 of the rest", input.rest_sha256.as_deref()),
+        words("Program", Some(&program(result))),
+        hash("SHA-256 of the program", own),
+        words("Schema of result.json", Some(result.schema)),
+        words("Recording read by", input.reader.as_deref()),
+    ];
+    let facts = facts.into_iter().flatten().collect();
     let stated = record::of_cask_file(file, &result.settings);
     let is_new = |s: &&Setting| !TOLD.contains(&s.name.as_str());
     let all: Vec<_> = result.settings.iter().chain(&stated).filter(is_new).collect();

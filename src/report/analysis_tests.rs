@@ -2,9 +2,12 @@
 
 use super::analysis::document;
 use super::first_screen::first_screen;
-use super::text::WIDTH;
+use super::text::{WIDTH, causes, reasons};
 use super::{as_html, as_text, pictures, sample};
-use crate::data::{Analysis, Untested};
+use crate::data::{
+    Analysis, CODES, ChannelFinding, DropFinding, Effect, Finding, IssueCode, Severity, SlapDown, Untested,
+    Verdict,
+};
 
 fn text_of(analysis: &Analysis) -> String {
     first_screen(analysis, None, WIDTH) + &as_text::text(&document(analysis), WIDTH)
@@ -59,6 +62,69 @@ fn a_missing_quantity_says_why() {
     let text = bare(&text_of(&sample::without_anything()));
     assert!(text.contains("NOT TO BE USED"));
     assert!(text.contains("– not determined: no impact was found"), "{text}");
+}
+
+/// One that looks as if it had this code, severity and effect.
+fn finding(code: IssueCode, severity: Severity, effect: Effect, words: &str) -> Finding {
+    Finding { code, severity, effect, message: words.into(), ..ChannelFinding::Polarity.on("A1") }
+}
+
+#[test]
+fn of_any_two_findings_the_one_that_took_the_number_is_the_reason() {
+    let mut analysis = sample::without_anything();
+    for (_, (taking, _)) in CODES {
+        for (_, (other, _)) in CODES {
+            for severity in [Severity::Error, Severity::Warning, Severity::Note] {
+                let result = &mut analysis.result;
+                result.quality = vec![
+                    finding(*taking, Severity::Warning, Effect::Motion, "A1 took it"),
+                    finding(*other, severity, Effect::Nothing, "A1 is harmless"),
+                ];
+                result.quality.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
+                result.find_missing();
+                let all = ["first_impact.", "slap_down.", "k", "impacts", "comparison"];
+                assert_eq!(reasons(result, &all), ["A1 took it"], "{taking:?} beside {other:?}");
+                assert_eq!(causes(result), ["A1 took it."], "{taking:?} beside {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn screen_tables_and_page_name_the_finding_that_took_the_number_and_then_what_explains_it() {
+    let mut analysis = sample::without_anything();
+    let result = &mut analysis.result;
+    (result.verdict, result.impacts) = (Verdict::Review, sample::analysis().result.impacts);
+    result.quality = vec![
+        finding(IssueCode::UsualSlip, Severity::Warning, Effect::Hint, "A1 is stated upside down"),
+        finding(IssueCode::Gap, Severity::Warning, Effect::LostSamples, "A1 is harmless"),
+        finding(IssueCode::Geometry, Severity::Warning, Effect::Contradiction, "A1 took it"),
+        finding(IssueCode::Geometry, Severity::Warning, Effect::Hint, "A1 would close it"),
+    ];
+    result.find_missing();
+    let (text, page) = (bare(&text_of(&analysis)), made(&analysis));
+    let first = "Not determined: k and the slap-down speed. A1 took it. A1 is stated upside down. A1 would";
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(flat.contains(first) && !flat.contains("determined: A1 is harmless"), "{text}");
+    // The first impact, the slap-down, both impacts.
+    for said in [&flat, &page] {
+        assert_eq!(said.matches("– not determined: A1 took it").count(), 3, "{said}");
+        assert_eq!(said.matches("– not compared: A1 took it").count(), 1, "{said}");
+    }
+}
+
+#[test]
+fn a_number_that_stands_under_an_error_is_named_before_the_one_that_is_missing() {
+    let mut analysis = sample::analysis();
+    let result = &mut analysis.result;
+    (result.verdict, result.slap_down, result.comparison) = (Verdict::Fail, SlapDown::default(), None);
+    let ends = DropFinding::EndsEarly { after_s: 0.02 }.into();
+    result.quality.insert(0, ends);
+    result.find_missing();
+    let screen = bare(&first_screen(&analysis, None, WIDTH));
+    let flat = screen.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = "PARTLY USABLE k is valid, the slap-down speed is not determined. No slap-down within 20 ms";
+    assert!(flat.contains(said), "{screen}");
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub struct BatchRow {
     pub comparison: Option<Comparison>,
     /// Warnings and errors among the findings.
     pub findings: usize,
-    /// Their codes, each once, errors first.
+    /// Their codes, each once: of what took k or the slap-down speed, then errors, then warnings.
     pub codes: Vec<String>,
     /// Those of the notes.
     pub note_codes: Vec<String>,
@@ -158,6 +158,10 @@ impl BatchRow {
         let limits = line["limits"].as_array().into_iter().flatten();
         let exceeded = limits.filter(|limit| limit["state"] == "exceeded");
         let exceeded: Vec<String> = exceeded.filter_map(|limit| part(limit, "/name")).collect();
+        let missing = line["missing"].as_array().into_iter().flatten();
+        let missing = missing.filter(|m| m["quantity"] == "k" || m["quantity"] == "slap_down.speed");
+        let took = missing.filter_map(|m| line["quality"].get(usize::try_from(m["because"].as_u64()?).ok()?));
+        let took = took.filter_map(|found| found["code"].as_str());
         let grave: Vec<&str> = codes("error").chain(codes("warning")).collect();
         Self {
             id: part(line, "/id").unwrap_or_default(),
@@ -172,7 +176,7 @@ impl BatchRow {
             model: part(line, "/model/name"),
             comparison: part(line, "/comparison"),
             findings: grave.len(),
-            codes: distinct(grave).into_iter().map(str::to_owned).collect(),
+            codes: distinct(took.chain(grave)).into_iter().map(str::to_owned).collect(),
             note_codes: distinct(codes("note")).into_iter().map(str::to_owned).collect(),
             error: part(line, "/error"),
             same_recording_as: None,

@@ -5,12 +5,12 @@ use super::reconstruction::{defaults_that_weigh, largest, weighty_defaults};
 use super::record::{LIMIT_EXCEEDED, limits_said};
 use super::rounding::{fixed, interval, pair, percent, significant};
 use super::text::{
-    Style, clamped, counted, determined, distinct, dropped, json_word, printable, sentence, styled,
+    Style, causes, clamped, counted, determined, distinct, dropped, json_word, printable, styled,
     styled_lines, tail, true_minus, verdict_sentence, verdict_style, verdict_word,
 };
 use crate::data::{
-    Analysis, CaskFile, ClosureKind, DropResult, Estimate, Finding, IssueCode, LimitState,
-    ReconstructionRung, Rung, Severity, Untested,
+    Analysis, CaskFile, ClosureKind, DropResult, Estimate, Finding, LimitState, ReconstructionRung, Rung,
+    Severity, Untested,
 };
 
 /// Columns that the name of a row takes.
@@ -24,15 +24,6 @@ const MOST_WITH_EFFECT: usize = 3;
 
 /// A move below this share of the half-width is not worth a number.
 const WORTH_A_NUMBER: f64 = 0.1;
-
-/// What a reader meets first: the usual slip that explains the others, else the first error or warning, with
-/// its channel.
-pub(super) fn cause(result: &DropResult) -> Option<String> {
-    let doubts = || result.quality.iter().filter(|f| f.severity > Severity::Note);
-    let found = doubts().find(|f| f.code == IssueCode::UsualSlip).or_else(|| doubts().next())?;
-    let channel = found.channel.as_ref().filter(|channel| !found.message.contains(&channel[..]));
-    Some(channel.map_or_else(|| found.message.clone(), |channel| format!("{channel}: {}", found.message)))
-}
 
 /// What nothing in the recording tests, by how much a mistake in it moves k and the speed, and what tests it;
 /// `None` where all is tested.
@@ -115,19 +106,15 @@ pub(super) fn agreement(agrees: bool) -> &'static str {
 
 /// "2 warnings (`zero_shift` A1, gap A2), 3 notes".
 fn findings(result: &DropResult) -> String {
-    let of_severity = |severity: Severity| {
-        let all: Vec<&Finding> = result.quality.iter().filter(|f| f.severity == severity).collect();
-        let place = |f: &&Finding| match &f.channel {
-            Some(channel) => format!("{} {channel}", json_word(f.code)),
-            None => json_word(f.code),
-        };
-        let places = distinct(all.iter().map(place)).join(", ");
-        let counted = counted(all.len(), &json_word(severity));
-        match severity {
-            _ if all.is_empty() => None,
-            Severity::Note => Some(counted),
-            Severity::Warning | Severity::Error => Some(format!("{counted} ({places})")),
-        }
+    let place = |f: &Finding| match &f.channel {
+        Some(channel) => format!("{} {channel}", json_word(f.code)),
+        None => json_word(f.code),
+    };
+    let of_severity = |severity| {
+        let all = || result.quality.iter().filter(|f| f.severity == severity);
+        let places = if severity == Severity::Note { Vec::new() } else { distinct(all().map(place)) };
+        let places = if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) };
+        all().next().map(|_| counted(all().count(), &json_word(severity)) + &places)
     };
     let all: Vec<String> =
         [Severity::Error, Severity::Warning, Severity::Note].into_iter().filter_map(of_severity).collect();
@@ -176,13 +163,13 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         // A path is whole, however long.
         + &report.map_or_else(String::new, |page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
     let lines = |text: &str| text.lines().count();
-    // Where nothing else is to be said the cause has room for its remedy.
-    let (untested, most) = (untested(result), if result.untested.is_empty() { 7 } else { 3 });
+    // Where nothing else is to be said the causes have room for their remedies.
+    let (untested, most) = (untested(result), if result.untested.is_empty() { MOST_LINES } else { 3 });
     let others = lines(&alarm) + lines(&numbers) + lines(&foot) + if untested.is_some() { 3 } else { 1 };
     let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
-    let cause = cause(result).map(|said| sentence(&said)).unwrap_or_default();
     let most = most.min(MOST_LINES.saturating_sub(others).max(1));
-    let said = clamped(&format!("{} {cause}", verdict_sentence(result)), width, word.len() + 2, most);
+    let said = [vec![verdict_sentence(result)], causes(result)].concat().join(" ");
+    let said = clamped(&said, width, word.len() + 2, most);
     let verdict = styled(verdict_style(result.verdict), word) + &said[word.len()..];
     let before = title + &styled_lines(Style::Red, &alarm) + &verdict + &numbers;
     let tested = untested.map_or_else(String::new, |[named, remedies]| {

@@ -3,58 +3,39 @@
 
 use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
-use super::text::distinct;
+use super::text::{distinct, reasons};
 use crate::data::{
-    CaskFile, ChannelPeak, DropResult, Estimate, ImpactTable, IssueCode, QuantityRow, RigidBodyDeceleration,
+    CaskFile, ChannelPeak, DropResult, Estimate, ImpactTable, QuantityRow, RigidBodyDeceleration,
     STANDARD_GRAVITY_M_S2,
 };
 
 /// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
-struct ImpactRow {
-    name: &'static str,
-    unit: &'static str,
-    factor: f64,
-    is_short: bool,
-    number: fn(&ImpactTable) -> Option<Estimate>,
-}
+struct ImpactRow(&'static str, &'static str, f64, bool, fn(&ImpactTable) -> Option<Estimate>);
 
 impl ImpactRow {
-    const fn new(
-        name: &'static str,
-        unit: &'static str,
-        factor: f64,
-        is_short: bool,
-        number: fn(&ImpactTable) -> Option<Estimate>,
-    ) -> Self {
-        Self { name, unit, factor, is_short, number }
-    }
-
     fn words(&self, impact: &ImpactTable) -> String {
-        scaled((self.number)(impact), self.factor, self.unit)
+        let Self(_, unit, factor, _, number) = self;
+        scaled(number(impact), *factor, unit)
     }
 }
 
 const G: f64 = 1.0 / STANDARD_GRAVITY_M_S2;
 
 const ROWS: [ImpactRow; 14] = [
-    ImpactRow::new("duration", "ms", 1e3, true, |i| i.numbers.duration),
-    ImpactRow::new("velocity change of the end", "m/s", 1.0, true, |i| i.numbers.velocity_change),
-    ImpactRow::new("restitution", "", 1.0, true, |i| i.numbers.restitution),
-    ImpactRow::new("impulse upwards I_z", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
-    ImpactRow::new("impulse along the target I_x", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
-    ImpactRow::new("impulse ratio I_x/I_z", "", 1.0, false, |i| i.numbers.friction),
-    ImpactRow::new("kinetic energy before", "kJ", 1e-3, true, |i| i.numbers.energy_before),
-    ImpactRow::new("energy absorbed", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
-    ImpactRow::new("kinetic energy after", "kJ", 1e-3, false, |i| i.numbers.energy_after),
-    ImpactRow::new("absorbed, share of the initial energy", "", 1.0, true, |i| i.numbers.absorbed_ratio),
-    ImpactRow::new("crush", "mm", 1e3, true, |i| i.numbers.crush),
-    ImpactRow::new("largest force", "MN", 1e-6, true, |i| i.numbers.force_peak),
-    ImpactRow::new("deceleration of the centre of gravity", "g", G, true, |i| {
-        i.rigid_body_deceleration.at_cog
-    }),
-    ImpactRow::new("deceleration at the struck end", "g", G, true, |i| {
-        i.rigid_body_deceleration.at_struck_end
-    }),
+    ImpactRow("duration", "ms", 1e3, true, |i| i.numbers.duration),
+    ImpactRow("velocity change of the end", "m/s", 1.0, true, |i| i.numbers.velocity_change),
+    ImpactRow("restitution", "", 1.0, true, |i| i.numbers.restitution),
+    ImpactRow("impulse upwards I_z", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
+    ImpactRow("impulse along the target I_x", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
+    ImpactRow("impulse ratio I_x/I_z", "", 1.0, false, |i| i.numbers.friction),
+    ImpactRow("kinetic energy before", "kJ", 1e-3, true, |i| i.numbers.energy_before),
+    ImpactRow("energy absorbed", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
+    ImpactRow("kinetic energy after", "kJ", 1e-3, false, |i| i.numbers.energy_after),
+    ImpactRow("absorbed, share of the initial energy", "", 1.0, true, |i| i.numbers.absorbed_ratio),
+    ImpactRow("crush", "mm", 1e3, true, |i| i.numbers.crush),
+    ImpactRow("largest force", "MN", 1e-6, true, |i| i.numbers.force_peak),
+    ImpactRow("deceleration of the centre of gravity", "g", G, true, |i| i.rigid_body_deceleration.at_cog),
+    ImpactRow("deceleration at the struck end", "g", G, true, |i| i.rigid_body_deceleration.at_struck_end),
 ];
 
 fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
@@ -63,7 +44,13 @@ fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String
 
 /// What a terminal shows of one impact: names and words.
 pub(super) fn in_short(impact: &ImpactTable) -> Vec<(&'static str, String)> {
-    ROWS.iter().filter(|row| row.is_short).map(|row| (row.name, row.words(impact))).collect()
+    ROWS.iter().filter(|row| row.3).map(|row| (row.0, row.words(impact))).collect()
+}
+
+/// A note for each reason why quantities at these places are missing.
+pub(super) fn not_determined(result: &DropResult, places: &[&str]) -> impl Iterator<Item = ChapterPart> {
+    let note = |reason| ChapterPart::note(format!("{MISSING} not determined: {reason}"));
+    reasons(result, places).into_iter().map(note)
 }
 
 /// The chapter; nothing where neither impact is told.
@@ -73,19 +60,15 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
     if first.numbers.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
         return chapter;
     }
-    let (all, short) = (ROWS.iter().collect::<Vec<_>>(), ROWS.iter().filter(|row| row.is_short).collect());
+    let (all, short) = (ROWS.iter().collect::<Vec<_>>(), ROWS.iter().filter(|row| row.3).collect());
     let table = |rows: Vec<&ImpactRow>, caption: &str| {
         ReportTable::of(&rows)
             .caption(caption)
-            .head(Words::or("Quantity", ""), |row| row.name)
+            .head(Words::or("Quantity", ""), |row| row.0)
             .number(Words::or("First impact", "first end"), |row| row.words(first))
             .number(Words::or("Second impact", "second end"), |row| row.words(second))
             .into()
     };
-    let of_code = |code| result.quality.iter().find(|f| f.code == code);
-    let missing = of_code(IssueCode::SecondImpact).or_else(|| of_code(IssueCode::SecondContact));
-    let why = missing.filter(|_| second.numbers.crush.is_none());
-    let why = why.map(|f| ChapterPart::note(format!("{MISSING} not determined: {}", f.message)));
     let rigid = "The rigid body, free of ringing; impulse, energy and force with the stated mass";
     let of_page = [table(all, rigid)]
         .into_iter()
@@ -95,7 +78,7 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
         .with(ChapterPart::only(table(short, ""), Medium::Terminal))
         .with(ChapterPart::text(filter_words(result)))
         .with_all(of_page.map(|part| part.only(Medium::Page)))
-        .with_all(why)
+        .with_all(not_determined(result, &["impacts[0]", "impacts[1]"]))
         .with_all(energy_words(result).map(ChapterPart::text))
 }
 

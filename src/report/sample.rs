@@ -76,6 +76,7 @@ pub(super) fn without_anything() -> Analysis {
             .into(),
         ..DropFinding::NoImpact { least_m_s: 1.0, doubt: None, without_rise: None }.into()
     }];
+    result.find_missing();
     *analysis.curves = Curves::default();
     analysis.start_unix_ns = None;
     analysis
@@ -149,6 +150,7 @@ fn result() -> DropResult {
             agrees: true,
         }),
         quality: quality(),
+        missing: Vec::new(),
         verdict: Verdict::Review,
         events: Events {
             release_s: None,

@@ -2,7 +2,9 @@
 //! codes.
 
 use super::rounding::{MISSING, plain};
-use crate::data::{Drop, DropResult, Estimate, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
+use crate::data::{
+    Drop, DropResult, Effect, Estimate, Finding, MissingQuantity, ReconstructionRung, Severity, Verdict,
+};
 
 /// Each of `items` once, in the order of first appearance.
 pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -143,29 +145,30 @@ pub(super) fn verdict_style(verdict: Verdict) -> Style {
     }
 }
 
-/// What the verdict means for the reader.
+/// What is determined and what is not, or how much is to be read first.
 pub(super) fn verdict_sentence(result: &DropResult) -> String {
-    let of_severity = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
-    let (errors, warnings) = (of_severity(Severity::Error), of_severity(Severity::Warning));
-    let missing = match (result.k.is_none(), result.slap_down.speed.is_none()) {
-        (true, true) => Some("k and the slap-down speed are"),
-        (true, false) => Some("The slap-down speed is valid, k is"),
-        (false, true) => Some("k is valid, the slap-down speed is"),
-        (false, false) => None,
-    };
-    match (result.verdict, missing) {
-        (Verdict::Pass, _) => "No check found a problem.".into(),
-        (_, Some(missing)) => {
-            let why = if errors > 0 { counted(errors, "error") } else { counted(warnings, "warning") };
-            format!("{missing} not determined ({why}).")
-        }
-        (Verdict::Review, None) if warnings == 1 => "One warning: read it before using the numbers.".into(),
-        (Verdict::Review, None) => format!("{warnings} warnings: read them before using the numbers."),
-        (Verdict::Fail, None) if result.quality.iter().any(|i| i.code == IssueCode::MissingChannel) => {
-            "One end has no channel; the mass properties replace it, and nothing checks the numbers.".into()
-        }
-        (Verdict::Fail, None) => "A velocity step was lost; the other channels determine the numbers.".into(),
+    let gravest = result.quality.iter().map(|f| f.severity).max().filter(|s| *s > Severity::Note);
+    let count = result.quality.iter().filter(|f| Some(f.severity) == gravest).count();
+    let first = gravest.map_or("no check found a problem".to_owned(), |severity| {
+        format!("before use, read {}", counted(count, &json_word(severity)))
+    });
+    match (result.k, result.slap_down.speed) {
+        (Some(_), Some(_)) => format!("k and the slap-down speed are determined; {first}."),
+        (Some(_), None) => "k is valid, the slap-down speed is not determined.".into(),
+        (None, Some(_)) => "The slap-down speed is valid, k is not determined.".into(),
+        (None, None) => "Not determined: k and the slap-down speed.".into(),
     }
+}
+
+/// Why k and the slap-down speed are not determined, else the gravest finding; then what would explain them.
+pub(super) fn causes(result: &DropResult) -> Vec<String> {
+    let (hints, others): (Vec<&Finding>, Vec<&Finding>) =
+        result.quality.iter().filter(|f| f.severity > Severity::Note).partition(|f| f.effect == Effect::Hint);
+    let mut said: Vec<String> =
+        reasons(result, &["k", "slap_down.speed"]).into_iter().map(sentence).collect();
+    let first = others.first().filter(|_| said.is_empty() && hints.is_empty());
+    said.extend(first.into_iter().chain(&hints).map(|found| sentence(&found.with_channel())));
+    said
 }
 
 /// A word as the result's JSON writes it, such as "`ends_early`", "mcap" or "warning".
@@ -245,22 +248,19 @@ pub(super) fn sentence(reason: &str) -> String {
     if words.is_empty() { words } else { words + "." }
 }
 
-/// The message of the first error or warning that takes a quantity away, one among `codes` before others,
-/// else of a note among them.
-pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
-    let first = |severity, among: bool| {
-        let is_wanted = |f: &&Finding| f.severity == severity && (!among || codes.contains(&f.code));
-        result.quality.iter().find(is_wanted)
+/// Why the quantities that stand at these places of the result, or in them, are missing: each reason once.
+pub(super) fn reasons<'a>(result: &'a DropResult, places: &[&str]) -> Vec<&'a str> {
+    let is_meant = |missing: &&MissingQuantity| {
+        places.iter().any(|place| missing.quantity.starts_with(place))
+            && !missing.quantity.contains(".channels[")
     };
-    let gravest = |severity| first(severity, true).or_else(|| first(severity, false));
-    let found = gravest(Severity::Error).or_else(|| gravest(Severity::Warning));
-    let found = found.or_else(|| first(Severity::Note, true));
-    found.map_or("", |finding| finding.message.as_str())
+    distinct(result.missing.iter().filter(is_meant).map(|missing| &missing.words[..]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::IssueCode;
 
     #[test]
     fn a_name_cannot_move_the_cursor() {

@@ -26,6 +26,7 @@ mod other_channels;
 mod predict_command;
 mod properties;
 mod rate_sensor;
+mod reasons;
 mod recipe;
 mod record;
 mod reference;

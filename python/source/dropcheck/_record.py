@@ -101,6 +101,7 @@ class Finding(Record):
     __slots__ = ()
     code: str
     severity: str
+    takes: list[str]
     channel: str | None
     message: str
     from_s: float | None
@@ -172,6 +173,7 @@ class Result(Answer):
     comparison: Comparison | None
     predictions: list[Record]
     impacts: list[Record]
+    missing: list[Record]
 
     def __init__(self, analysis: _dropcheck.Analysis) -> None:
         super().__init__(analysis.json())

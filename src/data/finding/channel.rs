@@ -1,4 +1,4 @@
-//! What speaks against a single channel, with its numbers, to code, severity and sentence.
+//! What speaks against a single channel, with its numbers, to code, severity, effect and sentence.
 
 use super::drop::numbers;
 use super::{IssueCode as Code, Severity};
@@ -48,72 +48,78 @@ findings! {
 pub enum ChannelFinding {
     /// Samples stand at a limit; `takes_step` where more velocity is cut off than a result may miss.
     Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
-        => (Code::Clipped, if *takes_step { Error } else { Warning }),
+        => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more head-room",
          limit_m_s2 / G, cut_off(*during, *lost_m_s, *takes_step));
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.
-    LostStep { shows_slap_down: bool } => (Code::Gap, Error),
+    LostStep { shows_slap_down: bool } => (Code::Gap, Error, VelocityStep),
         ("lacks samples of the first impact (missing, or one value repeated), and with them its velocity \
          step: {}", if *shows_slap_down { REPLACES_STEP } else { "no slap-down tells what it was" });
     /// Noise makes the velocity uncertain over a stretch of `length_s`.
-    Noise { noise_m_s2: f64, u_m_s: f64, length_s: f64, severity: Severity } => (Code::Noise, *severity),
+    Noise { noise_m_s2: f64, u_m_s: f64, length_s: f64, severity: Severity }
+        => (Code::Noise, *severity, Nothing),
         ("({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which \
          is in the intervals: record more of the free fall, use a more sensitive range, or look for a loose \
          cable", noise_m_s2 / G, 2.0 * u_m_s, 1e3 * length_s);
     /// The first sample is at this share of the first impact's peak.
-    BeginsInImpact { share: f64 } => (Code::BeginsLate, Error),
+    BeginsInImpact { share: f64 } => (Code::BeginsLate, Error, ChannelAndMotion),
         ("begins in the first impact, at {:.0} % of its peak: what came before is missing from the velocity \
          step; set the trigger at least 0.1 s before the impact", 100.0 * share);
     /// The free fall in the record is too short for an offset.
-    ShortFreeFall { length_s: f64 } => (Code::BeginsLate, Warning),
+    ShortFreeFall { length_s: f64 } => (Code::BeginsLate, Warning, Nothing),
         ("has {:.1} ms of free fall before the first impact: no offset could be taken from it. Record from \
          before the release", 1e3 * length_s);
     /// A free fall that is long enough holds too few samples for an offset.
-    FewSamples { length_s: f64, samples: usize, sample_rate_hz: f64 } => (Code::BeginsLate, Warning),
+    FewSamples { length_s: f64, samples: usize, sample_rate_hz: f64 } => (Code::BeginsLate, Warning, Nothing),
         ("has {samples} sample(s) in the {:.0} ms of free fall before the first impact, at \
          {sample_rate_hz:.3} Hz: no offset could be taken from so few. Check the times and their unit, or \
          `sample_rate_hz`, and what is missing", 1e3 * length_s);
     /// The sensor would sit beyond the ends of the cask.
-    OffCask { position_m: f64, length_m: f64 } => (Code::SensorPosition, Warning),
+    OffCask { position_m: f64, length_m: f64 } => (Code::SensorPosition, Warning, DoubtfulPlace),
         ("is placed at {position_m} m, off the cask, which reaches from 0 to {length_m} m: correct \
          `position_m`, measured along the axis from the first end");
     /// A sensor of the first end is no nearer to it than one of the second.
-    NotNearer { position_m: f64, second: String, second_m: f64 } => (Code::SensorPosition, Warning),
+    NotNearer { position_m: f64, second: String, second_m: f64 }
+        => (Code::SensorPosition, Warning, DoubtfulPlace),
         ("of the first end is placed at {position_m} m, no nearer to it than {second} of the second end at \
          {second_m} m: correct `end` or `position_m`");
     /// The sensor is nearer to the other end than to its own.
-    NearerOtherEnd { end: End, position_m: f64, length_m: f64 } => (Code::SensorPosition, Warning),
+    NearerOtherEnd { end: End, position_m: f64, length_m: f64 }
+        => (Code::SensorPosition, Warning, DoubtfulPlace),
         ("belongs to the {end} end and is placed at {position_m} m, nearer to the other end of {length_m} m: \
          correct `end` or `position_m`");
     /// Noise and peak are larger than another channel's by the factor between two units.
-    UnitFactor { noise: f64, peak: f64, other: String, units: &'static str } => (Code::Scale, Warning),
+    UnitFactor { noise: f64, peak: f64, other: String, units: &'static str }
+        => (Code::Scale, Warning, Contradiction),
         ("has {noise:.1} times the noise and {peak:.1} times the peak of {other}, the factor between \
          {units}: one of the two has the wrong `unit` or `sensitivity`");
     /// The first pulse has too few samples; by `off_percent` the velocity step may be off.
-    LowRate { samples: f64, pulse_s: f64, off_percent: f64, least_hz: f64 } => (Code::LowRate, Warning),
+    LowRate { samples: f64, pulse_s: f64, off_percent: f64, least_hz: f64 }
+        => (Code::LowRate, Warning, Nothing),
         ("has {samples:.1} samples over the first pulse of {:.1} ms: its velocity step may be off by \
          {off_percent:.0} % and more; sample at {least_hz:.0} Hz or faster", 1e3 * pulse_s);
     /// This share of the pulse's spectrum is left just below half the sample rate.
-    Aliasing { share: f64, sample_rate_hz: f64 } => (Code::Aliasing, Warning),
+    Aliasing { share: f64, sample_rate_hz: f64 } => (Code::Aliasing, Warning, Motion),
         ("has {:.0} % of the pulse's spectrum left just below half its sample rate of {sample_rate_hz:.0} \
          Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an anti-alias \
          filter before the sampling, or sample faster", 100.0 * share, 50.0 * share);
     /// The other transverse channels and the closures speak against it, and it is left out: speed and k with
     /// it and without.
-    LeftOut { with: Numbers, without: Numbers } => (Code::NotRigid, Warning),
+    LeftOut { with: Numbers, without: Numbers } => (Code::NotRigid, Warning, Channel),
         ("disagrees with the other channels and is left out: without it everything is consistent, at {}; \
          with it there is {}; check its sensitivity, polarity, position and cable",
          numbers(without.0, without.1), numbers(with.0, with.1));
     /// The samples of another channel.
     Copied { of: String, is_other_end: bool }
-        => (Code::CopiedChannel, if *is_other_end { Error } else { Warning }),
+        => if *is_other_end { (Code::CopiedChannel, Error, ChannelAndMotion) }
+           else { (Code::CopiedChannel, Warning, Channel) },
         ("holds the samples of {of}, one for one, {}", if *is_other_end {
             "which sits on the other end: correct the `source` of one of the two"
         } else {
             "and is left out: one sensor counts once; correct its `source`, or delete its table"
         });
     /// Nothing but noise while other channels show the impacts.
-    Dead { farthest_m_s2: f64 } => (Code::DeadChannel, Error),
+    Dead { farthest_m_s2: f64 } => (Code::DeadChannel, Error, ChannelAndMotion),
         ("{} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one or \
          take the channel out of the cask file",
          if *farthest_m_s2 > 0.0 {
@@ -121,7 +127,7 @@ pub enum ChannelFinding {
          } else { "holds one value".into() });
     /// Mains hum with so many harmonics beside the fundamental; `left_m_s` of velocity is not taken off.
     Hum { amplitude_m_s2: f64, frequency_hz: f64, harmonics: usize, is_taken_off: bool, left_m_s: f64,
-          severity: Severity } => (Code::Hum, *severity),
+          severity: Severity } => (Code::Hum, *severity, Nothing),
         ("hums with {:.2} g at {frequency_hz:.1} Hz{} before the impact: {}; check shields and earth loops",
          amplitude_m_s2 / G,
          if *harmonics > 0 { format!(" and {harmonics} harmonics") } else { String::new() },
@@ -129,110 +135,111 @@ pub enum ChannelFinding {
              format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity")
          } else { format!("left as it is it swings the velocity by {left_m_s:.3} m/s") });
     /// Single samples far off their neighbours.
-    Spikes { count: usize, held_m_s: f64, severity: Severity } => (Code::Spikes, *severity),
+    Spikes { count: usize, held_m_s: f64, severity: Severity } => (Code::Spikes, *severity, Disturbance),
         ("has {count} spikes of one to five samples that no cask makes; left in, they move the velocity by \
          up to {held_m_s:.3} m/s: fasten or change the cable and its connectors");
     /// Stretches of samples that repeat to the bit.
-    Dropout { stretches: usize, samples: usize, most_m_s: f64 } => (Code::Dropout, Warning),
+    Dropout { stretches: usize, samples: usize, most_m_s: f64 } => (Code::Dropout, Warning, Disturbance),
         ("repeats itself to the bit in {stretches} stretches of {samples} samples together: a connector or \
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value \
          once");
     /// AC coupling that the cask file states, undone.
-    AcStated { time_constant_s: f64 } => (Code::AcCoupled, Note),
+    AcStated { time_constant_s: f64 } => (Code::AcCoupled, Note, Nothing),
         ("is AC-coupled; its droop was put back with the stated time constant of {time_constant_s} s");
     /// A droop after the step like that of the other channels: AC coupling that nobody states.
-    AcUnstated { droop_m_s2: f64, step_m_s: f64, time_constant_s: f64 } => (Code::AcCoupled, Warning),
+    AcUnstated { droop_m_s2: f64, step_m_s: f64, time_constant_s: f64 }
+        => (Code::AcCoupled, Warning, Nothing),
         ("droops after its step in the proportion of the other channels, {:+.2} g after {step_m_s:+.1} m/s, \
          as behind a high-pass of {time_constant_s:.2} s: it is AC-coupled; set `coupling = \"ac\"` and \
          `time_constant_s` from the amplifier's data sheet, or record DC-coupled", droop_m_s2 / G);
     /// An offset in the free fall, taken off.
     OffsetTakenOff { mean_m_s2: f64, is_large: bool }
-        => (Code::Offset, if *is_large { Warning } else { Note }),
+        => (Code::Offset, if *is_large { Warning } else { Note }, Nothing),
         ("reads {:+.2} g before the first impact, where free fall reads 0; that offset was taken off{}",
          mean_m_s2 / G, if *is_large { "; check the sensor and its amplifier" } else { "" });
     /// An offset in the free fall, left in as the cask file asks.
     OffsetLeftIn { mean_m_s2: f64, adds_m_s: f64, over_s: f64, severity: Severity }
-        => (Code::Offset, *severity),
+        => (Code::Offset, *severity, Nothing),
         ("reads {:+.2} g before the first impact, where free fall reads 0; the cask file leaves that offset \
          in, which adds {adds_m_s:.2} m/s over {:.0} ms; set `offset = true` under `[corrections]` to have \
          it taken off", mean_m_s2 / G, 1e3 * over_s);
     /// An offset that drifts in the free fall.
-    Drift { slope_m_s3: f64, u_m_s3: f64, adds_m_s: f64 } => (Code::Offset, Warning),
+    Drift { slope_m_s3: f64, u_m_s3: f64, adds_m_s: f64 } => (Code::Offset, Warning, Nothing),
         ("drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} m/s \
          by the slap-down: let the amplifier warm up, check the cable and its insulation, or use another \
          channel", slope_m_s3 / G, 2.0 * u_m_s3 / G);
     /// The first impact pulls the channel's end towards the target.
-    Polarity => (Code::Polarity, Error),
+    Polarity => (Code::Polarity, Error, Motion),
         ("reads the first impact as pulling towards the target: set `polarity = -1` for it, or its end is \
          the other one");
     /// The offset in the flight is another than before the impact; taken off.
     ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, severity: Severity }
-        => (Code::ZeroShift, *severity),
+        => (Code::ZeroShift, *severity, Nothing),
         ("reads {:+.2} ± {:.2} g more between the impacts than before the first (zero shift or droop); it \
          was taken off, which moves the velocity by up to {effect_m_s:.2} m/s",
          shift_m_s2 / G, 2.0 * u_m_s2 / G);
     /// The velocity is off its flight by the time R strikes.
-    LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning),
+    LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("is {mismatch_m_s:+.2} m/s off its flight between the impacts by the time the second end strikes: \
          the first end touched again, or the sensor drifts; the film tells which");
     /// Plateau and modes leave too much of the flight.
-    Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 } => (Code::FlightFit, Warning),
+    Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 } => (Code::FlightFit, Warning, Motion),
         ("is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its velocity \
          step is known to ± {:.2} m/s", 2.0 * u_m_s);
     /// What was fitted as a mode bends this channel's plateau alone.
-    Bend { frequency_hz: f64, size_m_s: f64 } => (Code::FlightFit, Warning),
+    Bend { frequency_hz: f64, size_m_s: f64 } => (Code::FlightFit, Warning, Motion),
         ("swings by {size_m_s:.2} m/s at {frequency_hz:.0} Hz in the flight, which the other end does not: a \
          cask rings at both ends, so that is a cable that whips, a loose mount or a slow drift of the \
          sensor, and the velocity step is known only to about as much; fasten cable and sensor");
     /// The velocity step is off the line through the other channels' ones.
-    OffLine { off_m_s: f64, u_m_s: f64 } => (Code::NotRigid, Warning),
+    OffLine { off_m_s: f64, u_m_s: f64 } => (Code::NotRigid, Warning, Contradiction),
         ("gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid body \
          gain there: check its scale, polarity, position and mount, or leave it out of the cask file",
          2.0 * u_m_s);
     /// No force from one time to another after first contact, and then again.
-    ForceRests { from_s: f64, to_s: f64 } => (Code::SecondContact, Warning),
+    ForceRests { from_s: f64, to_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("feels no force from {:.1} to {:.1} ms after first contact, and then again: the first end left the \
          target and was struck once more, or something strikes the cask; k and the slap-down speed are not \
          determined", 1e3 * from_s, 1e3 * to_s);
     /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in
     /// spreads of what ringing leaves.
-    Struck { after_s: Vec<f64>, far: f64 } => (Code::SecondContact, Warning),
+    Struck { after_s: Vec<f64>, far: f64 } => (Code::SecondContact, Warning, Motion),
         ("shows shocks in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing \
          and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix \
          what was before with what came after, so k and the slap-down speed are not determined; fasten the \
          contents, or read the speed from the film", times_ms(after_s));
     /// The channel answers before the first end is struck.
-    AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool } => (Code::Skew, Warning),
+    AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool } => (Code::Skew, Warning, Nothing),
         ("answers the first impact {} before the first end is struck, which no body does: {ONE_TRIGGER}{}",
          size_ms(*delay_s, *u_s), shifted(*is_shifted));
     /// The channel answers later than the slowest bending wave, which takes `wave_s`.
-    AnswersLate { delay_s: f64, u_s: f64, wave_s: f64, is_shifted: bool } => (Code::Skew, Warning),
+    AnswersLate { delay_s: f64, u_s: f64, wave_s: f64, is_shifted: bool } => (Code::Skew, Warning, Nothing),
         ("answers the first impact {} after the first end is struck, and a bending wave needs {:.1} ms at \
          most: {ONE_TRIGGER}{}", size_ms(*delay_s, *u_s), 1e3 * wave_s, shifted(*is_shifted));
     /// The channel answers as late as a bending wave may.
-    AnswersAsAWave { delay_s: f64, u_s: f64 } => (Code::Skew, Note),
+    AnswersAsAWave { delay_s: f64, u_s: f64 } => (Code::Skew, Note, Nothing),
         ("answers the first impact {} after the first end is struck: a bending wave may take as long, or the \
          channels' clocks are apart; check that one trigger starts both", size_ms(*delay_s, *u_s));
     /// A channel that takes no part in the motion stands at a limit.
-    OtherClipped { limit: f64, samples: usize, unit: String } => (Code::Clipped, Warning),
+    OtherClipped { limit: f64, samples: usize, unit: String } => (Code::Clipped, Warning, Nothing),
         ("stands at its limit of {} {unit} for {samples} samples: its true extreme lies beyond; use a range \
          with more head-room", digits(*limit, 4));
     /// A channel that takes no part in the motion shows nothing but noise.
-    OtherStill { farthest: Option<f64>, unit: String } => (Code::DeadChannel, Note),
+    OtherStill { farthest: Option<f64>, unit: String } => (Code::DeadChannel, Note, Nothing),
         ("{} through the impacts: a slow quantity, or a sensor that is unplugged or broken, or the wrong \
          `source`", other_still(*farthest, unit));
     /// The noise of a channel that takes no part in the motion beside its largest deviation from rest.
-    OtherNoise { noise: f64, farthest: f64, unit: String } => (Code::Noise, Note),
+    OtherNoise { noise: f64, farthest: f64, unit: String } => (Code::Noise, Note, Nothing),
         ("has noise of {} {unit} RMS, {:.0} % of its largest deviation from rest, and its extremes are \
          uncertain by about twice as much: use a more sensitive range, or look for a loose cable",
          digits(*noise, 3), 100.0 * noise / farthest);
     /// An angular-rate sensor reads this share of the rotation by the accelerometers, and is left out.
-    OtherRotation { share: f64, cause: RotationCause } => (cause.code(), Warning),
+    OtherRotation { share: f64, cause: RotationCause } => (cause.code(), Warning, Channel),
         ("reads {} times the rotation that the accelerometers have the first impact give: {cause}; until \
          then it is left out", digits(*share, 3));
     /// The recording states another unit than the cask file.
-    OtherUnit { stated: String, recorded: String } => (Code::Scale, Note),
+    OtherUnit { stated: String, recorded: String } => (Code::Scale, Note, Nothing),
         ("the cask file gives the unit {stated:?}, the recording {recorded:?}; the cask file is followed");
 }
 }

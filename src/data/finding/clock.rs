@@ -8,14 +8,14 @@ findings! {
 /// A finding about two things that say when samples were taken.
 pub enum ClockFinding of Clock {
     /// A rate was taken, and another one is said.
-    Rates(apart: RatesApart) => (Code::Clock, Warning),
+    Rates(apart: RatesApart) => (Code::Clock, Warning, Nothing),
         ("{apart}; the first was taken, and every velocity goes with the rate: if the second is right, write \
          sample_rate_hz = {rate}", rate = hz(apart.other_hz));
     /// Times were taken, and another column or dataset does not bear them out.
-    Times(apart: TimesApart) => (Code::Clock, Warning),
+    Times(apart: TimesApart) => (Code::Clock, Warning, Nothing),
         ("{apart}; the channels timed by {} have their velocities from it", apart.taken);
     /// A listing has no rate, for reading would refuse: the problem and its remedy.
-    Refused(words: String) => (Code::Clock, Warning),
+    Refused(words: String) => (Code::Clock, Warning, Nothing),
         ("{words}");
 }
 }

@@ -1,4 +1,4 @@
-//! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
+//! What speaks against the drop as a whole, with its numbers, to code, severity, effect and sentence.
 
 use super::{Finding, IssueCode as Code, Severity};
 use crate::data::keys::quantity_words;
@@ -11,126 +11,128 @@ pub enum DropFinding of Drop {
     /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a
     /// clock that may be why.
     NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> }
-        => (Code::NoImpact, Error),
+        => (Code::NoImpact, Error, Everything),
         ("no impact was found: {}; check source, unit and that the recording covers the drop{}",
          what_was_seen(*least_m_s, *without_rise), doubt_of_rate(doubt.as_deref()));
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
-    TooSlow { rate_hz: f64, samples: f64, least_hz: f64 } => (Code::LowRate, Error),
+    TooSlow { rate_hz: f64, samples: f64, least_hz: f64 } => (Code::LowRate, Error, ChannelAndMotion),
         ("{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: too \
          few to tell whether the recording shows one; record with {least_hz:.0} Hz and more, or check \
          `sample_rate_hz`");
     /// No transverse channel on an end, which the mass properties may stand in for.
-    MissingEnd { end: End, is_stood_in_for: bool } => (Code::MissingChannel, Error),
+    MissingEnd { end: End, is_stood_in_for: bool }
+        => (Code::MissingChannel, Error, if !is_stood_in_for { ChannelAndMotion }
+            else if *end == End::First { Channel } else { SecondEnd }),
         ("no transverse channel on the {end} end: {}", without_end(*end, *is_stood_in_for));
     /// The recording ends so long after the separation, before a slap-down.
-    EndsEarly { after_s: f64 } => (Code::EndsEarly, Error),
+    EndsEarly { after_s: f64 } => (Code::EndsEarly, Error, SlapDown),
         ("no slap-down within {:.0} ms after the first end left the target: the recording ends before it",
          1e3 * after_s);
     /// No slap-down for so long after the separation.
-    NoSlapDown { after_s: f64 } => (Code::NoSlapDown, Error),
+    NoSlapDown { after_s: f64 } => (Code::NoSlapDown, Error, SlapDown),
         ("no slap-down within {:.0} ms after the first end left the target: the second end shows no impact",
          1e3 * after_s);
     /// The flight is too short to be fitted.
-    ShortFlight => (Code::FlightFit, Error),
+    ShortFlight => (Code::FlightFit, Error, Motion),
         ("the free flight between the impacts is too short to be separated from them and from ringing");
     /// R comes down before L's impact is over.
-    Overlap { strikes_by_s: f64, lasts_s: f64 } => (Code::SecondContact, Error),
+    Overlap { strikes_by_s: f64, lasts_s: f64 } => (Code::SecondContact, Error, Motion),
         ("by the stated angle the second end strikes within {:.1} ms of the first, whose impact lasts {:.1} \
          ms: contacts that overlap are not followed; check `angle_deg`", 1e3 * strikes_by_s, 1e3 * lasts_s);
     /// Another drop, so long after the one that was analysed.
     SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 }
-        => (Code::SeveralDrops, Warning),
+        => (Code::SeveralDrops, Warning, Nothing),
         ("the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and \
          changes its velocity by {step_m_s:.1} m/s ({first_step_m_s:.1} m/s there): that is another drop. \
          The first one was analysed; for the other, cut the recording between them in a copy");
     /// The free fall ends well before the impact.
-    SoftTouch { end_s: f64, contact_s: f64 } => (Code::Geometry, Warning),
+    SoftTouch { end_s: f64, contact_s: f64 } => (Code::Geometry, Warning, Contradiction),
         ("the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: \
          something soft (water, a guide, a cable) was touched first, and the impact velocity is not that of \
          a free fall", 1e3 * (contact_s - end_s));
     /// A coefficient of restitution that is none.
-    Restitution { k: Estimate } => (Code::RestitutionRange, Error),
+    Restitution { k: Estimate } => (Code::RestitutionRange, Error, Motion),
         ("k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is wrong",
          k.value, k.u95,
          if k.u95 > 1.0 { "says nothing of a number between 0 and 1" } else { "lies outside 0 to 1" });
     /// The second end rises.
-    TurnsTheWrongWay => (Code::EndsExchanged, Error),
+    TurnsTheWrongWay => (Code::EndsExchanged, Error, Motion),
         ("the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong \
          in the cask file");
     /// The second end rises, as it does where L's corner lies behind the centre of gravity.
-    TooSteep { angle_deg: f64, limit_deg: f64 } => (Code::NoSlapDown, Error),
+    TooSteep { angle_deg: f64, limit_deg: f64 } => (Code::NoSlapDown, Error, SlapDown),
         ("the second end is not expected to strike: at {angle_deg:.1}° the first end's corner lies under the \
          centre of gravity or behind it (from {limit_deg:.1}° on for this section), and the cask turns back; \
          analyse the first impact alone");
     /// The axial channel has L slide on a contact that is called rough.
-    Slides { slip: Estimate } => (Code::Friction, Warning),
+    Slides { slip: Estimate } => (Code::Friction, Warning, Nothing),
         ("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls \
          the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`",
          slip.value, slip.u95);
     /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
     /// friction that was taken.
-    OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate } => (Code::Friction, Note),
+    OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate } => (Code::Friction, Note, Nothing),
         ("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it \
          sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between ({:.2} ± \
          {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state \
          `friction`", taken.value, taken.u95);
     /// The force of the first contact falls to this share of the lower of two maxima around it.
-    TwoMaxima { dip: f64 } => (Code::SecondContact, Note),
+    TwoMaxima { dip: f64 } => (Code::SecondContact, Note, Nothing),
         ("the force of the first impact falls to {:.0} % between two maxima: the first end touched twice, or \
          a mode rings as fast as the contact lasts; it was taken as one contact, and k is that of the whole",
          100.0 * dip.max(0.0));
     /// L would sink so far below where it left the target.
-    Sinks { depth_m: f64 } => (Code::SecondContact, Warning),
+    Sinks { depth_m: f64 } => (Code::SecondContact, Warning, Motion),
         ("the first end would sink {:.0} mm below where it left the target before the second end strikes: it \
          touched again, and the flight was not free", 1e3 * depth_m);
     /// L comes down to the target so softly that no channel shows it.
-    Settles { depth_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning),
+    Settles { depth_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("the first end comes down to the target before the second end strikes ({:.0} mm below where it \
          left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, and \
          the flight leaves it out", 1e3 * depth_m);
     /// L may land as R strikes.
-    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning),
+    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("the first end comes down again as the second end strikes: by the motion it is then {:.0} ± {:.0} \
          mm above where it left, and a landing before that changes the slap-down speed by up to \
          {effect_m_s:.2} m/s", 1e3 * above_m, 2e3 * u_m);
     /// The velocities step in the flight.
-    Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning),
+    Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
          than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down \
          speed are not determined", step_m_s.abs(), 1e3 * after_s);
     /// A mode that is no bending.
-    Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning),
+    Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning, Nothing),
         ("an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is slower than the cask bends: \
          contents or mounts move in it; speed and k are those of cask and contents together, the speed of \
          the corner is that of what strikes");
     /// L is still pressed as R strikes; an error, to stand before what follows from it.
-    Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error),
+    Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error, Motion),
         ("between first contact and the strike of the second end the velocities curve as in no free flight \
          ({frequency_hz:.0} Hz, seen for {periods:.1} of a period): the first end is probably still pressed \
          on the target as the second end strikes; contacts that overlap are not followed: take the speed \
          from film");
     /// The target pushes L through the flight.
-    Carried { rate_hz: f64 } => (Code::SecondContact, Warning),
+    Carried { rate_hz: f64 } => (Code::SecondContact, Warning, Motion),
         ("in the flight every transverse channel goes on gaining what it gained in the first impact, \
          {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free");
     /// A touch of L that is followed.
-    Landed { before_s: f64 } => (Code::SecondContact, Note),
+    Landed { before_s: f64 } => (Code::SecondContact, Note, SecondImpact),
         ("the first end touches again {:.1} ms before the second one strikes: what that changes of the \
          motion is read off all channels; the speed of the corner and the second impact, which ring with it, \
          are not determined", 1e3 * before_s);
     /// The flight may have lasted no time; an error, to stand before what follows from it.
-    NoFlight { flight_time: Estimate } => (Code::SecondContact, Error),
+    NoFlight { flight_time: Estimate } => (Code::SecondContact, Error, Motion),
         ("the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second end \
          struck; contacts that overlap are not followed: take the speed from film",
          1e3 * flight_time.value, 1e3 * flight_time.u95);
     /// The flight is too short to tell its modes from one another.
-    Unresolved { flight_s: f64, modes_hz: Vec<f64> } => (Code::FlightFit, Warning),
+    Unresolved { flight_s: f64, modes_hz: Vec<f64> } => (Code::FlightFit, Warning, Motion),
         ("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to it \
          ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are not \
          determined; look at the curves, and state only what they show",
          1e3 * flight_s, modes_hz.len(), joined(modes_hz, |f| format!("{f:.0}"), ", "));
     /// No flight after the slap-down determines what the second impact gives.
-    SecondUntold { recorded_s: f64, is_open: bool } => (Code::SecondImpact, Note),
+    SecondUntold { recorded_s: f64, is_open: bool } => (Code::SecondImpact, Note, SecondImpact),
         ("the {:.0} ms that are recorded after the slap-down do not show the end of the second end's impact: \
          it may not have left the target by then, or something else strikes meanwhile; {}", 1e3 * recorded_s,
          if *is_open {
@@ -139,12 +141,14 @@ pub enum DropFinding of Drop {
              "record until the cask lies still"
          });
     /// Measured and predicted lie apart.
-    Disagreement { comparison: Comparison, e_n: f64, severity: Severity } => (Code::Disagreement, *severity),
+    Disagreement { comparison: Comparison, e_n: f64, severity: Severity }
+        => (Code::Disagreement, *severity, Nothing),
         ("measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = \
          {e_n:.1}): check contact law, angle, mass properties and scales",
          comparison.measured, comparison.measured_u95, comparison.predicted, comparison.predicted_u95);
     /// What was seen otherwise lies apart from the result.
-    ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity } => (Code::Observed, *severity),
+    ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity }
+        => (Code::Observed, *severity, Nothing),
         ("by this recording the {} is {}, but was observed{} as {}: they lie apart beyond both intervals \
          (E_n = {e_n:.1}); check the observation, and the cask file",
         quantity_words(beside.name),
@@ -154,38 +158,36 @@ pub enum DropFinding of Drop {
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The
     /// recording shows a free fall of `fall_s`.
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 }
-        => (code_of(closure.kind), if *is_gross { Error } else { Warning }),
+        => (code_of(closure.kind), if *is_gross { Error } else { Warning }, Contradiction),
         ("{}", missed(closure, drop, *fall_s));
     /// The rest before the fall and its length say alike that something took this share of g off it, which
     /// makes another v0 of the drop height.
-    SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity } => (Code::Geometry, *severity),
+    SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity }
+        => (Code::Geometry, *severity, Contradiction),
         ("the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows of \
          the rest before it and by its length alike: a guide, a rope or a brake; from the stated height that \
          makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it as \
          `impact_velocity_m_s`, with its tolerance", 100.0 * share, 100.0 * u95);
     /// All closures together are missed by more than chance.
-    AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> } => (Code::Geometry, Warning),
+    AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> }
+        => (Code::Geometry, Warning, Contradiction),
         ("what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for \
          {degrees}): {}; check angle, height, length, scales, positions and mass properties of the cask file",
          joined(closures, |c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.most_in_u()), ", "));
     /// With a usual slip put right everything is consistent; with either of two where nothing tells which.
-    UsualSlip { cures: Vec<Cure>, severity: Severity } => (Code::UsualSlip, *severity),
+    UsualSlip { cures: Vec<Cure>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
         ("{}: check this first; it has not been applied", joined(cures, Cure::words, "; "));
     /// A closure is missed that this angle would meet with all others.
-    AngleCloses { angle_deg: f64, severity: Severity } => (Code::Geometry, *severity),
+    AngleCloses { angle_deg: f64, severity: Severity } => (Code::Geometry, *severity, Hint),
         ("if all else is as stated, a drop angle of {angle_deg:.1}° would close it");
 }
 }
 
 fn code_of(closure: ClosureKind) -> Code {
     match closure {
-        ClosureKind::Height
-        | ClosureKind::Touch
-        | ClosureKind::Fall
-        | ClosureKind::SecondTurning
-        | ClosureKind::RateBefore => Code::Geometry,
         ClosureKind::Turning => Code::NotRigid,
         ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
+        _ => Code::Geometry,
     }
 }
 

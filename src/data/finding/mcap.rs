@@ -8,60 +8,64 @@ findings! {
 /// A finding about an MCAP file.
 pub enum McapFinding of Mcap {
     /// The file ends before its time; the last message kept begins at `kept_s`.
-    Truncated { end: FileEnd, kept_s: Option<f64> } => (Code::Truncated, Warning),
+    Truncated { end: FileEnd, kept_s: Option<f64> } => (Code::Truncated, Warning, Nothing),
         ("{end}{}",
          kept_s.map(|s| format!("; the last message kept begins at {s:.6} s")).unwrap_or_default());
     /// A chunk fails its check sum or does not unpack.
-    BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 } => (Code::Damaged, Warning),
+    BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 } => (Code::Damaged, Warning, Nothing),
         ("the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over \
          {lasts_s:.6} s");
     /// Bytes that are no record.
-    Garbage { at: u64, bytes: u64, resumed: bool } => (Code::Damaged, Warning),
+    Garbage { at: u64, bytes: u64, resumed: bool } => (Code::Damaged, Warning, Nothing),
         ("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}",
          if *resumed { "reading went on at the next chunk of the file's index" }
          else { "up to the end of the file" });
     /// Damage that is not told place by place.
-    MoreDamage { places: u64 } => (Code::Damaged, Warning),
+    MoreDamage { places: u64 } => (Code::Damaged, Warning, Nothing),
         ("{places} more places of the file are damaged and were left out");
     /// Records whose body does not parse, or messages that belong to no channel; kind and place of the first.
-    BadRecords { count: u64, kind: &'static str, at: u64, why: &'static str } => (Code::Damaged, Warning),
+    BadRecords { count: u64, kind: &'static str, at: u64, why: &'static str }
+        => (Code::Damaged, Warning, Nothing),
         ("{count} records were skipped, the first a {kind} at byte {at} {why}");
     /// The file's statistics count other messages than there are.
-    OtherCount { claimed: u64, found: u64 } => (Code::Damaged, Warning),
+    OtherCount { claimed: u64, found: u64 } => (Code::Damaged, Warning, Nothing),
         ("the file's statistics count {claimed} messages, {found} were found");
     /// Messages that do not decode; in a listing with their topic.
-    Undecoded { count: u64, messages: u64, topic: Option<String>, first: String } => (Code::Damaged, Warning),
+    Undecoded { count: u64, messages: u64, topic: Option<String>, first: String }
+        => (Code::Damaged, Warning, Nothing),
         ("{count} of {messages} messages {}; the first: {first}",
          topic.as_ref().map_or("do not decode and were skipped".into(), |t| format!("of {t} do not decode")));
     /// Messages whose stamp is of no use, beside others whose stamp is or not.
     LogTime { count: u64, messages: u64, beside_good: bool }
-        => (Code::LogTimeUsed, if *beside_good { Warning } else { Note }),
+        => (Code::LogTimeUsed, if *beside_good { Warning } else { Note }, Nothing),
         ("{count} of {messages} messages carry a stamp of zero or none that can be understood: their log \
          time was taken{}",
          if *beside_good { "; the others carry a stamp, and the two clocks may differ" } else { "" });
     /// Log times that run at another pace than the stamps, by so much of it.
-    LogDrift { percent: f64 } => (Code::Clock, Warning),
+    LogDrift { percent: f64 } => (Code::Clock, Warning, Nothing),
         ("the stamps of its messages and their log times disagree: the log times run at a pace that differs \
          by {} %; the stamps were taken, and every velocity goes with them: `time = \"log_time\"` in the \
          cask file takes the other", digits(*percent, 2));
     /// Bytes of the data that are not those that the writer summed up.
-    DataChanged => (Code::Damaged, Error),
+    DataChanged => (Code::Damaged, Error, ChannelAndMotion),
         ("the check sum of its data does not hold: bytes were changed after it was written, and nothing \
          tells which samples are as they were: take the original from the logger again");
     /// The same of the summary.
-    SummaryChanged => (Code::Damaged, Warning),
+    SummaryChanged => (Code::Damaged, Warning, Nothing),
         ("the check sum of its summary does not hold: bytes were changed after it was written; the summary \
          was left out, the data were read");
     /// A unit that changes between messages, where the cask file states one; in a listing with its source.
-    TwoUnits { first: String, other: String, source: Option<String> } => (Code::Scale, Warning),
+    TwoUnits { first: String, other: String, source: Option<String> }
+        => (Code::Scale, Warning, Contradiction),
         ("{}{}{}",
          source.as_ref().map(|source| format!("{source}: ")).unwrap_or_default(), two_units(first, other),
          if source.is_none() { "; all samples were taken in that of the cask file" } else { "" });
     /// What reading would say of a source's times.
-    NoTimes { source: String, problem: String } => (Code::Clock, Warning),
+    NoTimes { source: String, problem: String } => (Code::Clock, Warning, Nothing),
         ("{source}: {problem}");
     /// What a listing has no room for.
-    Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize } => (Code::Unlisted, Note),
+    Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize }
+        => (Code::Unlisted, Note, Nothing),
         ("it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics \
          and {fields} more fields of the listed ones; a source that is not listed is read all the same");
 }

@@ -1,14 +1,15 @@
-//! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
+//! What speaks against a recording or a result, with its numbers, to its code, its severity, its effect and
+//! its sentence.
 
-/// An enum of findings: behind the arrow of each its code and severity, then its sentence, as `format` takes
-/// it. `of` names their kind where they are not of one channel.
+/// An enum of findings: behind the arrow of each its code, its severity and its [`Effect`], then its
+/// sentence, as `format` takes it. `of` names their kind where they are not of one channel.
 macro_rules! findings {
     (
         $(#[$of_enum:meta])*
         pub enum $name:ident $(of $kind:ident)? {$(
             $(#[$of_variant:meta])*
             $variant:ident $({ $($field:ident: $type:ty),* $(,)? })? $(($inner:ident: $inner_type:ty))?
-                => $code:expr, ($($sentence:tt)*);
+                => $row:expr, ($($sentence:tt)*);
         )*}
     ) => {
         $(#[$of_enum])*
@@ -20,14 +21,15 @@ macro_rules! findings {
         )*}
 
         impl $name {
-            /// The check that speaks, and its severity.
+            /// The check that speaks, its severity, and what it takes away.
             #[allow(unused_variables, clippy::match_same_arms, reason = "a variant's fields, one arm each")]
-            pub(super) fn code(&self) -> (Code, Severity) {
-                #[allow(unused_imports, reason = "few need all")]
-                use Severity::{Error, Note, Warning};
-                match self {$(
-                    Self::$variant $({ $($field),* })? $(($inner))? => $code,
-                )*}
+            pub(super) fn row(&self) -> super::FindingRow {
+                #[allow(unused_imports, clippy::enum_glob_use, reason = "few need all")]
+                use {super::Effect::*, Severity::*};
+                let (code, severity, effect) = match self {$(
+                    Self::$variant $({ $($field),* })? $(($inner))? => $row,
+                )*};
+                super::FindingRow(code, severity, effect)
             }
         }
 
@@ -42,8 +44,8 @@ macro_rules! findings {
 
         $(impl From<$name> for super::Finding {
             fn from(found: $name) -> Self {
-                let (of_kind, message) = (found.code(), found.to_string());
-                Self::made(super::FindingKind::$kind(found), of_kind, &message)
+                let (row, message) = (found.row(), found.to_string());
+                Self::made(super::FindingKind::$kind(found), row, &message)
             }
         })?
     };
@@ -54,6 +56,7 @@ mod channel;
 mod clock;
 mod code;
 mod drop;
+mod effect;
 mod mcap;
 mod rest;
 mod table;
@@ -64,6 +67,7 @@ pub use channel::{ChannelFinding, During, RotationCause};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::{Cure, DropFinding, Slip};
+pub use effect::{Effect, ResultPart};
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};
 pub use rest::{RestCause, RestFinding};
@@ -94,6 +98,9 @@ pub enum FindingKind {
     Rest(RestFinding),
 }
 
+/// A finding's row but for its sentence: the check that speaks, the severity, and the effect.
+struct FindingRow(IssueCode, Severity, Effect);
+
 /// One finding about a recording or a result; a row of `quality` in the result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
@@ -104,6 +111,9 @@ pub struct Finding {
     pub code: IssueCode,
     /// How much it weighs; far from the event less than what was found would by itself.
     pub severity: Severity,
+    /// What it takes away; of a velocity step less where the other channels determine it.
+    #[serde(rename = "takes")]
+    pub effect: Effect,
     /// The channel's name in the cask file, where it concerns one.
     pub channel: Option<String>,
     /// One sentence: what was found, its size, and what to do.
@@ -117,15 +127,26 @@ pub struct Finding {
 impl ChannelFinding {
     /// The finding, about the channel of that name.
     pub fn on(self, channel: &str) -> Finding {
-        let (of_kind, message) = (self.code(), self.sentence(channel));
-        Finding::made(FindingKind::Channel(self), of_kind, &message).on(channel)
+        let (row, message) = (self.row(), self.sentence(channel));
+        Finding::made(FindingKind::Channel(self), row, &message).on(channel)
     }
 }
 
 impl Finding {
-    fn made(what: FindingKind, (code, severity): (IssueCode, Severity), message: &str) -> Self {
+    fn made(what: FindingKind, FindingRow(code, severity, effect): FindingRow, message: &str) -> Self {
         let message = shortened(message).into_owned();
-        Self { what, code, severity, channel: None, message, from_s: None, to_s: None }
+        Self { what, code, severity, effect, channel: None, message, from_s: None, to_s: None }
+    }
+
+    /// True if it takes a part of the result away.
+    pub fn takes(&self, part: ResultPart) -> bool {
+        self.effect.takes().contains(&part)
+    }
+
+    /// Its sentence, behind the name of its channel where the sentence does not name it.
+    pub fn with_channel(&self) -> String {
+        let unnamed = self.channel.as_ref().filter(|channel| !self.message.contains(&channel[..]));
+        unnamed.map_or_else(|| self.message.clone(), |channel| format!("{channel}: {}", self.message))
     }
 
     /// The same, about one channel.

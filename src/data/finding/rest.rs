@@ -16,9 +16,8 @@ pub enum RestCause {
     #[error("that is the other axis of the cask; correct `axis`, or how the sensor sits")]
     Axis,
     #[error(
-        "it feels no gravity: AC-coupled (state `coupling`, or switch it to DC), unplugged, or its \
-             scale far \
-             too small"
+        "it feels no gravity: AC-coupled (state `coupling`, or switch it to DC), unplugged, or its scale far \
+         too small"
     )]
     Nothing,
     #[error("{0:.4} times as much, the factor between two units; correct `unit` or `sensitivity`")]
@@ -33,57 +32,58 @@ findings! {
 /// A finding about a recording at rest; its words follow the name of the channel where it is about one.
 pub enum RestFinding of Rest {
     /// The level at rest, and by how much it may be off.
-    Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error),
+    Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error, Nothing),
         ("reads {reads_g:+.2} g at rest, where {expected_g:+.2} ± {most_g:.1} g is expected: {cause}");
     /// All samples are equal.
-    OneValue => (Code::DeadChannel, Error),
+    OneValue => (Code::DeadChannel, Error, Nothing),
         ("holds one value, without any noise: unplugged, stuck, the wrong `source`, or steps of the \
          converter above the noise; check cable, amplifier and range");
     /// The level changes at rest.
-    Unsteady => (Code::Offset, Warning),
+    Unsteady => (Code::Offset, Warning, Nothing),
         ("does not rest: its level changes by more than 2 % of g; wait until cask and amplifier are steady");
     /// The level of an angular-rate sensor.
-    Rate { reads_deg_s: f64 } => (Code::Offset, if reads_deg_s.abs() > LARGE_DEG_S { Warning } else { Note }),
+    Rate { reads_deg_s: f64 }
+        => (Code::Offset, if reads_deg_s.abs() > LARGE_DEG_S { Warning } else { Note }, Nothing),
         ("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}",
          if reads_deg_s.abs() > LARGE_DEG_S { ": balance it, or correct its `unit`" }
          else { "; the rest before the release takes it off" });
     /// The level of an angular-rate sensor changes.
-    Turning => (Code::Offset, Warning),
+    Turning => (Code::Offset, Warning, Nothing),
         ("does not rest: its level changes by more than 1°/s; wait until the cask and the sensor are steady");
     /// Noise or the steps of the converter leave the offset open.
-    OpenOffset { u95_g: f64 } => (Code::Noise, Warning),
+    OpenOffset { u95_g: f64 } => (Code::Noise, Warning, Nothing),
         ("has an offset that is open by ± {u95_g:.2} g: slow noise, or coarse steps of the converter; choose \
          a smaller range or more bits, and check the cable");
     /// The range is below the peak expected of a first impact of this length; a note where that may be
     /// longer.
     Range { range_g: f64, peak_g: f64, pulse_s: f64, is_sure: bool }
-        => (Code::Clipped, if *is_sure { Warning } else { Note }),
+        => (Code::Clipped, if *is_sure { Warning } else { Note }, Nothing),
         ("has a range of {range_g:.0} g; a first impact of {:.0} ms peaks at up to {peak_g:.0} g there, \
          ringing aside: choose a larger range, or state `duration_s` under `[contact]`", 1e3 * pulse_s);
     /// The time before the trigger is too short.
-    ShortPretrigger { before_s: f64, least_s: f64 } => (Code::BeginsLate, Warning),
+    ShortPretrigger { before_s: f64, least_s: f64 } => (Code::BeginsLate, Warning, Nothing),
         ("the times begin {:.0} ms before zero, their trigger: too little of the free fall before an impact; \
          set a pre-trigger of {least_s} s or more", 1e3 * before_s);
     /// The record behind the trigger ends before the slap-down.
-    ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning),
+    ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning, Nothing),
         ("the record ends {after_s:.2} s behind its trigger; the slap-down takes up to {needs_s:.2} s: \
          record longer");
     /// Of the file with the rest of a drop, which is not the drop's own record.
-    InRestFile { file: String, found: String, what: Code } => (*what, Note),
+    InRestFile { file: String, found: String, what: Code } => (*what, Note, Nothing),
         ("in the file of the rest, {file}: {found}");
     /// Another number of blows than two.
-    Blows { count: usize } => (Code::NoImpact, Warning),
+    Blows { count: usize } => (Code::NoImpact, Warning, Nothing),
         ("{count} blows are seen where one on each end is expected: strike each end once, the first end \
          first, a second apart, so that every transverse channel answers");
     /// The channel answers the blow on the other end first.
-    OtherEnd { struck: &'static str } => (Code::EndsExchanged, Error),
+    OtherEnd { struck: &'static str } => (Code::EndsExchanged, Error, Nothing),
         ("answers the blow on the {struck} end before the channels of that end: the ends are exchanged; \
          correct `end` and `position_m`, or `source`, or exchange the cables");
     /// The first swing after a blow from below goes down.
-    SwingsDown => (Code::Polarity, Error),
+    SwingsDown => (Code::Polarity, Error, Nothing),
         ("swings down under a blow from below on its own end, which reads positive: turn `polarity` round");
     /// The clocks of two channels are apart by both blows.
-    ClocksApart { behind_s: f64, other: String } => (Code::Skew, Warning),
+    ClocksApart { behind_s: f64, other: String } => (Code::Skew, Warning, Nothing),
         ("is {:.1} ms behind {other} by both blows: their clocks are apart; use one trigger", 1e3 * behind_s);
 }
 }
@@ -101,7 +101,7 @@ impl RestCause {
 impl RestFinding {
     /// The finding, about the channel of that name.
     pub fn on(self, channel: &str) -> Finding {
-        let (code, message) = (self.code(), format!("{channel} {self}"));
-        Finding::made(FindingKind::Rest(self), code, &message).on(channel)
+        let (row, message) = (self.row(), format!("{channel} {self}"));
+        Finding::made(FindingKind::Rest(self), row, &message).on(channel)
     }
 }

@@ -7,33 +7,34 @@ findings! {
 /// A finding about the times of rows or blocks, in any format.
 pub enum TimesFinding of Times {
     /// Times that run backward, first from one to another.
-    Backward { count: usize, from_s: f64, to_s: f64 } => (Code::DisorderedBlocks, Note),
+    Backward { count: usize, from_s: f64, to_s: f64 } => (Code::DisorderedBlocks, Note, Nothing),
         ("times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by \
          time");
     /// Samples of equal times, some with different values.
     CameTwice { samples: usize, different: usize }
-        => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }),
+        => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }, Local),
         ("{samples} sample(s) came twice with the same time: {}",
          if *different == 0 { "the copies were dropped".into() }
          else { format!("{different} of them with different values, of which the first was kept") });
     /// Samples that are no numbers.
-    NonFinite { samples: usize } => (Code::NonFinite, Warning),
+    NonFinite { samples: usize } => (Code::NonFinite, Warning, LostSamples),
         ("{samples} sample(s) are empty, NaN or infinite and count as missing");
     /// One gap.
-    Gap { lost: usize, over_s: f64 } => (Code::Gap, Warning),
+    Gap { lost: usize, over_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{lost} sample(s) are missing over {:.2} ms", 1e3 * over_s);
     /// Many gaps, the longest of them over a span.
-    Gaps { lost: usize, gaps: usize, longest: usize, over_s: f64 } => (Code::Gap, Warning),
+    Gaps { lost: usize, gaps: usize, longest: usize, over_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{lost} samples are missing in {gaps} gaps, the longest of {longest} samples over {over_s:.3e} s \
          (the span given)");
     /// Times off an even base, onto which the samples were interpolated.
     Jitter(jitter: Jitter)
-        => if jitter.is_of_clock() { (Code::Clock, Warning) } else { (Code::TimeJitter, Note) },
+        => if jitter.is_of_clock() { (Code::Clock, Warning, Nothing) }
+           else { (Code::TimeJitter, Note, Nothing) },
         ("{jitter}");
     /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so
     /// unevenly.
     Coarse { step_s: f64, rate_hz: f64, uncertainty: f64, off_s: Option<f64>, is_sure: bool }
-        => (Code::Clock, if *is_sure { Note } else { Warning }),
+        => (Code::Clock, if *is_sure { Note } else { Warning }, Nothing),
         ("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at \
          {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
          digits(step_s * rate_hz, 3), digits(*rate_hz, 6), digits(100.0 * uncertainty, 2),
@@ -43,7 +44,7 @@ pub enum TimesFinding of Times {
          step = digits(*step_s, 3));
     /// Coarse times beside a stated rate; `off_s` where they contradict it.
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> }
-        => (Code::Clock, if off_s.is_some() { Warning } else { Note }),
+        => (Code::Clock, if off_s.is_some() { Warning } else { Note }, Nothing),
         ("the times are cut to {} s{}; the samples were taken as evenly spaced at the declared {rate} Hz",
          digits(*step_s, 3),
          off_s.map(|off_s| format!(" and change up to {} s off even steps at the declared {} Hz: samples are \
@@ -51,36 +52,36 @@ pub enum TimesFinding of Times {
              .unwrap_or_default(),
          rate = digits(*rate_hz, 6));
     /// Equal times beside a stated rate.
-    AllEqual { rate_hz: f64 } => (Code::Clock, Note),
+    AllEqual { rate_hz: f64 } => (Code::Clock, Note, Nothing),
         ("all times are equal; the samples were taken as evenly spaced at the declared {} Hz",
          digits(*rate_hz, 6));
     /// Blocks that come after a later one.
-    BlocksBackward { count: usize } => (Code::DisorderedBlocks, Note),
+    BlocksBackward { count: usize } => (Code::DisorderedBlocks, Note, Nothing),
         ("{count} block(s) came after a later one; they were put in order by their stamps");
     /// Blocks shorter than all others by less than their stamps tell.
-    ShortBlocks { count: usize, lacking: f64, off_s: f64 } => (Code::Gap, Warning),
+    ShortBlocks { count: usize, lacking: f64, off_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up \
          to {:.3} ms, do not tell whether samples are missing there; the blocks were joined", 1e3 * off_s);
     /// Stamps of blocks that are cut, and agree with the stated rate; if they were exact they might tell
     /// another.
     StampsCut { cut_s: f64, rate_hz: f64, if_exact_hz: Option<f64> }
-        => (Code::Clock, if if_exact_hz.is_some() { Warning } else { Note }),
+        => (Code::Clock, if if_exact_hz.is_some() { Warning } else { Note }, Nothing),
         ("the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken{}; blocks \
          that follow one another were joined",
         if_exact_hz.map(|hz| format!(", but would tell {hz:.6} Hz if they were exact")).unwrap_or_default());
     /// Stamps of blocks that run at another rate than the stated one, far off or not.
     StampsRunOff { stamps_hz: f64, stated_hz: f64, rms_s: f64, is_far: bool }
-        => (Code::Clock, if *is_far { Warning } else { Note }),
+        => (Code::Clock, if *is_far { Warning } else { Note }, Nothing),
         ("the blocks' stamps run at {stamps_hz:.6} Hz, {:.1} ppm off the stated {stated_hz:.6} Hz, and \
          scatter by {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the \
          stamps' rate was taken", 1e6 * (stamps_hz / stated_hz - 1.0));
     /// A few blocks that are stamped as at another rate than the one that was taken.
-    FewBlocks { stamps_hz: f64, taken_hz: f64 } => (Code::Clock, Warning),
+    FewBlocks { stamps_hz: f64, taken_hz: f64 } => (Code::Clock, Warning, Nothing),
         ("its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or \
          the rate is wrong, and every velocity with it", hz(*stamps_hz), hz(*taken_hz));
     /// Blocks over times that are there already, some with different samples.
     BlocksTwice { count: usize, different: usize }
-        => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }),
+        => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }, Local),
         ("{count} block(s) {}",
          if *different == 0 { "repeat samples that are there already; the copies were dropped".into() }
          else { format!("cover times that are there already, {different} of them with different samples; \

@@ -97,6 +97,28 @@ mod tests {
     use super::*;
 
     #[test]
+    fn whatever_a_damage_takes_has_the_finding_that_took_it() {
+        let plan = &plans(&TrialRequest { quick: true, seed: 1 })[0];
+        let kinds: Vec<&DamageKind> = damage::growing().collect();
+        let hold = |kind: &&DamageKind| {
+            let (drop, recording) = kind.grown(plan, kind.growing.last().copied().unwrap_or_default());
+            let Some(mut result) = drop.analyzed(&recording).map(|analysis| analysis.result) else {
+                return 0;
+            };
+            result.find_missing();
+            for missing in &result.missing {
+                let took = missing.because.map(|place| &result.quality[place]);
+                let is_headline = missing.quantity == "k" || missing.quantity == "slap_down.speed";
+                assert!(took.is_some() || !is_headline, "{}: {missing:?}", kind.name);
+                assert!(took.is_none_or(|f| !f.effect.takes().is_empty()), "{}: {missing:?}", kind.name);
+            }
+            usize::from(result.k.is_none())
+        };
+        let refused: usize = kinds.par_iter().map(hold).sum();
+        assert!(refused > 10, "{refused}");
+    }
+
+    #[test]
     fn a_drop_is_inside_refused_or_silent() {
         let plan = &plans(&TrialRequest { quick: true, seed: 1 })[0];
         let fate = |name, size| drop_of(damage::named(name).expect("a damage"), plan, size);
