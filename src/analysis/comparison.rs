@@ -90,6 +90,7 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
         up_m_s.is_some_and(|up_m_s| *up_m_s < -FALLS_ON * file.drop.impact_velocity_m_s)
     };
     found.extend(judge::judge_rest(impact.recorded(), events).filter(|rest| !falls_on(rest)));
+    found.extend(judge::judge_strained(reconstruction, quantities.k));
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
