@@ -176,6 +176,10 @@ pub enum ChannelFinding {
     LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning),
         ("is {mismatch_m_s:+.2} m/s off its flight between the impacts by the time the second end strikes: \
          the first end touched again, or the sensor drifts; the film tells which");
+    /// The flight's fit, carried back to the separation, misses the velocity.
+    EarlyMismatch { mismatch_m_s: f64 } => (Code::FlightFit, Warning),
+        ("is {mismatch_m_s:+.2} m/s off its flight as the first end leaves the target: its cable broke \
+         contact, or a force acts on after the separation; k and the slap-down speed are not determined by it");
     /// Plateau and modes leave too much of the flight.
     Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 } => (Code::FlightFit, Warning),
         ("is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its velocity \
