@@ -3,13 +3,15 @@
 mod clipping;
 mod disturbed;
 mod hum;
+mod levels;
 mod offset;
 mod other;
+mod runs;
 
 pub use other::{measured_rotation, read_other};
 
 use crate::data::{
-    Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,
+    Axis, Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,
 };
 use crate::numerics::robust;
 use rayon::prelude::*;
@@ -95,8 +97,11 @@ fn signal(
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, before);
-    let gaps = clipping::runs(&force, |f| !f.is_finite());
+    let step_m_s2 = clipping::converter_step(channel, &force, noise_m_s2);
+    let rings = channel.axis == Axis::Transverse;
+    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, rings);
+    findings.extend(clipping::beyond_full_scale(channel, &force, noise_m_s2));
+    let gaps = runs::runs(&force, |f| !f.is_finite());
     for f in &mut force {
         if !f.is_finite() {
             *f = 0.0;
@@ -116,6 +121,7 @@ fn signal(
         ..Signal::default()
     };
     findings.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
+    findings.extend(levels::mark_breaks(&mut signal, noise_m_s2, step_m_s2, event.near_s));
     findings.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
     findings.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
     findings.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
@@ -160,7 +166,7 @@ mod tests {
     fn missing_samples_are_spans() {
         let force = [0.0, f64::NAN, f64::NAN, 1.0, f64::NAN];
         assert_eq!(
-            clipping::runs(&force, |f| !f.is_finite()),
+            runs::runs(&force, |f| !f.is_finite()),
             [Span { from: 1, to: 3 }, Span { from: 4, to: 5 }]
         );
     }
