@@ -121,6 +121,16 @@ impl<'a> Gauge<'a> {
         rms <= most.hypot(RINGING_SHARE * self.force[span.from])
     }
 
+    /// Whether the means of a level's inner parts differ by noise alone.
+    fn is_even(&self, span: Span) -> bool {
+        let means: Vec<f64> = self.parts(span).map(|part| reduce::sum(part) / as_f64(part.len())).collect();
+        let inner = means.get(1..means.len().max(2) - 1).unwrap_or_default();
+        let Some(first) = inner.first() else { return false };
+        let (low, high) = reduce::extremes(inner, *first);
+        let samples = as_f64(((span.to - span.from) / PARTS).max(1));
+        high - low < 2.0 * NOISE_FACTOR * self.noise / samples.sqrt()
+    }
+
     /// By how much the signal falls off a level before it and after it, towards 0 on the positive side, over
     /// what it would off the flattest rounded top: above 1 and below −1 that is a kink.
     fn kinks(&self, span: Span) -> [f64; 2] {
@@ -192,7 +202,7 @@ impl<'a> Gauge<'a> {
 
     fn is_break(&self, span: Span) -> bool {
         let count = span.to - span.from;
-        if count < LEAST_BREAK || !self.is_noise(span, 1.0) {
+        if count < LEAST_BREAK || !self.is_noise(span, 1.0) || !self.is_even(span) {
             return false;
         }
         let jumps = [self.jump(span, true), self.jump(span, false)];
@@ -220,31 +230,51 @@ impl<'a> Gauge<'a> {
     }
 }
 
-/// Breaks of a cable from `from_s` on, marked as gaps and set to 0, and said so.
-pub(super) fn mark_breaks(signal: &mut Signal, noise: f64, step: f64, from_s: f64) -> Option<Finding> {
-    let gauge = Gauge::new(&signal.force_m_s2, noise, step);
-    let is_lost = |s: &Span| {
-        [&signal.gaps, &signal.clipped].into_iter().flatten().any(|l| l.from <= s.to && s.from <= l.to)
-    };
+/// Where a cable may have broken contact from `from_s` on, by the samples of one channel.
+pub(super) fn breaks(signal: &Signal, step: f64, from_s: f64) -> Vec<Span> {
+    let gauge = Gauge::new(&signal.force_m_s2, signal.noise_m_s2, step);
+    let lost = || signal.gaps.iter().chain(&signal.clipped);
     let mut breaks = gauge.breaks(signal.index_from(from_s));
-    breaks.retain(|span| !is_lost(span));
+    breaks.retain(|span| lost().all(|l| l.to < span.from || span.to < l.from));
+    breaks
+}
+
+/// Of each channel the breaks that no other one has at the same time: a force that stands still does so in
+/// several, and a cable by itself.
+pub(super) fn of_one_channel(signals: &[Signal], breaks: &[Vec<Span>]) -> Vec<Vec<Span>> {
+    let times_s = |i: usize, s: &Span| (signals[i].time_s(s.from), signals[i].time_s(s.to));
+    let is_own = |own: usize, span: &Span| {
+        let (from_s, to_s) = times_s(own, span);
+        let others = (0..signals.len()).filter(|other| *other != own);
+        let mut spans = others.flat_map(|other| breaks[other].iter().map(move |s| times_s(other, s)));
+        spans.all(|other| other.1 < from_s || to_s < other.0)
+    };
+    (0..signals.len()).map(|i| breaks[i].iter().filter(|s| is_own(i, s)).copied().collect()).collect()
+}
+
+/// Marks breaks as gaps, sets them to 0 and says so.
+pub(super) fn mark(signal: &mut Signal, breaks: Vec<Span>) -> Option<Finding> {
     let longest = *breaks.iter().max_by_key(|span| span.to - span.from)?;
     let level_m_s2 = robust::median(&mut signal.force_m_s2[longest.from..longest.to].to_vec());
+    let (peak, noise) = (reduce::peak(&signal.force_m_s2), signal.noise_m_s2);
     let at = match level_m_s2.abs() {
-        level if level < ZERO_SHARE * gauge.peak + 2.0 * NOISE_FACTOR * gauge.noise => LevelKind::Zero,
-        level if level > RAIL_SHARE * gauge.peak => LevelKind::Rail,
+        level if level < ZERO_SHARE * peak + 2.0 * NOISE_FACTOR * noise => LevelKind::Zero,
+        level if level > RAIL_SHARE * peak => LevelKind::Rail,
         _ => LevelKind::Offset,
     };
-    let seconds = |span: &Span| as_f64(span.to - span.from) / signal.sample_rate_hz;
-    let most_m_s = breaks.iter().map(|span| signal.bridged_m_s(*span)).fold(0.0, f64::max);
-    let (breaks_count, length_s) = (breaks.len(), seconds(&longest));
     let (first, last) = (breaks.iter().map(|s| s.from).min()?, breaks.iter().map(|s| s.to).max()?);
+    let found = ChannelFinding::Broken {
+        at,
+        level_m_s2,
+        breaks: breaks.len(),
+        length_s: as_f64(longest.to - longest.from) / signal.sample_rate_hz,
+        most_m_s: breaks.iter().map(|span| signal.bridged_m_s(*span)).fold(0.0, f64::max),
+    };
     for span in &breaks {
         signal.force_m_s2[span.from..span.to].fill(0.0);
     }
     signal.gaps.extend(breaks);
     signal.gaps.sort_by_key(|gap| gap.from);
-    let found = ChannelFinding::Broken { at, level_m_s2, breaks: breaks_count, length_s, most_m_s };
     Some(found.on(&signal.name).between(signal.time_s(first), signal.time_s(last)))
 }
 
@@ -267,7 +297,8 @@ mod tests {
     }
 
     fn named(mut signal: Signal) -> Option<(LevelKind, Vec<Span>)> {
-        let found = mark_breaks(&mut signal, 1.0, 0.0, 0.015)?;
+        let own = breaks(&signal, 0.0, 0.015);
+        let found = mark(&mut signal, own)?;
         let FindingKind::Channel(ChannelFinding::Broken { at, .. }) = found.what else { panic!("{found:?}") };
         Some((at, signal.gaps))
     }

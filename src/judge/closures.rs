@@ -43,8 +43,9 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
 /// A closure that is met only because k is open: no contradiction, but nothing that confirms it either.
 pub fn judge_strained(choice: &ReconstructionChoice, k: Estimate) -> Option<Finding> {
     let strained = choice.closures.iter().find(|c| c.most_in_u() > STRAINED_U)?;
+    let is_missed = choice.closures.iter().any(|c| c.miss_in_u.abs() > MISSED_U);
     let found = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
-    (k.u95 > OPEN_U95_K).then(|| found.into())
+    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| found.into())
 }
 
 /// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the
