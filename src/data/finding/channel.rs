@@ -203,7 +203,7 @@ pub enum ChannelFinding {
     /// The flight's fit, carried back to the separation, misses the velocity.
     EarlyMismatch { mismatch_m_s: f64 } => (Code::FlightFit, Warning),
         ("is {mismatch_m_s:+.2} m/s off its flight as the first end leaves the target: its cable broke \
-         contact, or a force acts on after the separation; k and the slap-down speed are not determined by it");
+         contact, or a force acts on after the separation; k and the slap-down speed are not determined");
     /// Plateau and modes leave too much of the flight.
     Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 } => (Code::FlightFit, Warning),
         ("is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its velocity \
