@@ -82,6 +82,11 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
+    // A limit or a broken cable of the channel that is left out is why it disagrees.
+    let is_cause = |f: &&Finding| matches!(f.code, IssueCode::Clipped | IssueCode::Dropout);
+    let causes = found.result.quality.iter().filter(|f| f.channel.as_ref() == Some(&name)).filter(is_cause);
+    let as_warning = |f: &Finding| Finding { severity: f.severity.min(Severity::Warning), ..f.clone() };
+    better.result.quality.extend(causes.map(as_warning));
     let speed_and_k = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
     let finding =
         ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.on(&name);
