@@ -117,7 +117,11 @@ impl<'a> Gauge<'a> {
             reduce::sum_of(part, |f| (f - mean).powi(2))
         };
         let rms = (inner.iter().map(squares).sum::<f64>() / as_f64(count)).sqrt();
-        let most = noise_left * self.noise * (MOST_NOISE + 3.0 / (2.0 * as_f64(count)).sqrt());
+        if noise_left < 1.0 {
+            // Where a force may stay level, no chance of few samples speaks for a limit.
+            return rms <= noise_left * self.noise;
+        }
+        let most = self.noise * (MOST_NOISE + 3.0 / (2.0 * as_f64(count)).sqrt());
         rms <= most.hypot(RINGING_SHARE * self.force[span.from])
     }
 
@@ -145,7 +149,9 @@ impl<'a> Gauge<'a> {
         // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples
         // farther on.
         let wider = as_f64(count - 1 + 2 * reach) / as_f64(count - 1);
-        let rounded = (depth * (wider.powi(FLATTEST) - 1.0)).max(f64::MIN_POSITIVE);
+        let rounded = depth * (wider.powi(FLATTEST) - 1.0);
+        // A single sample of noise is no kink.
+        let rounded = rounded.max(2.0 * NOISE_FACTOR * self.noise).max(f64::MIN_POSITIVE);
         let level = robust::median(&mut self.force[span.from..span.to].to_vec());
         let farthest = |beyond: &[f64]| {
             let off = beyond.iter().map(|f| level - f);
