@@ -84,6 +84,8 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     // An end whose channel was made of the other's does not show where it goes.
     found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);
+    let left_s = events.separation_s().unwrap_or(flight.from_s);
+    found.extend(judge::judge_separation(flight, left_s));
     found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
@@ -92,6 +94,7 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
         up_m_s.is_some_and(|up_m_s| *up_m_s < -FALLS_ON * file.drop.impact_velocity_m_s)
     };
     found.extend(judge::judge_rest(impact.recorded(), events).filter(|rest| !falls_on(rest)));
+    found.extend(judge::judge_strained(reconstruction, quantities.k));
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);

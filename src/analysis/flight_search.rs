@@ -141,6 +141,7 @@ pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Opt
     let mut found = searched(file, integrated, true, beginnings)?;
     if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
+        motion::compare_early(flight, integrated, window, file.cask.cog_m, found.separation.time_s);
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
         let is_off =
             flight.plateaus.iter().any(|p| p.late_mismatch_m_s.is_some_and(|off_m_s| off_m_s != 0.0));

@@ -4,7 +4,7 @@
 use super::analyzed;
 use super::flight_search::Patience;
 use crate::data::{
-    Analysis, Axis, CaskFile, ChannelFinding, Finding, IssueCode, MISSED_U, Recording, Severity,
+    Analysis, Axis, CaskFile, ChannelFinding, Effect, Finding, IssueCode, MISSED_U, Recording, Severity,
 };
 use crate::judge;
 
@@ -86,6 +86,14 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
+    // A limit or a broken cable of the channel that is left out is why it disagrees.
+    let is_cause = |f: &&Finding| matches!(f.effect, Effect::VelocityStep | Effect::Disturbance);
+    let causes = found.result.quality.iter().filter(|f| f.channel.as_ref() == Some(&name)).filter(is_cause);
+    let as_warning = |f: &Finding| {
+        let severity = f.severity.min(Severity::Warning);
+        Finding { severity, effect: Effect::Channel, ..f.clone() }
+    };
+    better.result.quality.extend(causes.map(as_warning));
     let speed_and_k = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
     let finding =
         ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.on(&name);

@@ -54,6 +54,10 @@ pub struct Plateau {
     /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long
     /// enough to tell.
     pub late_mismatch_m_s: Option<f64>,
+    /// Mean velocity behind the separation less what the fit, carried back, says of it, m/s, where the fit
+    /// begins later.
+    #[serde(skip)]
+    pub early_mismatch_m_s: Option<f64>,
 }
 
 /// How one candidate of the flight fit scored.

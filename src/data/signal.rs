@@ -7,6 +7,10 @@ use super::channel::Span;
 /// fall's.
 pub const MOST_LOST_M_S: f64 = 0.27;
 
+/// Standard deviations of the noise by which the flank of a limited pulse stands out of it: its slope is
+/// known to a sixth then.
+const CLEAR_OF_NOISE: f64 = 6.0;
+
 /// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
 ///
 /// Sample i was taken at `start_s + i / sample_rate_hz`. Missing samples are 0 and listed in `gaps`.
@@ -109,12 +113,28 @@ impl Signal {
             .map(|span| {
                 let length_s = (span.to - span.from) as f64 / self.sample_rate_hz;
                 let level = force(span.from).unwrap_or(0.0);
-                let slope = |i: Option<usize>| {
-                    i.and_then(force).map_or(0.0, |f| (level - f).abs() * self.sample_rate_hz)
+                // The slope over as many samples beyond as it takes to stand out of the noise.
+                let slope = |beyond: &dyn Fn(usize) -> Option<usize>| {
+                    let falls = (1..=(span.to - span.from).div_ceil(4)).map_while(|n| {
+                        let fallen = (level - force(beyond(n)?)?).abs();
+                        Some((fallen, fallen * self.sample_rate_hz / n as f64))
+                    });
+                    let falls: Vec<(f64, f64)> = falls.collect();
+                    let clear = falls.iter().find(|(fallen, _)| *fallen > CLEAR_OF_NOISE * self.noise_m_s2);
+                    clear.or(falls.last()).map_or(0.0, |(_, slope_m_s3)| *slope_m_s3)
                 };
-                (slope(span.from.checked_sub(1)) + slope(Some(span.to))) * length_s * length_s / 12.0
+                let before = slope(&|n| span.from.checked_sub(n));
+                (before + slope(&|n| Some(span.to + n - 1))) * length_s * length_s / 12.0
             })
             .sum()
+    }
+
+    /// What a straight bridge over a span holds, against 0, m/s.
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    pub fn bridged_m_s(&self, span: Span) -> f64 {
+        let at = |i: Option<usize>| i.and_then(|i| self.force_m_s2.get(i)).copied().unwrap_or(0.0);
+        let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
+        middle.abs() * (span.to - span.from) as f64 / self.sample_rate_hz
     }
 
     /// How much of the time between two times was not recorded, s.

@@ -121,7 +121,8 @@ pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) ->
         (range_g < peak_g).then(|| found.on(&channel.name))
     };
     let range = peaks.iter().enumerate().find_map(too_small);
-    let rate = peaks.last().and_then(|peak| low_rate(&channel.name, channel.sample_rate_hz, peak.lasts_s, 1.0));
+    let rate =
+        peaks.last().and_then(|peak| low_rate(&channel.name, channel.sample_rate_hz, peak.lasts_s, 1.0));
     let u_offset_m_s2 = quiet.u_offset_m_s2;
     let offset = RestFinding::OpenOffset { u95_g: 2.0 * u_offset_m_s2 / G };
     let offset = (u_offset_m_s2 > MOST_U_OFFSET_M_S2).then(|| offset.on(&channel.name));

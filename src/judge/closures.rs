@@ -18,6 +18,11 @@ const LENGTH_U: f64 = 3.0;
 /// deviate is above 3.31 as often as it is beyond ± 3.5.
 const CHANCE: f64 = 3.31;
 
+/// A closure missed by this many standard uncertainties strains a k of this 95 % half-width, three times the
+/// usual: chance alone has one in 60 of such k, and an overloaded channel k 3.9 half-widths off.
+const STRAINED_U: f64 = 2.4;
+const OPEN_U95_K: f64 = 0.075;
+
 /// A gap within this time of the first contact may hide the contact, s.
 const CONTACT_S: f64 = 1e-3;
 /// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a
@@ -33,6 +38,14 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
         findings.extend(together(choice));
     }
     findings
+}
+
+/// A closure that is met only because k is open: no contradiction, but nothing that confirms it either.
+pub fn judge_strained(choice: &ReconstructionChoice, k: Estimate) -> Option<Finding> {
+    let strained = choice.closures.iter().find(|c| c.most_in_u() > STRAINED_U)?;
+    let is_missed = choice.closures.iter().any(|c| c.miss_in_u.abs() > MISSED_U);
+    let found = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
+    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| found.into())
 }
 
 /// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the

@@ -14,6 +14,7 @@ mod others;
 mod result;
 mod rigid;
 mod sampling;
+mod separation;
 mod silent;
 mod skew;
 mod taps;
@@ -24,7 +25,7 @@ pub use at_rest::{
 };
 pub use blows::judge_blows;
 pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places};
-pub use closures::{judge_closures, tells_lost_steps};
+pub use closures::{judge_closures, judge_strained, tells_lost_steps};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
@@ -35,6 +36,7 @@ pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotatio
 pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch};
 pub use rigid::{SensorPlace, judge_rigid, places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
+pub use separation::judge_separation;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
 pub use taps::judge_taps;

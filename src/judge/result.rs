@@ -62,6 +62,8 @@ pub fn judge_motion(
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
     if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
         add(DropFinding::Restitution { k });
+    } else if k.value < 0.0 {
+        add(DropFinding::RestitutionDoubted { k, strained: None });
     }
     if quantities.angular_velocity.value <= 0.0 {
         let cask = &cask_file.cask;

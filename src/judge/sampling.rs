@@ -1,8 +1,8 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
 use crate::data::{ChannelFinding, End, Events, Finding, Signal, transverse};
-use crate::numerics::{as_f64, reduce};
 use crate::numerics::spectrum::magnitude;
+use crate::numerics::{as_f64, reduce};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;

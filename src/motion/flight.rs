@@ -1,6 +1,6 @@
 //! The free-flight window to plateaus, drift and as many damped modes as the data call for.
 
-use super::{Integrated, Velocity, Window};
+use super::{Integrated, Velocity, Window, clear_of_contact_s};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
@@ -23,6 +23,10 @@ const LEAST_FLOOR: f64 = 1e-3;
 const LATE_S: f64 = 0.02;
 /// A shorter stretch that is compared too, s, for what happens shortly before the slap-down.
 const LAST_S: f64 = 0.004;
+/// Stretch behind the separation that is compared with the fit, s: at the most half a period of 500 Hz, at
+/// the least what a fit that begins clear of the contact leaves before it.
+const LONGEST_EARLY_S: f64 = 1e-3;
+const SHORTEST_EARLY_S: f64 = 5e-4;
 /// This share of a deviation over the shorter stretch counts: a mode that is fitted poorly leaves more there.
 const LAST_SHARE: f64 = 0.5;
 /// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties
@@ -109,6 +113,34 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
         integrated.each().map(|of| late_mismatch_m_s(of, flight, window, cog_m)).collect();
     for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
         plateau.late_mismatch_m_s = mismatch;
+    }
+}
+
+/// Holds each channel behind the separation at `left_s` against the fit, carried back   (20)
+pub fn compare_early(
+    flight: &mut FlightFit,
+    integrated: &Integrated,
+    window: &Window,
+    cog_m: f64,
+    left_s: f64,
+) {
+    let from_s = clear_of_contact_s(integrated.contact_s, left_s);
+    let length_s = LONGEST_EARLY_S.min((flight.from_s - from_s) / 2.0);
+    if length_s < SHORTEST_EARLY_S {
+        return;
+    }
+    let mismatch_m_s = |(signal, velocity): (&Signal, &Velocity)| {
+        let plateau = flight.plateau(&signal.name)?;
+        let after_s = from_s - flight.from_s..from_s + length_s - flight.from_s;
+        let slope_m_s2 =
+            plateau.zero_shift_m_s2 + centrifugal_m_s2(signal, window.angular_velocity_rad_s, cog_m);
+        let straight_m_s = plateau.velocity_step_m_s + slope_m_s2 * f64::midpoint(after_s.start, after_s.end);
+        let ringing_m_s = mean_ringing_m_s(flight, plateau, after_s);
+        Some(velocity.mean(from_s, from_s + length_s) - straight_m_s - ringing_m_s)
+    };
+    let mismatches: Vec<Option<f64>> = integrated.each().map(mismatch_m_s).collect();
+    for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
+        plateau.early_mismatch_m_s = mismatch;
     }
 }
 
@@ -369,6 +401,7 @@ pub(super) fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<P
                 slow_residual_m_s: own.slow_residual,
                 ringing_m_s: own.amplitudes.clone(),
                 late_mismatch_m_s: None,
+                early_mismatch_m_s: None,
             }
         })
         .collect()

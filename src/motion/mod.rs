@@ -17,7 +17,7 @@ mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
-pub use flight::{compare_late, fit_flights};
+pub use flight::{compare_early, compare_late, fit_flights};
 pub use histories::drive;
 pub use landing::landing;
 pub use late_blow::{step_m_s, strike};

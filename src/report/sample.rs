@@ -270,6 +270,7 @@ fn flight() -> FlightFit {
         slow_residual_m_s: 0.032,
         ringing_m_s: vec![(0.7, -0.4)],
         late_mismatch_m_s: None,
+        early_mismatch_m_s: None,
     };
     let score = |modes, drift, bic, residual_m_s| FlightModelScore {
         modes,

@@ -55,6 +55,10 @@ pub enum DropFinding of Drop {
         ("k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is wrong",
          k.value, k.u95,
          if k.u95 > 1.0 { "says nothing of a number between 0 and 1" } else { "lies outside 0 to 1" });
+    /// A k below 0 within its interval, or one that moves far for a closure to be met.
+    RestitutionDoubted { k: Estimate, strained: Option<Closure> }
+        => (Code::RestitutionRange, Warning, Nothing),
+        ("k = {:.3} ± {:.3} {}", k.value, k.u95, doubt_of_k(strained.as_ref()));
     /// The second end rises.
     TurnsTheWrongWay => (Code::EndsExchanged, Error, Motion),
         ("the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong \
@@ -193,6 +197,20 @@ fn code_of(closure: ClosureKind) -> Code {
 
 fn joined<T>(all: &[T], words: impl Fn(&T) -> String, between: &str) -> String {
     all.iter().map(words).collect::<Vec<_>>().join(between)
+}
+
+fn doubt_of_k(strained: Option<&Closure>) -> String {
+    match strained {
+        None => "lies below 0, which no impact gives: a channel of the first end reads too little, or the \
+                 drop height is wrong"
+            .into(),
+        Some(Closure { name, miss, .. }) => {
+            format!(
+                "is open, and moved far so that the {name} is met ({miss} without): check the channels \
+                     of the first end"
+            )
+        }
+    }
 }
 
 fn what_was_seen(least_m_s: f64, without_rise: Option<CoarseEvent>) -> String {

@@ -14,6 +14,10 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut Synthetic
         "dead" => dies(case, recording, -1.0),
         "dies" => dies(case, recording, size / 100.0),
         "unplugged" => unplugged(case, recording, size),
+        "limited_first" => limited(case, recording, 0, size),
+        "limited_second" => limited(case, recording, 1, size),
+        "broken_zero" => breaks(case, recording, size, 0.0),
+        "broken_rail" => breaks(case, recording, size, 1.5),
         "drift" => drift(case, recording, size),
         "spikes" => spikes(case, recording, size),
         "base_strain" => base_strain(case, recording, size),
@@ -81,6 +85,32 @@ fn unplugged(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64
         let hum = size * (TAU * 50.0 * time_s(case, channel, i) + phase).sin();
         channel.samples[i] = single(g * (hum + 0.05 * case.chance.normal()));
     }
+}
+
+/// Noise of a converter, g.
+const CONVERTER_G: f64 = 0.1;
+
+/// An amplifier that limits at `size` percent below the peak, with the converter's noise behind it.
+fn limited(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usize, size: f64) {
+    let channel = &mut recording.channels[which];
+    let (limit, noise) = ((1.0 - size / 100.0) * peak(channel), CONVERTER_G * g_in(channel));
+    for sample in &mut channel.samples {
+        *sample = single(f64::from(*sample).clamp(-limit, limit) + noise * case.chance.normal());
+    }
+    case.stated.channels[which].full_scale = None;
+}
+
+/// A cable that breaks contact for `size` ms between first contact and slap-down, and leaves the converter's
+/// noise at `level` peaks.
+fn breaks(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64, level: f64) {
+    let from_s = case.chance.even(0.0, (case.way_s() - 1e-3 * size).max(0.0));
+    let which = case.chance.index(2);
+    let channel = &mut recording.channels[which];
+    let (level, noise) = (level * peak(channel), CONVERTER_G * g_in(channel));
+    for i in index(case, channel, from_s)..index(case, channel, from_s + 1e-3 * size) {
+        channel.samples[i] = single(level + noise * case.chance.normal());
+    }
+    case.stated.channels[which].full_scale = None;
 }
 
 /// A slope over the whole record.
