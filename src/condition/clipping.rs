@@ -2,12 +2,20 @@
 
 use super::levels::Gauge;
 use super::runs::runs;
-use crate::data::{Channel, ChannelFinding, Finding, Span};
-use crate::numerics::reduce;
+use crate::data::{Axis, Channel, ChannelFinding, Finding, Span};
+use crate::numerics::{as_f64, reduce, robust};
+use std::cell::LazyCell;
 
-/// Standard deviations of the noise within which samples count as standing at the stated full scale: noise
-/// may come after the limit.
+/// Fewest samples at an extreme that make a flat top.
+const LEAST_RUN: usize = 3;
+
+/// Standard deviations of the noise within which samples count as standing at an extreme: noise may come
+/// after the limit.
 const NOISE_FACTOR: f64 = 6.0;
+
+/// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
+/// plain one is of the second.
+const FLATTEST: i32 = 4;
 
 /// A reading above this share of the full scale, beside the noise, is beyond it: data sheets round it, and a
 /// filter behind the limit rings.
@@ -16,33 +24,59 @@ const BEYOND: f64 = 1.05;
 /// Values that differ by less than this share of the peak are the same.
 const LEAST_STEP: f64 = 1e-9;
 
-/// A bending cask rings on through a force that stays level, a stiff one along its axis does not: there, and
-/// in other quantities, what still has this share of the noise is no limit. Noise that comes after the limit
-/// is taken to be less.
+/// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to
+/// sample is a force that stays level, as of a cask that is crushed. Noise that comes after the limit is
+/// taken to be less.
 const NOISE_LEFT: f64 = 0.6;
 
-/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale, or at a level that
-/// no force has, as indices; `rings` where a force that stays level would. What was taken off is `rest`.
+/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
+/// extreme, as indices.
+///
+/// The first `quiet` samples lie before the impact. What was taken off is `rest`.
 pub(super) fn clipped(
     channel: &Channel,
     force: &[f64],
     rest: f64,
     noise_m_s2: f64,
-    rings: bool,
+    quiet: usize,
 ) -> Vec<Span> {
+    let roughness = roughness(force.get(..quiet).unwrap_or_default());
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
-        // One flat from its first to its last sample within the noise of the limit.
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
+        // One flat from its first to its last sample within the noise of the limit.
         let (at, near) = (0.999 * limit_m_s2, limit_m_s2 - NOISE_FACTOR * noise_m_s2);
         let reaches = |span: &Span| force[span.from..span.to].iter().any(|f| (f + rest).abs() >= at);
         spans.extend(runs(force, |f| (f + rest).abs() >= near.min(at)).into_iter().filter(reaches));
     }
-    let gauge = Gauge::new(force, noise_m_s2, converter_step(channel, force, noise_m_s2));
-    let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
-    let limits: Vec<Span> =
-        gauge.limits(if rings { 1.0 } else { NOISE_LEFT }).into_iter().filter(|s| !is_known(s)).collect();
-    spans.extend(limits);
+    let (low, high) = reduce::extremes(force, 0.0);
+    let peak = high.max(-low);
+    // Where the converter's step exceeds the noise, all that lies within a step is one to it.
+    let moved = channel.time_jitter_s > 0.0;
+    let step = LazyCell::new(|| Some(step(force, moved, peak)).filter(|s| s.is_finite()).unwrap_or(0.0));
+    let (noise, least) = (NOISE_FACTOR * noise_m_s2, LEAST_STEP * peak);
+    let is_noise = !moved && reduce::least_step_beyond(force, least, noise - least) == 0.0;
+    let band = noise.max(least + if is_noise { 0.0 } else { *step });
+    for extreme in [low, high] {
+        if extreme.abs() < 4.0 * band {
+            continue;
+        }
+        for span in runs(force, |f| (f - extreme).abs() <= band) {
+            let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
+            let is_rail =
+                |span| is_flat_top(force, span, band, *step) && !carries_noise(force, span, roughness);
+            if span.to - span.from >= LEAST_RUN && !is_known && is_rail(span) {
+                spans.push(span);
+            }
+        }
+    }
+    if channel.axis == Axis::Transverse {
+        // Noise of the converter stands on a limit of the amplifier: there nothing else tells it.
+        let limits = Gauge::new(force, noise_m_s2, converter_step(channel, force, noise_m_s2)).limits();
+        let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
+        let further: Vec<Span> = limits.into_iter().filter(|s| !is_known(s)).collect();
+        spans.extend(further);
+    }
     spans.sort_by_key(|s| s.from);
     spans
 }
@@ -79,12 +113,46 @@ fn step(force: &[f64], moved: bool, peak: f64) -> f64 {
     if step < peak / 4.0 { step } else { f64::INFINITY }
 }
 
+/// Standard deviation of the noise by the steps from sample to sample, which no slow swing adds to.
+fn roughness(quiet: &[f64]) -> f64 {
+    let pairs = quiet.windows(2).step_by(robust::stride(quiet.len()));
+    let steps: Vec<f64> = pairs.map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
+    if steps.len() < 8 { 0.0 } else { robust::spread(&steps) / std::f64::consts::SQRT_2 }
+}
+
+/// Whether the inside of a flat run still has the sensor's noise.
+fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
+    let inside = &force[span.from + 1..(span.to - 1).max(span.from + 1)];
+    let steps: f64 = inside.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    let count = inside.len().saturating_sub(1);
+    count > 0 && roughness > 0.0 && (steps / as_f64(count) / 2.0).sqrt() > NOISE_LEFT * roughness
+}
+
+/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest
+/// rounded top.
+fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
+    let run = span.to - span.from;
+    // A quarter of the run beyond it: far enough for the slope to stand out of the noise.
+    let reach = (run / 4).max(1);
+    let level = force[span.from];
+    let fallen = |beyond: &[f64]| beyond.iter().map(|f| (level - f).abs()).fold(0.0, f64::max);
+    let before = fallen(&force[span.from.saturating_sub(reach)..span.from]);
+    let after = fallen(&force[span.to..(span.to + reach).min(force.len())]);
+    let (low, high) = reduce::extremes(&force[span.from..span.to], level);
+    // What lies within the run, and half of the band at the least: a few samples of noise may lie near one
+    // another by chance.
+    let depth = (high - low + step).max(band / 2.0);
+    // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther
+    // on.
+    let wider = as_f64(run - 1 + 2 * reach) / as_f64(run - 1);
+    // The less steep side counts: a kink has one steep side.
+    before.min(after) > depth * (wider.powi(FLATTEST) - 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::STANDARD_GRAVITY_M_S2;
     use crate::data::example::{self, noise};
-    use crate::numerics::robust;
 
     fn channel(full_scale: Option<f64>) -> Channel {
         Channel { scale_m_s2: 9.806_65, unit: "g".into(), full_scale, ..example::channel(vec![]) }
@@ -96,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, true);
+        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, 0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -106,9 +174,9 @@ mod tests {
         // 28 of 4000 is a step of a 10-bit converter over 3.6 times the peak.
         for step in [10.0, 28.0] {
             let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / step).round() * step).collect();
-            assert!(clipped(&channel(None), &coarse, 0.0, 0.0, true).is_empty(), "{step}");
+            assert!(clipped(&channel(None), &coarse, 0.0, 0.0, 0).is_empty(), "{step}");
         }
-        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0.0, true).is_empty());
+        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
     /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a
@@ -133,7 +201,7 @@ mod tests {
             for length in [20, 47, 110, 260, 900, 3000] {
                 let found = |range: f64| {
                     let force = converted(bits, range, length, seed);
-                    clipped(&channel(None), &force, 0.0, robust::spread(&force[..200]), true)
+                    clipped(&channel(None), &force, 0.0, robust::spread(&force[..200]), 200)
                 };
                 for range in [3.0, 4.1, 5.9, 8.3, 11.7, 16.9, 23.0, 30.0] {
                     assert!(found(range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
@@ -155,7 +223,7 @@ mod tests {
         for noise_m_s2 in [0.05, 0.5, 1.1, 2.0, 5.0] {
             for power in [2, 4] {
                 assert!(
-                    clipped(&channel(None), &top(power), 0.0, noise_m_s2, true).is_empty(),
+                    clipped(&channel(None), &top(power), 0.0, noise_m_s2, 0).is_empty(),
                     "{noise_m_s2} {power}"
                 );
             }
@@ -178,7 +246,7 @@ mod tests {
         };
         for length in [110, 900] {
             let clipped_within =
-                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 0.0, true);
+                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 0.0, 200);
             assert!(clipped_within(10.0).is_empty() && clipped_within(25.0).is_empty(), "{length}");
             assert!(!clipped_within(0.5).is_empty() && !clipped_within(0.8).is_empty(), "{length}");
         }
@@ -191,21 +259,15 @@ mod tests {
             pulse(limit).iter().enumerate().map(|(i, f)| f + 3.4 * hash(i)).collect()
         };
         // Uniform noise of ±1.7 has a standard deviation of 1.
-        assert_eq!(clipped(&channel(None), &noisy(3800.0), 0.0, 1.0, true).len(), 1);
-        assert!(clipped(&channel(None), &noisy(1e9), 0.0, 1.0, true).is_empty());
+        assert_eq!(clipped(&channel(None), &noisy(3800.0), 0.0, 1.0, 0).len(), 1);
+        assert!(clipped(&channel(None), &noisy(1e9), 0.0, 1.0, 0).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0.0, true).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0.0, true).is_empty());
-    }
-
-    #[test]
-    fn what_reads_beyond_its_full_scale_says_so() {
-        let found = |full_scale: f64| beyond_full_scale(&channel(Some(full_scale)), &pulse(3900.0), 5.0);
-        assert!(found(300.0).is_some() && found(390.0).is_none() && found(500.0).is_none());
+        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0.0, 0).len(), 1);
+        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
     /// 100 samples of free fall and a pulse cut at 3000 m/s², with noise before the limit and after it.
@@ -218,21 +280,25 @@ mod tests {
 
     #[test]
     fn a_force_that_stays_level_keeps_its_noise_and_a_limit_does_not() {
-        // A force that a limiter keeps level rings with the body that it pushes, by 2 % of it here.
-        let rings = |i: u32| if i < 100 { 0.0 } else { 60.0 * (0.15 * f64::from(i)).sin() };
         let crushing: Vec<f64> =
-            limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + rings(i) + 5.0 * noise(i, 3)).collect();
-        assert!(clipped(&channel(None), &crushing, 0.0, 5.0, true).is_empty());
-        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 0.0, 5.0, true).len(), 1);
-        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, true).len(), 1);
-        // All of the noise behind the limit, as a converter has it; along the axis that may be a force.
-        assert_eq!(clipped(&channel(None), &limited(0.0, 5.0), 0.0, 5.0, true).len(), 1);
-        assert!(clipped(&channel(None), &limited(0.0, 5.0), 0.0, 5.0, false).is_empty());
-        // One flat from its first to its last sample within the noise of the stated limit.
-        let stated =
-            clipped(&channel(Some(3000.0 / STANDARD_GRAVITY_M_S2)), &limited(0.0, 5.0), 0.0, 5.0, true);
-        assert!(stated.len() == 1 && stated[0].to - stated[0].from > 90, "{stated:?}");
+            limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
+        let along = Channel { axis: Axis::Axial, ..channel(None) };
+        assert!(clipped(&along, &crushing, 0.0, 5.0, 100).is_empty());
+        // Across the axis a force that a limiter keeps level rings with the body, by 2 % of it here; what has
+        // noise alone, as a converter behind the limit makes it, is a limit.
+        let rings = |i: u32| if i < 100 { 0.0 } else { 60.0 * (0.15 * f64::from(i)).sin() };
+        let ringing: Vec<f64> = crushing.iter().zip(0..).map(|(f, i)| f + rings(i)).collect();
+        assert!(clipped(&channel(None), &ringing, 0.0, 5.0, 100).is_empty());
+        assert_eq!(clipped(&channel(None), &crushing, 0.0, 5.0, 100).len(), 1);
+        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 0.0, 5.0, 100).len(), 1);
+        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, 100).len(), 1);
         // The stated limit of 300 g is 2942 m/s²: then noise does not matter.
-        assert!(!clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, true).is_empty());
+        assert!(!clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, 100).is_empty());
+    }
+
+    #[test]
+    fn what_reads_beyond_its_full_scale_says_so() {
+        let found = |full_scale: f64| beyond_full_scale(&channel(Some(full_scale)), &pulse(3900.0), 5.0);
+        assert!(found(300.0).is_some() && found(390.0).is_none() && found(500.0).is_none());
     }
 }

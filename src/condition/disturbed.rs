@@ -119,7 +119,7 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
         .collect();
     let (first, last) = (*dropouts.first()?, *dropouts.last()?);
     let samples: usize = dropouts.iter().map(|d| d.to - d.from).sum();
-    let most_m_s = dropouts.iter().map(|d| signal.bridged_m_s(*d)).fold(0.0, f64::max);
+    let most_m_s = dropouts.iter().map(|d| bridged_m_s(signal, *d)).fold(0.0, f64::max);
     for span in &dropouts {
         signal.force_m_s2[span.from..span.to].fill(0.0);
     }
@@ -147,6 +147,13 @@ fn repeats(force: &[f64]) -> Vec<Span> {
         }
     }
     found
+}
+
+/// What a straight bridge over a span holds, against 0, m/s.
+fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
+    let at = |i: Option<usize>| i.and_then(|i| signal.force_m_s2.get(i)).copied().unwrap_or(0.0);
+    let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
+    middle.abs() * as_f64(span.to - span.from) / signal.sample_rate_hz
 }
 
 #[cfg(test)]

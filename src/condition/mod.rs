@@ -11,8 +11,7 @@ mod runs;
 pub use other::{measured_rotation, read_other};
 
 use crate::data::{
-    Axis, Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording,
-    Signal, Span,
+    Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal,
 };
 use crate::numerics::robust;
 use rayon::prelude::*;
@@ -73,18 +72,8 @@ pub fn condition(
     corrections: Corrections,
 ) -> (Vec<Signal>, Vec<Finding>) {
     let each = |channel| signal(channel, event, reach, corrections);
-    let (mut signals, found): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
-    let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
-    let breaks = |(signal, channel): (&Signal, &Channel)| {
-        let step = clipping::converter_step(channel, &signal.force_m_s2, signal.noise_m_s2);
-        levels::breaks(signal, step, event.near_s)
-    };
-    let breaks: Vec<Vec<Span>> = signals.par_iter().zip(&recording.channels).map(breaks).collect();
-    let own = levels::of_one_channel(&signals, &breaks);
-    findings.extend(signals.iter_mut().zip(own).filter_map(|(signal, own)| levels::mark(signal, own)));
-    let spikes = |signal| disturbed::spikes(signal, event.velocity_step_m_s);
-    findings.extend(signals.par_iter().filter_map(spikes).collect::<Vec<_>>());
-    (signals, findings)
+    let (signals, findings): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
+    (signals, findings.into_iter().flatten().collect())
 }
 
 fn signal(
@@ -108,8 +97,7 @@ fn signal(
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let rings = channel.axis == Axis::Transverse;
-    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, rings);
+    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, before);
     findings.extend(clipping::beyond_full_scale(channel, &force, noise_m_s2));
     let gaps = runs::runs(&force, |f| !f.is_finite());
     for f in &mut force {
@@ -133,6 +121,7 @@ fn signal(
     findings.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
     findings.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
     findings.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
+    findings.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
     (signal, findings)
 }
 
@@ -151,7 +140,7 @@ fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::example;
+    use crate::data::{Span, example};
 
     /// A transverse channel of the first end at 10 kHz.
     pub(super) fn signal(force_m_s2: Vec<f64>) -> Signal {

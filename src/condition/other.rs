@@ -44,7 +44,7 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
         for value in &mut values {
             *value -= rest;
         }
-        summary.clipped = clipping::clipped(channel, &values, rest, noise, false);
+        summary.clipped = clipping::clipped(channel, &values, rest, noise, quiet);
         (summary.rest, summary.noise) = (Some(rest), Some(noise));
     }
     summary

@@ -13,7 +13,7 @@ pub(super) fn runs_of_steps(force: &[f64], inside: impl Fn(f64, f64) -> bool) ->
 }
 
 /// Stretches of indices at which `inside` holds of both values, as far as there are two.
-pub(super) fn runs_of_pairs(firsts: &[f64], seconds: &[f64], inside: impl Fn(f64, f64) -> bool) -> Vec<Span> {
+fn runs_of_pairs(firsts: &[f64], seconds: &[f64], inside: impl Fn(f64, f64) -> bool) -> Vec<Span> {
     /// Samples asked at once whether any is inside, which costs less than to follow each.
     const TOGETHER: usize = 64;
     let mut spans = Vec::new();

@@ -129,14 +129,6 @@ impl Signal {
             .sum()
     }
 
-    /// What a straight bridge over a span holds, against 0, m/s.
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    pub fn bridged_m_s(&self, span: Span) -> f64 {
-        let at = |i: Option<usize>| i.and_then(|i| self.force_m_s2.get(i)).copied().unwrap_or(0.0);
-        let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
-        middle.abs() * (span.to - span.from) as f64 / self.sample_rate_hz
-    }
-
     /// How much of the time between two times was not recorded, s.
     pub fn missing_s(&self, from_s: f64, to_s: f64) -> f64 {
         let inside_s = |gap: &Span| self.time_s(gap.to).min(to_s) - self.time_s(gap.from).max(from_s);

@@ -2,9 +2,9 @@
 
 use crate::data::{ChannelFinding, Finding, FlightFit};
 
-/// A velocity this far off its flight at the separation is not the flight's, m/s: 1 % of a slap-down. Of 20
-/// sound drops none was off by more than 0.05 m/s, a cable that broke contact by 1.9.
-const LARGE_MISMATCH_M_S: f64 = 0.2;
+/// A velocity this far off its flight at the separation is not the flight's, m/s: 2 % of a slap-down. Of 118
+/// simulated sound drops one was off by 0.27 m/s; a cable that broke contact by 1.9.
+const LARGE_MISMATCH_M_S: f64 = 0.4;
 /// … and by so many times what the fit leaves of the flight: a sound drop with a residual of 0.11 m/s was
 /// off by 3 of them.
 const RESIDUALS: f64 = 5.0;
@@ -36,6 +36,6 @@ mod tests {
             };
             judge_separation(&example::flight(0.1, 0.16, vec![plateau]), 0.092).iter().count()
         };
-        assert_eq!([named(-1.9, 0.02), named(0.05, 0.02), named(0.32, 0.11)], [1, 0, 0]);
+        assert_eq!([named(-1.9, 0.02), named(0.05, 0.02), named(0.5, 0.11)], [1, 0, 0]);
     }
 }

@@ -43,17 +43,6 @@ pub enum RotationCause {
     Nothing,
 }
 
-/// Where a channel stands that a cable left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LevelKind {
-    /// At what it reads in free fall.
-    Zero,
-    /// At another level amid its range.
-    Offset,
-    /// At the end of its range.
-    Rail,
-}
-
 findings! {
 /// A finding about one channel; its words follow the name of the channel.
 pub enum ChannelFinding {
@@ -155,14 +144,6 @@ pub enum ChannelFinding {
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value \
          once");
-    /// Stretches at a level between two jumps with noise alone, the longest of `length_s`.
-    Broken { at: LevelKind, level_m_s2: f64, breaks: usize, length_s: f64, most_m_s: f64 }
-        => (Code::Dropout, Warning, Disturbance),
-        ("stands {} between two jumps, with nothing but noise on it, {} (longest {:.1} ms): a cable or \
-         connector broke contact; the samples are taken for lost (up to {most_m_s:.2} m/s): fasten or change \
-         cable and connectors",
-         level(*at, *level_m_s2), if *breaks == 1 { "once".into() } else { format!("{breaks} times") },
-         1e3 * length_s);
     /// Samples beyond the full scale that the cask file states.
     BeyondFullScale { reads_m_s2: f64, full_scale_m_s2: f64 } => (Code::Clipped, Warning, Nothing),
         ("reads up to {:.0} g and has a `full_scale` of {:.0} g: what it reads beyond its full scale is no \
@@ -305,14 +286,6 @@ fn cut_off(during: During, lost_m_s: f64, takes_step: bool) -> String {
     };
     let had = if takes_step { format!(", and {REPLACES_STEP}") } else { String::new() };
     format!("in the {part}; about {lost_m_s:.2} m/s of velocity is cut off{had}")
-}
-
-fn level(at: LevelKind, level_m_s2: f64) -> String {
-    match at {
-        LevelKind::Zero => "at zero".into(),
-        LevelKind::Offset => format!("at an offset of {:.1} g", level_m_s2 / G),
-        LevelKind::Rail => format!("at its rail of {:.0} g", level_m_s2 / G),
-    }
 }
 
 fn other_still(farthest: Option<f64>, unit: &str) -> String {

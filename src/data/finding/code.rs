@@ -48,7 +48,7 @@ issue_codes! {
                     sufficient";
     LogTimeUsed, "File": "a message has no time stamp of its own, and its log time was used";
     Spikes, "Channel": "one to five samples are far off their neighbours";
-    Dropout, "Channel": "a channel repeats a value, or stands at a level between two jumps";
+    Dropout, "Channel": "runs of equal samples begin or end with a jump";
     DeadChannel, "Channel": "a channel shows only noise while others show the impacts";
     CopiedChannel, "Channel": "a channel has the samples of another one";
     Offset, "Channel": "a channel has an offset in the free fall, or the offset drifts";

@@ -63,7 +63,7 @@ mod table;
 mod times;
 
 pub use attribute::AttributeFinding;
-pub use channel::{ChannelFinding, During, LevelKind, RotationCause};
+pub use channel::{ChannelFinding, During, RotationCause};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::{Cure, DropFinding, Slip};

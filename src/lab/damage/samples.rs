@@ -16,8 +16,6 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut Synthetic
         "unplugged" => unplugged(case, recording, size),
         "limited_first" => limited(case, recording, 0, size),
         "limited_second" => limited(case, recording, 1, size),
-        "broken_zero" => breaks(case, recording, size, 0.0),
-        "broken_rail" => breaks(case, recording, size, 1.5),
         "drift" => drift(case, recording, size),
         "spikes" => spikes(case, recording, size),
         "base_strain" => base_strain(case, recording, size),
@@ -96,19 +94,6 @@ fn limited(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usiz
     let (limit, noise) = ((1.0 - size / 100.0) * peak(channel), CONVERTER_G * g_in(channel));
     for sample in &mut channel.samples {
         *sample = single(f64::from(*sample).clamp(-limit, limit) + noise * case.chance.normal());
-    }
-    case.stated.channels[which].full_scale = None;
-}
-
-/// A cable that breaks contact for `size` ms between first contact and slap-down, and leaves the converter's
-/// noise at `level` peaks.
-fn breaks(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64, level: f64) {
-    let from_s = case.chance.even(0.0, (case.way_s() - 1e-3 * size).max(0.0));
-    let which = case.chance.index(2);
-    let channel = &mut recording.channels[which];
-    let (level, noise) = (level * peak(channel), CONVERTER_G * g_in(channel));
-    for i in index(case, channel, from_s)..index(case, channel, from_s + 1e-3 * size) {
-        channel.samples[i] = single(level + noise * case.chance.normal());
     }
     case.stated.channels[which].full_scale = None;
 }

@@ -56,6 +56,14 @@ pub(super) struct CornerMotion {
 /// The forces on both corners, N: tangential, normal.
 pub(super) type Loads = [(f64, f64); 2];
 
+/// A loose mass with its place in the state and the deflections of the modes at its pads.
+#[derive(Clone, Copy)]
+struct Loose<'a> {
+    at: usize,
+    mass: &'a LooseMass,
+    bends: &'a [f64],
+}
+
 /// Where a loose mass is, in body axes from S, and the force of its pads on it.
 struct Blow {
     xi_m: f64,
@@ -120,7 +128,7 @@ impl<'a> SceneBody<'a> {
         y[5] = -drop.angular_velocity_rad_s;
         y[4] = -drop.impact_velocity_m_s - y[5] * first.x_m;
         let (sin, cos) = drop.angle_rad.sin_cos();
-        for (i, loose, _) in self.loose() {
+        for Loose { at: i, mass: loose, .. } in self.loose() {
             let xi_m = loose.position_m - self.scene.cask.cog_m;
             let (x_m, z_m) = (xi_m * cos, xi_m * sin);
             let start = [x_m, y[1] + z_m, y[3] - y[5] * z_m, y[4] + y[5] * x_m];
@@ -129,14 +137,15 @@ impl<'a> SceneBody<'a> {
         y
     }
 
-    /// The loose masses, each with its place in the state and the deflections at its pads.
-    fn loose(&self) -> impl Iterator<Item = (usize, &LooseMass, &[f64])> {
+    /// The loose masses.
+    fn loose(&self) -> impl Iterator<Item = Loose<'_>> {
         let masses = (self.loose_from..).step_by(4).zip(&self.scene.extras.contents);
-        masses.zip(&self.at_pads).map(|((i, loose), bends)| (i, loose, &bends[..]))
+        masses.zip(&self.at_pads).map(|((at, mass), bends)| Loose { at, mass, bends })
     }
 
-    /// The blow of the pads on a loose mass at place `i` of the state.
-    fn blow(&self, (i, loose, bends): (usize, &LooseMass, &[f64]), y: &[f64]) -> Blow {
+    /// The blow of the pads on a loose mass.
+    fn blow(&self, loose: Loose, y: &[f64]) -> Blow {
+        let Loose { at: i, mass: loose, bends } = loose;
         let (sin, cos) = y[2].sin_cos();
         let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
         let (x_m, z_m) = (y[i] - x, y[i + 1] - z);
@@ -304,8 +313,9 @@ impl<'a> SceneBody<'a> {
         }
         let (sin, cos) = y[2].sin_cos();
         let cask = &self.scene.cask;
-        for (i, loose, bends) in self.loose() {
-            let Blow { force_n, .. } = self.blow((i, loose, bends), y);
+        for each in self.loose() {
+            let (i, loose, bends) = (each.at, each.mass, each.bends);
+            let Blow { force_n, .. } = self.blow(each, y);
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
             let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
@@ -323,7 +333,7 @@ impl<'a> SceneBody<'a> {
         let listed = self.scene.modes.iter().chain(self.modes.iter().map(|mode| &mode.mode));
         let modes = listed.map(|mode| counts * std::f64::consts::TAU * mode.frequency_hz);
         let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
-        let pads = self.loose().map(|(_, loose, _)| PI / loose.pulse_s);
+        let pads = self.loose().map(|loose| PI / loose.mass.pulse_s);
         modes.chain(corners).chain(pads).fold(0.0, f64::max)
     }
 }
