@@ -7,7 +7,7 @@ use serde_json::Value;
 /// A quantity that the result lacks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct MissingQuantity {
-    /// Its place in the result: "slap_down.speed", "impacts[1].crush".
+    /// Its place in the result: `slap_down.speed`, `impacts[1].crush`.
     pub quantity: String,
     /// The place in `quality` of the finding that took it.
     pub because: Option<usize>,
