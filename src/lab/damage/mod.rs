@@ -170,7 +170,7 @@ mod tests {
             let name = row.split('\t').next().expect("a name");
             let kind = growing().find(|kind| kind.name == name).expect(name);
             let known = known_silence(name).expect(name);
-            assert!(known.becomes.starts_with("silent from") && known.off.parse::<f64>().is_ok(), "{row}");
+            assert!(known.becomes.starts_with("unnoticed from") && known.off.parse::<f64>().is_ok(), "{row}");
             assert!(!kind.instead.is_empty(), "{name}");
         }
     }

@@ -54,13 +54,13 @@ pub struct TrialPoint {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrialFate {
-    /// The intervals of speed and k hold the truth.
+    /// The intervals of speed and k hold the truth, or miss it by no more than chance does.
     Inside,
     /// One of them does not, and the verdict is not "pass".
     Warned,
     /// A number is not given.
     Refused,
-    /// An interval does not hold the truth, and the verdict is "pass".
+    /// An interval does not hold the truth, further than chance puts it, and the verdict is "pass".
     Silent,
 }
 

@@ -92,7 +92,7 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
 
 /// By how many half-widths a drop is silently off that counts: one beyond its interval may be of the one in
 /// twenty.
-const SILENT_BY: f64 = 2.0;
+pub(super) const SILENT_BY: f64 = 2.0;
 
 /// Of damages: those that are silent though a recording can tell them, of which no finding names what is
 /// wrong at the gross end, or whose harmless end leaves a drop of a body without sound intervals.

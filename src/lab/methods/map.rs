@@ -1,6 +1,7 @@
 //! A damage that grows, on several drops, through the whole program to what becomes of each: inside its
 //! interval, warned of, refused or silent.
 
+use super::limits::SILENT_BY;
 use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
 use crate::lab::campaign::half_widths_between;
@@ -65,6 +66,19 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
     TrialDrop { fate, half_widths_off: worst, is_named, is_elastic: drop.scene.elastic.is_some() }
 }
 
+/// Chance puts one sound drop in twenty outside its interval: silent is one more than two half-widths out, or
+/// a half-width further out than the same drop at the harmless size.
+fn excuse_chance(sizes: &mut [TrialSize]) {
+    let harmless: Vec<Option<f64>> = sizes[0].drops.iter().map(|drop| drop.half_widths_off).collect();
+    let drops = sizes.iter_mut().flat_map(|size| size.drops.iter_mut().zip(&harmless));
+    for (drop, harmless) in drops.filter(|(drop, _)| drop.fate == TrialFate::Silent) {
+        let off = drop.half_widths_off.unwrap_or(f64::INFINITY);
+        if off <= SILENT_BY && harmless.is_some_and(|harmless| off <= harmless + 1.0) {
+            drop.fate = TrialFate::Inside;
+        }
+    }
+}
+
 /// A map of every damage that grows; `progress` is told the share that is done.
 pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> {
     let kinds: Vec<&DamageKind> = damage::growing().collect();
@@ -76,13 +90,15 @@ pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> 
             let drops = plans.par_iter().map(|plan| drop_of(kind, plan, size)).collect();
             TrialSize { size, drops }
         };
+        let mut sizes: Vec<TrialSize> = sizes.collect::<Vec<_>>().into_par_iter().map(of_size).collect();
+        excuse_chance(&mut sizes);
         let map = TrialMap {
             name: kind.name.to_owned(),
             what: kind.what.to_owned(),
             unit: kind.unit.to_owned(),
             told_by: kind.told_by.clone(),
             instead: kind.instead.to_owned(),
-            sizes: sizes.collect::<Vec<_>>().into_par_iter().map(of_size).collect(),
+            sizes,
             // A full run finds for itself what is silent.
             known: damage::known_silence(kind.name).filter(|_| request.quick),
         };
@@ -116,6 +132,25 @@ mod tests {
         };
         let refused: usize = kinds.par_iter().map(hold).sum();
         assert!(refused > 10, "{refused}");
+    }
+
+    #[test]
+    fn what_chance_puts_outside_is_not_silent() {
+        let size = |offs: [f64; 3]| TrialSize {
+            size: 1.0,
+            drops: offs
+                .map(|off| TrialDrop {
+                    fate: if off > 1.0 { TrialFate::Silent } else { TrialFate::Inside },
+                    half_widths_off: Some(off),
+                    is_named: true,
+                    is_elastic: false,
+                })
+                .into(),
+        };
+        let mut sizes = [size([0.4, 1.1, 0.2]), size([1.3, 1.5, 0.9]), size([1.5, 2.1, 1.9])];
+        excuse_chance(&mut sizes);
+        let silent = sizes.map(|s| s.drops.iter().map(|d| d.fate == TrialFate::Silent).collect::<Vec<_>>());
+        assert_eq!(silent, [vec![false; 3], vec![false; 3], vec![true; 3]]);
     }
 
     #[test]

@@ -140,11 +140,11 @@ mod tests {
         assert!(text.contains("with a gauge") && text.contains("ACCEPTED") && !text.contains("NOT ACCEPTED"));
         assert!(text.contains("within 0.20 % of the speed") && text.contains("other ways (by hand; 5.0 ms)"));
         // What the recorded full run saw stands there though three drops did not show it.
-        let known = Some(KnownSilence { becomes: "silent from 7 mm", off: "4.5" });
+        let known = Some(KnownSilence { becomes: "unnoticed from 7 mm", off: "4.5" });
         let unseen = TrialMap { name: "play".into(), sizes: vec![], known, ..trial.maps[0].clone() };
         trial.maps.push(unseen);
         let text = page(&trial);
-        for words in ["2 of 2 damages", "quick one saw 1)", "silent from 7 mm", "not seen"] {
+        for words in ["2 of 2 damages", "quick one saw 1)", "unnoticed from 7 mm", "not seen"] {
             assert!(text.contains(words), "{words} in {text}");
         }
         assert!(trial_outcome(&trial, 80).contains("2 kinds of damage"));
