@@ -4,10 +4,11 @@ use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
-    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, RigidBodyDeceleration, Signal,
+    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Quantities, RigidBodyDeceleration,
+    Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
-use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
+use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
 
 /// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses
 /// make of them, and of themselves for ringing as large as the velocity gained. With it the intervals of 200
@@ -15,12 +16,6 @@ use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
 const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
-
-/// A second maximum of the force, as a share of the larger; and the share of the lower one that the force
-/// falls to between two touches: so it does in the corner that bends and touches twice within 5 ms, and in 8
-/// of 230 sound drops with modes as fast as the contact.
-const SECOND_MAXIMUM: f64 = 0.3;
-const TWO_TOUCHES: f64 = 0.35;
 
 /// No end is thrown back faster than it came, nor drawn in.
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
@@ -33,6 +28,8 @@ pub(super) struct Tabulated {
     tables: [Option<ImpactTable>; 2],
     /// When R leaves, s.
     left_s: Option<f64>,
+    /// What the first contact begins with, where it may be two touches.
+    touch: Option<FirstTouch>,
 }
 
 impl Tabulated {
@@ -54,13 +51,17 @@ impl Tabulated {
 
     /// The finding where the force of the first contact falls between two maxima as if L touched twice.
     pub fn two_maxima(&self) -> Option<Finding> {
-        let force_n = &self.tables[0].as_ref()?.force_over_crush.force_n;
-        let dip = |i: usize| {
-            let lower_n = largest(&force_n[..i]).min(largest(&force_n[i + 1..]));
-            (lower_n > SECOND_MAXIMUM * largest(force_n)).then(|| force_n[i] / lower_n)
-        };
-        let deepest = (1..force_n.len().saturating_sub(1)).filter_map(dip).fold(1.0, f64::min);
-        (deepest < TWO_TOUCHES).then(|| DropFinding::TwoMaxima { dip: deepest }.into())
+        Some(DropFinding::TwoMaxima { dip: self.touch.as_ref()?.dip }.into())
+    }
+
+    /// Lets the intervals of what the contact's end defines reach back to the end of its first touch.
+    pub fn doubt_end(&self, quantities: &mut Quantities) {
+        let Some(FirstTouch { earlier_s, k_moves, .. }) = self.touch else { return };
+        let Quantities { duration, flight_time, k, .. } = quantities;
+        for time in [Some(duration), flight_time.as_mut()].into_iter().flatten() {
+            time.u95 = time.u95.hypot(earlier_s);
+        }
+        k.u95 = k.u95.hypot(k_moves);
     }
 
     /// The finding where the motion does not determine what the second impact gives in all, though there is
@@ -150,6 +151,7 @@ pub(super) fn tabulated(
     });
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
+        touch: first.contact.first_touch(taken.quantities.k.value, both.cutoff_hz),
         tables: [Some(both.table(End::First, &first, known.first()?)), of_second],
     })
 }
