@@ -305,6 +305,8 @@ pub struct ChannelSpec {
     pub offset_m: f64,
     /// 1.0 or −1.0.
     pub polarity: f64,
+    /// What the samples as they are read are to be multiplied by, where the file says it.
+    pub scale: Option<f64>,
     /// Where the channel clips, in its unit.
     pub full_scale: Option<f64>,
     /// Overrides what the recording says, Hz.

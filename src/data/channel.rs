@@ -77,6 +77,14 @@ impl Samples {
         of_either!(self, v => v.iter().filter(|x| !is_number(wide(*x))).count())
     }
 
+    /// Makes those of a stretch missing.
+    pub(crate) fn lose(&mut self, span: Span) {
+        match self {
+            Self::F32(samples) => samples[span.from..span.to].fill(f32::NAN),
+            Self::F64(samples) => samples[span.from..span.to].fill(f64::NAN),
+        }
+    }
+
     /// Puts what `f` makes of each in its place.
     pub(crate) fn change(&mut self, f: impl Fn(f64) -> f64) {
         #[allow(clippy::cast_possible_truncation, reason = "as precise as before")]

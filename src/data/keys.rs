@@ -201,6 +201,7 @@ CHANNEL {
         "across the axis, positive away from the target: half the section on the upper skin";
     "polarity": "1", ANY, "1", "-1: mounted the other way round";
     "sensitivity": "", ABOVE_ZERO, "10.0", r#"mV per g, with "V" and "mV""#;
+    "scale": "1", ABOVE_ZERO, "0.9", "what is read times this is in `unit`";
     "full_scale": "–", ABOVE_ZERO, "2000.0", "in `unit`: where the channel clips";
     "sample_rate_hz": "the recording's",
         within(*SAMPLE_RATES_HZ.start(), *SAMPLE_RATES_HZ.end(), "samples a second, in Hz"), "100000.0",

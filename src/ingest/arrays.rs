@@ -46,7 +46,7 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
             None => time_base::from_claims(held.start_s, &claims, samples),
         };
         let uniform = uniform.map_err(refused)?;
-        channels.push(RawChannel { uniform, unit: held.unit.clone() });
+        channels.push(RawChannel { uniform, unit: held.unit.clone(), factors: Vec::new() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Samples, sha256(held), raw, stated_file)

@@ -1,7 +1,9 @@
 //! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
 
 use super::error::{self, IngestError};
+use super::factors;
 use super::refusal::Refusal;
+use super::repeats;
 use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
@@ -32,12 +34,15 @@ pub(crate) fn recording(
     let mut read = raw.channels.into_iter();
     let said = |spec: &ChannelSpec, refusal| error::of_channel(path, &spec.name, refusal);
     for (spec, raw) in cask_file.channels.iter().zip(read.by_ref()) {
-        let scale = has_numbers(spec, &raw).and_then(|()| scale(spec, recorded_unit(&raw)));
+        let scale = has_numbers(spec, &raw).and_then(|()| factors::settled(spec, &raw));
+        let scale = scale.and_then(|()| scale_of(spec, raw.recorded_unit()));
         let channel = scale.and_then(|scale| channel(spec, raw, scale, first_s, &mut issues));
         channels.push(channel.map_err(|refusal| said(spec, refusal))?);
     }
+    issues.extend(channels.iter().filter_map(repeats::by_turns));
+    repeats::drop_repeated(&mut channels, &mut issues);
     for (other, raw) in cask_file.others.iter().zip(read) {
-        let scale = own_unit(other, recorded_unit(&raw));
+        let scale = own_unit(other, raw.recorded_unit());
         let channel = scale.and_then(|scale| channel(&other.read, raw, scale, first_s, &mut others.issues));
         others.channels.push(channel.map_err(|refusal| said(&other.read, refusal))?);
     }
@@ -126,7 +131,7 @@ fn channel(
         start_s: raw.uniform.start_s - first_s,
         sample_rate_hz: raw.uniform.sample_rate_hz,
         samples: raw.uniform.samples,
-        scale_m_s2: scale.m_s2 * spec.polarity,
+        scale_m_s2: scale.m_s2 * spec.polarity * spec.scale.unwrap_or(1.0),
         unit: scale.unit,
         unit_origin: scale.origin,
         is_unit_recorded: raw.unit.is_some() && scale.contradiction.is_none(),
@@ -145,10 +150,6 @@ pub(super) fn shifted(mut issue: Finding, first_s: f64) -> Finding {
     issue
 }
 
-fn recorded_unit(raw: &RawChannel) -> Option<&str> {
-    raw.unit.as_deref().map(str::trim).filter(|text| !text.is_empty())
-}
-
 /// What one unit of the samples is worth.
 #[derive(Debug, PartialEq)]
 struct UnitScale {
@@ -159,7 +160,7 @@ struct UnitScale {
     contradiction: Option<ChannelFinding>,
 }
 
-fn scale(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
+fn scale_of(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
     if let Some(unit) = spec.unit {
         let (m_s2, name) = declared(unit);
         let contradiction = recorded
@@ -252,7 +253,7 @@ mod tests {
     }
 
     fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
-        scale(&spec(unit), recorded)
+        scale_of(&spec(unit), recorded)
     }
 
     #[test]
@@ -293,7 +294,7 @@ mod tests {
                 time_jitter_s: 0.0,
                 issues: Vec::new(),
             };
-            let raw = RawChannel { uniform, unit: Some("g".into()) };
+            let raw = RawChannel { uniform, unit: Some("g".into()), factors: Vec::new() };
             let scale = of(None, Some("g"))?;
             channel(&spec(None), raw, scale, 0.0, &mut Vec::new())
         };
@@ -363,7 +364,7 @@ mod tests {
             time_jitter_s: 0.0,
             issues: Vec::new(),
         };
-        let raw = RawChannel { uniform, unit: None };
+        let raw = RawChannel { uniform, unit: None, factors: Vec::new() };
         let error = has_numbers(&spec(Some(Unit::G)), &raw).unwrap_err();
         assert!(error.to_string().contains("/daq/a1 holds no number"), "{error}");
     }
@@ -383,6 +384,7 @@ mod tests {
                 ],
             },
             unit: Some("g".into()),
+            factors: Vec::new(),
         };
         let mut cask_file = cask_file(&["/a.x", "/b.x"]);
         cask_file.channels[1].polarity = -1.0;

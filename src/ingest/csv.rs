@@ -59,13 +59,14 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let name = |plan: usize| cask_file.channels[plan].name.as_str();
     let refused = |refused: Refused| error::of_channel(path, name(refused.plan), refused.refusal);
     issues.extend(table.settle_times().map_err(refused)?);
-    issues.extend(table.counter_jumps());
+    issues.extend(table.place_by_counter().map_err(refused)?);
     let own_rows = table.own_rows().map_err(refused)?;
     let rows = table.rows();
     let mut channels = Vec::with_capacity(plans.len());
     for (spec, uniform) in table.uniforms(&own_rows).into_iter().enumerate() {
         let uniform = uniform.map_err(|error| error::of_channel(path, name(spec), error))?;
-        channels.push(RawChannel { uniform, unit: layout.columns[plans[spec].column].unit.clone() });
+        let unit = layout.columns[plans[spec].column].unit.clone();
+        channels.push(RawChannel { uniform, unit, factors: layout.factors() });
     }
     let with_missing = channels.iter().map(|channel| channel.uniform.samples.len()).max().unwrap_or_default();
     issues.extend(layout.preamble.of_rows(rows, with_missing));

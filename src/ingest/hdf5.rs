@@ -188,10 +188,15 @@ fn read_channel(
     };
     let column = find::locate(room.file, source).map_err(refused)?;
     room.take(&column)?;
-    let channel =
-        DatasetChannel::of(column, spec.sample_rate_hz, spec.time.as_deref().or(time), &mut room.clocks);
+    let channel = DatasetChannel::of(
+        column,
+        (spec.sample_rate_hz, spec.scale.is_some()),
+        spec.time.as_deref().or(time),
+        &mut room.clocks,
+    );
     let mut channel = channel.map_err(refused)?;
     channel.pick(spec.rows.as_ref(), |ids| room.has_for_a_while(ids)).map_err(refused)?;
+    channel.count_rows(|counter| room.has_for_a_while(counter));
     channel.times.first().map_or(Ok(()), |time| room.take(time))?;
     let samples = channel.samples().map_err(refused)?;
     let based = channel.on_base(samples, |other| room.has_for_a_while(other)).map_err(refused)?;
@@ -200,7 +205,7 @@ fn read_channel(
     match attributes.two_units {
         // The cask file's goes before all.
         Some(two) if spec.unit.is_none() => Err(refused(two.at(source))),
-        _ => Ok((RawChannel { uniform, unit: attributes.unit }, based.start)),
+        _ => Ok((RawChannel { uniform, unit: attributes.unit, factors: attributes.factors }, based.start)),
     }
 }
 

@@ -49,7 +49,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         starts.push(read.start_s.is_some());
         let uniform = read.placed(stated.sample_rate_hz);
         let uniform = uniform.map_err(|refusal| error::of_channel(path, &stated.name, refusal))?;
-        channels.push(RawChannel { uniform, unit });
+        channels.push(RawChannel { uniform, unit, factors: Vec::new() });
     }
     if let Some(spec) = starts.iter().position(|is_stated| !is_stated).filter(|_| starts.contains(&true)) {
         let problem = "its file has no line Time of first sample, and those of other channels have";

@@ -5,9 +5,11 @@ mod arrays;
 pub(crate) mod assemble;
 pub mod cask_file;
 pub(crate) mod clock;
+mod counting;
 mod csv;
 mod detect;
 pub(crate) mod error;
+mod factors;
 pub(crate) mod foreign;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz_tests;
@@ -21,6 +23,7 @@ mod number;
 mod number_type;
 mod recording_file;
 pub(crate) mod refusal;
+mod repeats;
 mod statement;
 mod strangers;
 pub mod time_base;
@@ -72,6 +75,15 @@ pub(crate) struct RawChannel {
     pub(crate) uniform: time_base::Uniform,
     /// The unit that the recording states or that its message type fixes, as written there.
     pub(crate) unit: Option<String>,
+    /// Numbers beside the samples by which they may be meant to be multiplied, and are not.
+    pub(crate) factors: Vec<String>,
+}
+
+impl RawChannel {
+    /// The unit that the recording states, where it is not empty.
+    fn recorded_unit(&self) -> Option<&str> {
+        self.unit.as_deref().map(str::trim).filter(|text| !text.is_empty())
+    }
 }
 
 /// What a format's reader hands over for a whole file.

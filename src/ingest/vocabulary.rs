@@ -225,6 +225,30 @@ pub(super) fn is_counter(name: &str) -> bool {
     COUNTERS.contains(&joined(name).as_str())
 }
 
+/// Whether a column of that name may count messages or toggle with each, as the buses of vehicles do: few
+/// numbers that return are no ids then.
+pub(super) fn may_count(name: &str) -> bool {
+    const PARTS: [&str; 15] = [
+        "count",
+        "cnt",
+        "alive",
+        "seq",
+        "frame",
+        "toggle",
+        "parity",
+        "cycle",
+        "phase",
+        "heartbeat",
+        "zähl",
+        "zaehl",
+        "pkt",
+        "packet",
+        "record",
+    ];
+    let name = joined(name);
+    is_counter(&name) || (PARTS.iter().any(|part| name.contains(part)) && !is_sensor_of_rows(&name))
+}
+
 fn joined(name: &str) -> String {
     name.trim().to_lowercase().replace([' ', '_', '-', '.'], "")
 }

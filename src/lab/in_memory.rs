@@ -24,7 +24,7 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
         let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
         let uniform = uniform.map_err(|refusal| error::of_channel(path, &channel.name, refusal))?;
-        channels.push(RawChannel { uniform, unit: Some(channel.unit.clone()) });
+        channels.push(RawChannel { uniform, unit: Some(channel.unit.clone()), factors: Vec::new() });
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Mcap, String::new(), raw, cask_file)

@@ -20,7 +20,10 @@ pub enum TableFinding of Table {
     /// A column that counts the rows jumps, first behind a row (from 1) and its count.
     CounterJumps { header: String, lost: f64, count: f64, row: usize } => (Code::Gap, Warning, LostSamples),
         ("the column {header:?} counts the rows, and {lost} of them are missing, the first {count} behind \
-         row {row} of the table; the others were taken as one after another: write time = {header:?} under \
-         [recording] of the cask file, which keeps their places");
+         row {row} of the table; the others keep their places by it");
+    /// A column that counts the rows jumps where the times that the cask file names do not.
+    CounterBesideTimes { header: String, lost: f64, row: usize, times: String } => (Code::Gap, Warning, LostSamples),
+        ("the column {header:?} counts the rows, and {lost} of them are missing, the first behind row {row} \
+         of the table; the times in {times:?}, which the cask file names, go on without a gap and were followed");
 }
 }

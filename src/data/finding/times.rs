@@ -16,6 +16,11 @@ pub enum TimesFinding of Times {
         ("{samples} sample(s) came twice with the same time: {}",
          if *different == 0 { "the copies were dropped".into() }
          else { format!("{different} of them with different values, of which the first was kept") });
+    /// Samples that repeat those of another time to the last digit.
+    Repeated { samples: usize, of_s: f64, from_s: f64 } => (Code::DuplicateBlocks, Warning, LostSamples),
+        ("{samples} samples from {} s on repeat those from {} s on to the last digit, in all channels of this \
+         clock: a block was written twice, and the samples in whose place it stands are taken for lost; \
+         export the recording again", digits(*from_s, 6), digits(*of_s, 6));
     /// Samples that are no numbers.
     NonFinite { samples: usize } => (Code::NonFinite, Warning, LostSamples),
         ("{samples} sample(s) are empty, NaN or infinite and count as missing");
@@ -42,6 +47,11 @@ pub enum TimesFinding of Times {
                                     missing", digits(off_s, 2))).unwrap_or_default(),
          if *is_sure { "" } else { "; give sample_rate_hz for this channel" },
          step = digits(*step_s, 3));
+    /// Steps of coarse times that hold fewer samples than the others, or that are not there.
+    ShortSteps { missing: usize, step_s: f64, usual: usize } => (Code::Gap, Warning, LostSamples),
+        ("{missing} sample(s) are missing: the times are cut to {} s and each stands at {usual} samples, but for \
+         some that stand at fewer or are left out; all samples of those count as missing",
+         digits(*step_s, 3));
     /// Coarse times beside a stated rate; `off_s` where they contradict it.
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> }
         => (Code::Clock, if off_s.is_some() { Warning } else { Note }, Nothing),

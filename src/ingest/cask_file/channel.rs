@@ -73,6 +73,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
     let end = end_or_none(table)?;
     let plain = ChannelSpec {
         source: source(table)?,
+        scale: table.given("scale")?,
         full_scale: table.given("full_scale")?,
         sample_rate_hz: table.given("sample_rate_hz")?,
         rows: rows(table)?,

@@ -49,6 +49,7 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
             _ if is_other => (Value::Null, "default"),
             "offset_m" | "lateral_m" => (json!(0.0), "default"),
             "polarity" => (json!(1), "default"),
+            "scale" => (json!(1.0), "default"),
             "coupling" => (json!("dc"), "default"),
             "calibration_percent" => (default(file, "tolerance", key.name), "default"),
             _ => (Value::Null, "default"),

@@ -2,6 +2,7 @@
 
 use super::super::times::Counted;
 use super::even::Even;
+use crate::ingest::counting::with_missing;
 use std::borrow::Cow;
 
 /// One wanted column.
@@ -51,6 +52,11 @@ impl HeldColumn {
     /// What the bare numbers say of the time that they count.
     pub(super) fn counted(&self) -> Option<Counted> {
         self.even.map_or_else(|| Counted::of(&self.each), |even| even.counted())
+    }
+
+    /// Puts in rows without a value, so many behind each row that is named.
+    pub(super) fn put_in(&mut self, missing: &[(usize, f64)]) {
+        self.each = with_missing(self.each_mut(), missing);
     }
 
     /// The values times `scale`.

@@ -6,7 +6,8 @@ use super::header::{self, TableColumn};
 use super::preamble::{self, Preamble};
 use super::sensors::{self, Sensors};
 use super::{stamp, time_column};
-use crate::ingest::{number, vocabulary};
+use crate::ingest::counting::Counter;
+use crate::ingest::{factors, number, vocabulary};
 
 /// How a text is laid out.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +28,12 @@ pub(super) struct Layout {
     pub times: time_column::Found,
     /// Columns that name the sensor of each row.
     pub sensors: Vec<Sensors>,
+    /// The column that counts the rows.
+    pub counter: Option<usize>,
     /// What else is stated above the rows.
     pub preamble: Preamble,
+    /// Columns of one number that may be factors of the samples.
+    constants: Vec<String>,
     mean_row_bytes: usize,
 }
 
@@ -73,7 +78,26 @@ impl Layout {
             |column| rows.iter().filter_map(move |cells| cells.get(column).copied()),
         );
         let is_time = |column| times.taken == Some(column) || times.sure.contains(&column);
-        let sensors = sensors::find(&columns, is_time, &rows);
+        let first_rows = |column: usize| -> Vec<f64> {
+            let cells = rows.iter().filter_map(|cells| cells.get(column));
+            cells.map(|cell| number::of_cell(cell.as_bytes(), dialect.decimal).unwrap_or(f64::NAN)).collect()
+        };
+        let sensors = sensors::find(&columns, is_time, &rows, first_rows);
+        let is_open = |column: &usize| {
+            columns[*column].is_numeric && !is_time(*column) && sensors.iter().all(|it| it.column != *column)
+        };
+        let counts = |column: &usize| Counter::of(&first_rows(*column)).is_some();
+        let is_named = |column: &usize| vocabulary::is_counter(&columns[*column].name);
+        let open = || (0..columns.len()).filter(is_open);
+        let counter = open().find(is_named).or_else(|| open().find(counts));
+        let constant = |column: usize| {
+            let cell =
+                rows[0].get(column).filter(|cell| rows.iter().all(|row| row.get(column) == Some(cell)))?;
+            let TableColumn { name, .. } = &columns[column];
+            let is_it = factors::is_factor(name);
+            is_it.then(|| factors::unexplained(name, &cell.replace(',', "."))).flatten()
+        };
+        let constants = open().filter_map(constant).collect();
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
         Some(Self {
@@ -84,7 +108,9 @@ impl Layout {
             data_offset: lines[first].offset,
             times,
             sensors,
+            counter,
             preamble,
+            constants,
             mean_row_bytes: (row_bytes / rows.len()).max(2),
             columns,
         })
@@ -133,10 +159,9 @@ impl Layout {
         named.find(|(_, named)| named.len() > 1)
     }
 
-    /// The column that by its header counts the rows.
-    pub(super) fn counter(&self) -> Option<usize> {
-        let is_it = |column: &TableColumn| column.is_numeric && vocabulary::is_counter(&column.name);
-        self.columns.iter().position(is_it)
+    /// Numbers above the rows, or the same in each of them, that may be factors of the samples.
+    pub(super) fn factors(&self) -> Vec<String> {
+        self.preamble.factors.iter().chain(&self.constants).cloned().collect()
     }
 
     /// The columns whose header, or header without unit, is `wanted`.

@@ -218,11 +218,11 @@ impl ListedClock {
     fn of(mut table: Table, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
         let plan = &table.plans[0];
         table.drop_blank()?;
-        issues.extend(table.counter_jumps());
+        issues.extend(table.settle_times().map_err(|refused| refused.refusal)?);
+        issues.extend(table.place_by_counter().map_err(|refused| refused.refusal)?);
         if plan.time_column.is_none() && plan.claims.is_empty() {
             return Ok(Self::default());
         }
-        issues.extend(table.settle_times().map_err(|refused| refused.refusal)?);
         let own_rows = table.own_rows().map_err(|refused| refused.refusal)?;
         let slot = |column: usize| table.wanted.slot(column);
         let times = plan.time_column.map(|time| table.columns[slot(time)].values().into_owned());

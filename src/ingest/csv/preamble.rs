@@ -4,11 +4,15 @@ use super::super::lines::Line;
 use super::cells::Delimiter;
 use super::header::{header_cells, name_and_unit};
 use crate::data::{Finding, TableFinding};
+use crate::ingest::factors;
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};
 
 /// What closes the header of LabVIEW's measurement files, and that of the first segment in it.
 const END_OF_HEADER: &str = "***End_of_Header***";
+
+/// More factors of one line say no more.
+const MOST_FACTORS: usize = 4;
 
 /// What is stated above a table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -21,6 +25,8 @@ pub(super) struct Preamble {
     intervals: Vec<Option<Statement>>,
     /// When each column begins, s, by the cells of LabVIEW's `X0`.
     starts_s: Vec<f64>,
+    /// Numbers that may be factors of the samples.
+    pub factors: Vec<String>,
 }
 
 /// How many lines the header of a measurement file of LabVIEW has; 0 in others.
@@ -39,8 +45,9 @@ impl Preamble {
         let starts = labview_cells(above, delimiter, "X0");
         let starts_s = starts.iter().map(|cell| cell.replace(',', ".").parse().unwrap_or(0.0)).collect();
         let intervals = labview_rates(above, delimiter);
-        let mut preamble = Self { rates, intervals, starts_s, counts: Vec::new() };
+        let mut preamble = Self { rates, intervals, starts_s, ..Self::default() };
         for line in above {
+            preamble.factors.extend(factors_in(&line.text, delimiter));
             let Some((name, value)) = entry(&line.text, delimiter) else { continue };
             let Some((number, unit)) = number_and_unit(&value) else { continue };
             match meaning(&name) {
@@ -118,6 +125,39 @@ fn entry(line: &str, delimiter: Delimiter) -> Option<(String, String)> {
     let value =
         if is_number(first) { format!("{first} {}", unit.unwrap_or_default()) } else { first.clone() };
     is_one.then(|| (name.to_owned(), value.trim().to_owned()))
+}
+
+/// The numbers of a line that may be factors of the samples: `Scale factor;0,9;0,8`, `1 LSB = 0.9 g`, `# gain
+/// 2`.
+fn factors_in(line: &str, delimiter: Delimiter) -> Vec<String> {
+    // Lines above the rows may be parted otherwise than these.
+    let parted_by = [b';', b'\t'].into_iter().find(|mark| line.as_bytes().contains(mark));
+    let cells = match parted_by.map(Delimiter) {
+        Some(own) => header_cells(line, own),
+        None if delimiter.is_run() => vec![line.to_owned()],
+        None => header_cells(line, delimiter),
+    };
+    let Some((first, rest)) = cells.split_first() else { return Vec::new() };
+    let first = first.trim_start_matches(['#', '%', ' ']);
+    let parted = || first.rsplit_once(' ').filter(|(name, _)| rest.is_empty() && factors::is_factor(name));
+    let (key, value) = first.split_once([':', '=']).or_else(parted).unwrap_or((first, ""));
+    let (name, unit) = name_and_unit(key.trim());
+    let values = [value].into_iter().chain(rest.iter().map(String::as_str)).map(str::trim);
+    let mut values: Vec<String> =
+        values.filter(|value| !value.is_empty()).map(|value| value.replace(',', ".")).collect();
+    // What the first does not hold are units of numbers, or remarks.
+    let is_number = |value: &String| number_and_unit(value).is_some();
+    if values.first().is_some_and(|first| !is_number(first)) && values.len() > 1 {
+        return Vec::new();
+    }
+    let next = values.get(1).filter(|next| !is_number(next)).cloned();
+    let unit = unit.map(str::to_owned).or(next).unwrap_or_default();
+    values.dedup();
+    let with_unit = |value: &String| {
+        let text = if value.parse::<f64>().is_ok() { format!("{value} {unit}") } else { value.clone() };
+        factors::unexplained(name, text.trim())
+    };
+    values.iter().filter_map(with_unit).take(MOST_FACTORS).collect()
 }
 
 /// Whether a unit stands in a name: `sample_rate_hz`.

@@ -1,6 +1,7 @@
 //! The first rows of a long table to the columns that name the sensor of each row.
 
 use super::header::TableColumn;
+use crate::ingest::counting::are_ids_by_turns;
 use crate::ingest::limits::MOST_SENSORS;
 use crate::ingest::{number, vocabulary};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -63,14 +64,20 @@ pub(super) fn find(
     columns: &[TableColumn],
     is_time: impl Fn(usize) -> bool,
     rows: &[Vec<&str>],
+    numbers: impl Fn(usize) -> Vec<f64>,
 ) -> Vec<Sensors> {
     let rows: Vec<&Vec<&str>> = rows.iter().filter(|cells| cells.len() >= columns.len()).collect();
     let is_value = |column: &usize| columns[*column].is_numeric && !is_time(*column);
     let of_column = |column: usize| {
-        let TableColumn { name, is_numeric, .. } = &columns[column];
+        let TableColumn { name, unit, is_numeric, .. } = &columns[column];
         let is_named = vocabulary::is_sensor_of_rows(name);
         let has_others = (0..columns.len()).any(|other| other != column && is_value(&other));
-        if is_time(column) || !has_others || (*is_numeric && !is_named) {
+        // Numbers of any name that return one after another are ids, unless they count.
+        let is_by_turns = *is_numeric
+            && unit.is_none()
+            && !vocabulary::may_count(name)
+            && are_ids_by_turns(&numbers(column));
+        if is_time(column) || !has_others || (*is_numeric && !is_named && !is_by_turns) {
             return None;
         }
         let cells: Vec<String> = rows.iter().map(|cells| cells[column].to_owned()).collect();

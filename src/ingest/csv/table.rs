@@ -11,9 +11,11 @@ use super::time_column;
 use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
 use crate::ingest::clock::Clock;
+use crate::ingest::counting::{self, Counter};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
+use crate::numerics::as_f64;
 use rayon::prelude::*;
 
 /// The wanted columns of a table, kept whole, with what is said of them.
@@ -132,6 +134,11 @@ impl<'a> Table<'a> {
             let mut users = self.plans.iter().filter(|plan| is_user(plan));
             let stated_hz = users.find_map(|plan| plan.claims.cask_hz);
             let scale = time_column::scale(&self.layout.columns[time]);
+            // A clock or a counter of few bits begins anew at a number that shows it.
+            let each = column.each.as_slice();
+            if let Some(each) = Counter::of(each).and_then(|counter| counter.unwrapped(each)) {
+                column.each = each;
+            }
             let unit_s =
                 times::seconds_a_unit(scale, Carrier::Column(header), || column.counted(), stated_hz);
             column.scale(unit_s.map_err(refused)?);
@@ -168,19 +175,43 @@ impl<'a> Table<'a> {
         said.map_err(|refusal| Refused { plan: open.unwrap_or_default(), refusal })
     }
 
-    /// A warning where no times are there, and a column that counts the rows jumps: those between are lost.
-    pub(super) fn counter_jumps(&self) -> Option<Finding> {
-        let column =
-            self.layout.counter().filter(|_| self.plans.iter().all(|plan| plan.time_column.is_none()))?;
-        let counts = &self.columns[self.wanted.slot(column)].each;
-        let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
-        // One that begins anew, or counts something else, tells nothing.
-        let is_counter = steps().all(|step| step >= 1.0 && step.fract().abs() < f64::EPSILON);
-        let jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
-        let &(row, first) = jumps.first().filter(|_| is_counter && 10 * jumps.len() < counts.len())?;
-        let lost: f64 = jumps.iter().map(|(_, step)| step - 1.0).sum();
-        let header = self.layout.columns[column].header.clone();
-        Some(TableFinding::CounterJumps { header, lost, count: first - 1.0, row: row + 1 }.into())
+    /// Rows that a column which counts them shows to be missing: without times they are put in, empty; beside
+    /// times that go on over them the two contradict each other.
+    ///
+    /// # Errors
+    /// They do, and the cask file does not name the times.
+    pub(super) fn place_by_counter(&mut self) -> Result<Option<Finding>, Refused> {
+        let Some(column) = self.wanted.counter.filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()))
+        else {
+            return Ok(None);
+        };
+        let counts = self.columns[self.wanted.slot(column)].values();
+        let jumps = Counter::of(&counts).map_or(Vec::new(), |counter| counter.jumps(&counts));
+        let (header, lost) =
+            (self.layout.columns[column].header.clone(), jumps.iter().map(|(_, lost)| lost).sum::<f64>());
+        let Some(&(row, first)) = jumps.first().filter(|_| lost <= as_f64(counts.len())) else {
+            return Ok(None);
+        };
+        let timed = self.plans.iter().enumerate().find_map(|(plan, of)| Some((plan, of.time_column?)));
+        if let Some((plan, time)) = timed {
+            let times = self.columns[self.wanted.slot(time)].values();
+            if jumps.iter().all(|(row, lost)| counting::is_room(&times, *row, *lost)) {
+                return Ok(None);
+            }
+            let times = self.layout.columns[time].header.clone();
+            if self.plans[plan].claims.are_times_named {
+                return Ok(Some(
+                    TableFinding::CounterBesideTimes { header, lost, row: row + 1, times }.into(),
+                ));
+            }
+            let refusal = counting::contradiction(&header, lost, (row, first), &times);
+            return Err(Refused { plan, refusal });
+        }
+        drop(counts);
+        for column in &mut self.columns {
+            column.put_in(&jumps);
+        }
+        Ok(Some(TableFinding::CounterJumps { header, lost, count: first, row: row + 1 }.into()))
     }
 
     /// How many samples a channel has at most.

@@ -14,23 +14,25 @@ pub(super) struct Wanted {
     pub is_witness: Vec<bool>,
     /// For each slot, whether it names the sensors of rows.
     pub is_sensor: Vec<bool>,
+    /// The column that counts the rows, where it is none of values or times.
+    pub counter: Option<usize>,
     /// For each slot, that of the times of its values.
     clocks: Vec<Option<usize>>,
 }
 
 impl Wanted {
-    /// What channels take, and the columns that bear their times out; without times the one that counts the
-    /// rows.
+    /// What channels take, the columns that bear their times out, and the one that counts the rows.
     pub(super) fn of(plans: &[ColumnPlan], layout: &Layout) -> Self {
         let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
         let times: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();
-        let counter =
-            layout.counter().filter(|column| times.is_empty() && !values.contains(&(*column, None)));
+        let is_own = |column: &usize| values.iter().any(|(own, _)| own == column) || times.contains(column);
+        let counter = layout.counter.filter(|column| !is_own(column));
         let of_times = times.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column);
         let rest = times.iter().filter_map(|&time| layout.nanoseconds(time));
         let sensors: Vec<usize> = plans.iter().filter_map(|plan| Some(plan.rows.as_ref()?.0)).collect();
         let beside = of_times.chain(rest).chain(counter).chain(sensors.iter().copied());
         let mut wanted = Self::new(&values, &beside.collect::<Vec<_>>());
+        wanted.counter = counter;
         wanted.is_sensor = wanted.columns.iter().map(|column| sensors.contains(column)).collect();
         wanted
     }
@@ -48,7 +50,7 @@ impl Wanted {
         let clock = |column: &usize| values.iter().find(|(own, _)| own == column).and_then(|(_, time)| *time);
         let clocks = columns.iter().map(|column| columns.binary_search(&clock(column)?).ok()).collect();
         let is_sensor = vec![false; columns.len()];
-        Self { columns, is_time, is_witness, is_sensor, clocks }
+        Self { columns, is_time, is_witness, is_sensor, clocks, counter: None }
     }
 
     /// The slot of a wanted column.

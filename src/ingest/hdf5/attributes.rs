@@ -6,6 +6,7 @@ use super::column::DatasetColumn;
 use super::names::{self, AttributeRole};
 use super::starts::{self, start_s};
 use crate::data::{AttributeFinding, Finding, Samples, acceleration_unit_m_s2};
+use crate::ingest::factors;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::Meaning;
@@ -23,8 +24,14 @@ pub(super) struct Attributes {
     pub start: starts::Start,
     pub scale: Option<f64>,
     pub offset: Option<f64>,
+    /// Numbers that may be factors of the samples, and are not applied.
+    pub factors: Vec<String>,
     /// Stored values that stand for a missing sample.
     fills: Vec<f64>,
+    /// What is added to stored numbers below zero.
+    unsigned: f64,
+    /// The least and the largest stored number that is a sample.
+    valid: Option<(f64, f64)>,
     /// What groups farther off say otherwise.
     pub issues: Vec<Finding>,
 }
@@ -40,26 +47,33 @@ struct Said {
     distance: usize,
     /// As text; `None` where it holds different values and none of them is the column's.
     value: Option<String>,
+    /// As numbers, where it holds some.
+    bounds: Vec<f64>,
 }
 
 impl Attributes {
-    /// The nearest of each, from the dataset up to the root.
+    /// The nearest of each, from the dataset up to the root; `is_settled`: the cask file states the scale.
     ///
     /// # Errors
     /// A scale or offset is no number or stands twice in one place, or whole numbers are to be converted
     /// otherwise.
-    pub(super) fn of(column: &DatasetColumn) -> Result<Self, Refusal> {
+    pub(super) fn of(column: &DatasetColumn, is_settled: bool) -> Result<Self, Refusal> {
         let said = said(column);
-        let attributes = Self::of_said(&said, column)?;
+        let mut attributes = Self::of_said(&said, column)?;
+        if attributes.scale.is_none() {
+            let near = said.iter().filter(|said| said.distance < 2 && said.role.is_none());
+            attributes.factors = near.filter_map(Said::as_factor).collect();
+        }
         let are_counts = column.number.is_whole();
         let undone = said.iter().filter(|said| said.is_undone(are_counts));
         let undone: Vec<String> = undone.map(Said::shown).collect();
-        if attributes.scale.is_none() && !undone.is_empty() {
+        if attributes.scale.is_none() && !is_settled && !undone.is_empty() {
             let what = if are_counts { "whole numbers are counts of the recorder," } else { "numbers are" };
             return Err(Refusal::new(
                 format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
-                "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + \
-                 offset; scale = 1 where the numbers are converted already",
+                "write into this [[channel]] of the cask file what the numbers are to be multiplied by to be in \
+                 `unit`, such as scale = 0.9, or scale = 1 where they are converted already; in a copy the \
+                 dataset may have attributes scale and offset: value = raw · scale + offset",
             ));
         }
         Ok(attributes)
@@ -108,6 +122,22 @@ impl Attributes {
         if !column.is_field() {
             let own = with(Fill).filter(|said| said.distance == 0);
             all.fills = own.filter_map(|said| said.number(column).ok().flatten()).collect();
+        }
+        let own = |role: AttributeRole| with(role).filter(|said| said.distance == 0);
+        let is_true =
+            |said: &Said| said.value.as_deref().is_some_and(|word| word.eq_ignore_ascii_case("true"));
+        if own(AttributeRole::Unsigned).any(is_true) && column.number.is_whole() {
+            all.unsigned = 2_f64.powi(8 * i32::try_from(column.number.bytes()).unwrap_or_default());
+        }
+        let bounds = own(AttributeRole::Valid).map(|said| (said.name.to_lowercase(), said.bounds.clone()));
+        for (name, numbers) in bounds.filter(|(_, numbers)| numbers.iter().all(|number| number.is_finite())) {
+            let (low, high) = all.valid.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            all.valid = match (&numbers[..], name.ends_with("max")) {
+                (&[least, most], _) if least < most => Some((least, most)),
+                (&[most], true) => Some((low, most)),
+                (&[least], false) if name.ends_with("min") => Some((least, high)),
+                _ => all.valid,
+            };
         }
         for said in said {
             let Some(meaning) = names::rate_meaning(&said.name) else { continue };
@@ -172,9 +202,12 @@ impl Attributes {
         let fills = samples.alike(self.fills.clone()).into_f64();
         let (scale, offset) = (self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0));
         let is_scaled = self.scale.is_some() || self.offset.is_some();
-        if is_scaled || !fills.is_empty() {
-            samples.change(|x| match x {
-                fill if fills.contains(&fill) => f64::NAN,
+        let (least, most) = self.valid.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let plain = |x: f64| if x < 0.0 { x + self.unsigned } else { x };
+        if is_scaled || !fills.is_empty() || self.valid.is_some() || self.unsigned > 0.0 {
+            samples.change(|x| match plain(x) {
+                _ if fills.contains(&x) => f64::NAN,
+                x if x < least || x > most => f64::NAN,
                 x if is_scaled => x * scale + offset,
                 x => x,
             });
@@ -202,6 +235,10 @@ fn said(column: &DatasetColumn) -> Vec<Said> {
             place: path.to_owned(),
             distance,
             value: column.own_of(held),
+            bounds: match held {
+                Held::Numbers(numbers) if numbers.len() < 3 => numbers.clone(),
+                _ => Vec::new(),
+            },
         }));
         let Some((above, _)) = place.rsplit_once('/') else { break };
         (place, distance) = (above, distance + 1);
@@ -254,6 +291,14 @@ impl Said {
             (Some(Conversion), None) => true,
             (role, _) => are_counts && matches!(role, Some(Conversion | CountsConversion)),
         }
+    }
+
+    /// `counts_to_g = 0.9`, where that may be a factor of the samples.
+    fn as_factor(&self) -> Option<String> {
+        let is_rate = names::rate_meaning(&self.name).is_some();
+        let is_factor = factors::is_factor(&self.name) && !is_rate && !names::ends_in_unit(&self.name);
+        let Some(value) = &self.value else { return is_factor.then(|| self.shown()) };
+        is_factor.then(|| factors::unexplained(&self.name, value)).flatten()
     }
 
     /// `scale = 0.5`.

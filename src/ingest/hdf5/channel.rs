@@ -7,11 +7,12 @@ use super::column::DatasetColumn;
 use super::find;
 use super::sensors::RecordSensors;
 use super::starts::{LATEST_S, Start};
-use crate::data::{RowsOf, Samples};
+use crate::data::{Finding, RowsOf, Samples, TableFinding};
 use crate::ingest::clock::Claims;
+use crate::ingest::counting::{self, Counter};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
-use crate::numerics::extent;
+use crate::numerics::{as_f64, extent};
 
 /// A channel before its samples are read.
 pub(super) struct DatasetChannel {
@@ -23,6 +24,8 @@ pub(super) struct DatasetChannel {
     pub times: Vec<DatasetColumn>,
     /// Which of its samples are taken, where it holds those of several sensors.
     rows: Option<Vec<usize>>,
+    /// What counts its samples, and where it shows some to be missing.
+    jumps: Option<(String, Vec<(usize, f64)>)>,
 }
 
 /// Samples on one base.
@@ -36,17 +39,19 @@ pub(super) struct Based {
 
 impl DatasetChannel {
     /// With the times of the name that the cask file gives, else those beside the samples that have a usual
-    /// one; `cask_hz` is its rate.
+    /// one; `cask_hz` is its rate, and
+    /// `is_settled` where the file states its scale.
     ///
     /// # Errors
     /// Attributes that contradict each other, times that are none.
     pub(super) fn of(
         column: DatasetColumn,
-        cask_hz: Option<f64>,
+        (cask_hz, is_settled): (Option<f64>, bool),
         time: Option<&str>,
         clocks: &mut Clocks,
     ) -> Result<Self, Refusal> {
-        let mut attributes = Attributes::of(&column).map_err(|refusal| refusal.at(&column.source))?;
+        let mut attributes =
+            Attributes::of(&column, is_settled).map_err(|refusal| refusal.at(&column.source))?;
         if let Some(since_s) = &mut attributes.start.since_s {
             *since_s -= *clocks.zero_s.get_or_insert(*since_s);
         }
@@ -58,7 +63,7 @@ impl DatasetChannel {
         }
         let stated = std::mem::take(&mut attributes.stated);
         let claims = Claims { cask_hz, are_times_named: time.is_some(), stated };
-        Ok(Self { column, attributes, claims, times, rows: None })
+        Ok(Self { column, attributes, claims, times, rows: None, jumps: None })
     }
 
     /// Takes the samples of one sensor alone.
@@ -78,6 +83,37 @@ impl DatasetChannel {
         let rows = sensors.map(|sensors| sensors.rows(picked)).transpose();
         self.rows = rows.map_err(|fault| fault.at(&self.column.source))?;
         Ok(())
+    }
+
+    /// Looks beside the samples for a counter of them that shows some to be missing.
+    pub(super) fn count_rows(&mut self, mut may_read: impl FnMut(&DatasetColumn) -> bool) {
+        let jumps = |counter: DatasetColumn| {
+            let counts = counter.samples().ok()?.into_f64();
+            Some((counter.source, Counter::of(&counts)?.jumps(&counts)))
+        };
+        let is_own = |other: &DatasetColumn| self.times.iter().any(|time| time.source == other.source);
+        let beside = clocks::counters_beside(&self.column).into_iter().filter(|other| !is_own(other));
+        let found = beside.filter(|counter| may_read(counter)).find_map(jumps);
+        let count = as_f64(self.column.length);
+        let is_lost = |jumps: &[(usize, f64)]| (1.0..count).contains(&jumps.iter().map(|jump| jump.1).sum());
+        self.jumps = found.filter(|(_, jumps)| self.rows.is_none() && is_lost(jumps));
+    }
+
+    /// What the counter says beside times.
+    ///
+    /// # Errors
+    /// They go on over what it shows to be missing, and the cask file does not name them.
+    fn held_against(&self, time: &DatasetColumn, times_s: &[f64]) -> Result<Option<Finding>, Refusal> {
+        let Some((header, jumps)) = &self.jumps else { return Ok(None) };
+        if jumps.iter().all(|(row, lost)| counting::is_room(times_s, *row, *lost)) {
+            return Ok(None);
+        }
+        let (lost, times) = (jumps.iter().map(|jump| jump.1).sum(), time.source.clone());
+        if self.claims.are_times_named {
+            let (header, row) = (header.clone(), jumps[0].0 + 1);
+            return Ok(Some(TableFinding::CounterBesideTimes { header, lost, row, times }.into()));
+        }
+        Err(counting::contradiction(header, lost, jumps[0], &times))
     }
 
     /// Its numbers, scaled.
@@ -134,8 +170,10 @@ impl DatasetChannel {
                     *t += since_s;
                 }
             }
+            let told = self.held_against(time, &times_s).map_err(at)?;
             let placed = ChannelTimes::new(&times_s).place(samples, &self.claims);
             let mut uniform = placed.map_err(at)?;
+            uniform.issues.extend(told);
             // A rate that bears the times out decides between them and others.
             let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
             for other in others.filter(|other| self.rows.is_none() && may_read(other)) {
@@ -147,8 +185,15 @@ impl DatasetChannel {
         self.by_rate(samples, unfit)
     }
 
-    fn by_rate(&self, samples: Samples, unfit: Option<String>) -> Result<Based, Refusal> {
+    fn by_rate(&self, mut samples: Samples, unfit: Option<String>) -> Result<Based, Refusal> {
         let Attributes { no_rate, start, .. } = &self.attributes;
+        let mut told = None;
+        if let Some((header, jumps)) = &self.jumps {
+            let (lost, (row, count), header) =
+                (jumps.iter().map(|jump| jump.1).sum(), jumps[0], header.clone());
+            told = Some(TableFinding::CounterJumps { header, lost, count, row: row + 1 }.into());
+            samples = samples.alike(counting::with_missing(&samples.clone().into_f64(), jumps));
+        }
         let unclear = no_rate.clone().filter(|_| self.claims.cask_hz.is_none());
         let none = || unfit.unwrap_or_else(|| clocks::why_none(&self.column));
         let nothing = || format!("no attribute sample_rate_hz, and {}", none());
@@ -159,7 +204,8 @@ impl DatasetChannel {
             )),
             None => time_base::from_claims(start.first_s(), &self.claims, samples),
         };
-        let uniform = placed.map_err(|fault| fault.at(&self.column.source))?;
+        let mut uniform = placed.map_err(|fault| fault.at(&self.column.source))?;
+        uniform.issues.extend(told);
         Ok(Based { uniform, span_s: None, start: start.clone() })
     }
 }

@@ -8,6 +8,7 @@ use crate::data::{Finding, Samples};
 use crate::ingest::clock::Clock;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::times::{Carrier, Counted, Scale, seconds_a_unit};
+use crate::ingest::vocabulary;
 use crate::numerics::extent;
 
 /// Names that go before others.
@@ -62,9 +63,36 @@ pub(super) fn places(column: &DatasetColumn) -> impl Iterator<Item = String> {
 
 /// What says of which sensor each sample of a channel is, by its name.
 pub(super) fn sensors_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
-    let named = places(column).flat_map(|place| sources(&place, column, names::is_sensor));
-    let found = named.filter_map(|source| find::find(&column.file, &source).ok()?);
-    found.filter(|ids| ids.length == column.length).collect()
+    /// Fields of other names are looked at in records of so many samples at most: each is read.
+    const MOST_SAMPLES: usize = 1 << 22;
+    let of_names = |is_named: fn(&str) -> bool| {
+        let named = places(column).flat_map(move |place| sources(&place, column, is_named));
+        named.filter_map(|source| find::find(&column.file, &source).ok()?)
+    };
+    let is_open = |ids: &DatasetColumn| {
+        let is_field = ids.is_field() && ids.number.is_whole() && ids.source != column.source;
+        is_field && ids.length < MOST_SAMPLES && !vocabulary::may_count(&ids.bare_name())
+    };
+    let unnamed = of_names(|name| !names::is_sensor(name)).filter(is_open).take(4);
+    of_names(names::is_sensor).chain(unnamed).filter(|ids| ids.length == column.length).collect()
+}
+
+/// What may count the samples of a channel: by its name, or a field of its records in whole numbers of 32 bits
+/// and more.
+pub(super) fn counters_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
+    /// More counters have no records.
+    const MOST: usize = 4;
+    let may_be = |other: &DatasetColumn| {
+        let is_named = vocabulary::may_count(&other.bare_name());
+        let is_wide = column.is_field() && other.number.bytes() > 2;
+        other.length == column.length
+            && other.source != column.source
+            && other.number.is_whole()
+            && (is_named || is_wide)
+    };
+    let all = places(column).flat_map(|place| sources(&place, column, |_| true));
+    let found = all.filter_map(|source| find::find(&column.file, &source).ok()?);
+    found.filter(may_be).take(MOST).collect()
 }
 
 /// Why a channel has no times: what is named as times beside it, and is none of its own.

@@ -142,7 +142,7 @@ impl Lister {
         let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);
         listed.encoding = column.dataset.described();
-        let mut channel = match DatasetChannel::of(column, None, None, &mut self.clocks) {
+        let mut channel = match DatasetChannel::of(column, (None, false), None, &mut self.clocks) {
             Ok(channel) => channel,
             // What holds one value is no channel.
             Err(_) if listed.samples == Some(1) => return Ok(()),
@@ -154,6 +154,7 @@ impl Lister {
         if let Some(rows) = &listed.rows {
             channel.pick(Some(rows), |ids| self.pays_for(ids))?;
         }
+        channel.count_rows(|counter| self.pays_for(counter));
         let DatasetChannel { column, attributes, claims, times, .. } = &channel;
         listed.encoding += &attributes.scaling();
         listed.unit.clone_from(&attributes.unit);

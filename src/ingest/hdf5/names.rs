@@ -1,5 +1,6 @@
 //! Names of attributes and datasets to what they say of samples.
 
+use crate::ingest::factors;
 use crate::ingest::vocabulary::{self, Meaning};
 
 /// What an attribute says of samples, apart from their rate.
@@ -14,6 +15,10 @@ pub(in crate::ingest) enum AttributeRole {
     Offset,
     /// A stored value that stands for a missing sample.
     Fill,
+    /// That stored numbers of a signed type are meant without sign.
+    Unsigned,
+    /// The least, the largest, or both, of the stored numbers that are samples.
+    Valid,
     /// What each column holds.
     Columns,
     /// How counts become volts or g in the recorder's own program; nothing here does it.
@@ -25,7 +30,7 @@ pub(in crate::ingest) enum AttributeRole {
 /// Names, so written as [`plain`] has them. Scale factor, add offset, fill and missing value are those of the
 /// CF conventions of netCDF, conversion is that of NWB, unit string that of LabVIEW. Other names hold parts
 /// of the last: `calibration_date`, `trigger_slope`.
-const ROLES: [(&str, AttributeRole); 8] = [
+const ROLES: [(&str, AttributeRole); 10] = [
     ("t0 startingtime wfstartoffset", AttributeRole::Start),
     ("starttime timestart starttimestamp wfstarttime x0 xorg", AttributeRole::OpenStart),
     ("unit units unitstring physicalunit", AttributeRole::Unit),
@@ -33,6 +38,8 @@ const ROLES: [(&str, AttributeRole); 8] = [
     ("offset addoffset", AttributeRole::Offset),
     ("fillvalue missingvalue", AttributeRole::Fill),
     ("columns columnnames channelnames", AttributeRole::Columns),
+    ("unsigned", AttributeRole::Unsigned),
+    ("validrange validmin validmax", AttributeRole::Valid),
     (
         "cal calib calibration coeffs coefficient coefficients factor slope multiplier",
         AttributeRole::Conversion,
@@ -93,6 +100,7 @@ pub(super) fn is_read(name: &str) -> bool {
         || ["rate", MATLAB_CLASS].contains(&name)
         || role(name, 0).is_some()
         || rate_meaning(name).is_some()
+        || factors::is_factor(name)
 }
 
 /// Whether a dataset or field of this name is one of times; `axis1` is the index of a pandas frame.

@@ -255,3 +255,51 @@ fn samples_of_several_sensors_are_refused_or_picked() {
         assert!(!told.contains("by turns"), "{told}");
     }
 }
+
+fn read_a1(file: &Made) -> Result<Vec<RawChannel>, String> {
+    let read = read(ReadRequest::silent(&file.path, Limits::default()), &cask_file(&["/A1"]));
+    read.map(|read| read.channels).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_counter_beside_the_samples_places_them_or_contradicts_the_times() {
+    let counts: Vec<i32> = (0..600).filter(|row| !(300..304).contains(row)).map(|row| row % 256).collect();
+    let file_with = |times: bool| {
+        made(|file| {
+            let samples = vec![2_f64; counts.len()];
+            let data = file.new_dataset_builder().with_data(&samples).create("A1")?;
+            number(&data, "fs", 1000.0)?;
+            file.new_dataset_builder().with_data(&counts).create("Pkt_seq")?;
+            if times {
+                let even: Vec<f64> = (0..counts.len()).map(|i| as_f64(i) * 1e-3).collect();
+                file.new_dataset_builder().with_data(&even).create("time_s")?;
+            }
+            Ok(())
+        })
+    };
+    let channels = read_a1(&file_with(false)).unwrap();
+    assert_eq!((channels[0].uniform.samples.len(), channels[0].uniform.samples.missing()), (600, 4));
+    let refused = read_a1(&file_with(true)).unwrap_err();
+    assert!(refused.contains("counts the rows, and 4 of them are missing"), "{refused}");
+}
+
+#[test]
+fn unsigned_numbers_and_valid_ranges_are_applied_and_factors_are_named() {
+    let file = made(|file| {
+        let data = file.new_dataset_builder().with_data(&[1_i16, -2, 3, 9999, 5, 6]).create("A1")?;
+        number(&data, "fs", 1000.0)?;
+        text(&data, "_Unsigned", "true")?;
+        number(&data, "valid_max", 65_534.5)?;
+        number(&data, "bit_volts", 0.9)?;
+        Ok(())
+    });
+    let channels = read_a1(&file).unwrap();
+    assert_eq!(channels[0].factors, ["bit_volts = 0.9"]);
+    assert!((channels[0].uniform.samples.get(1) - 65_534.0).abs() < 0.5);
+    let file = made(|file| {
+        let data = file.new_dataset_builder().with_data(&[1.0, -2.0, 3.0, 9999.0, 5.0, 6.0]).create("A1")?;
+        number(&data, "fs", 1000.0)?;
+        number(&data, "valid_max", 100.0)
+    });
+    assert_eq!(read_a1(&file).unwrap()[0].uniform.samples.missing(), 1);
+}

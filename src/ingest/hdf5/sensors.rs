@@ -2,7 +2,9 @@
 //! all.
 
 use super::column::DatasetColumn;
+use super::names;
 use crate::data::RowsOf;
+use crate::ingest::counting::are_ids_by_turns;
 use crate::ingest::limits::MOST_SENSORS;
 use crate::ingest::refusal::Refusal;
 
@@ -33,7 +35,10 @@ impl RecordSensors {
         seen.sort_by(f64::total_cmp);
         let column = ids.bare_name();
         let all = seen.iter().map(|id| RowsOf { column: column.clone(), is: id.to_string() });
-        (are_picked || seen.len() > 1 && runs > seen.len()).then(|| Self { all: all.collect(), each })
+        // Numbers of any other name must return one after another.
+        let is_named = names::is_sensor(&column);
+        let is_so = if is_named { seen.len() > 1 && runs > seen.len() } else { are_ids_by_turns(&each) };
+        (are_picked || is_so).then(|| Self { all: all.collect(), each })
     }
 
     /// The samples of one of them.

@@ -3,6 +3,7 @@
 
 use super::answer::{AttributeValue, Bytes, Object, Query, Reply, Slab, send};
 use super::names;
+use crate::ingest::vocabulary;
 use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Write};
 
@@ -136,7 +137,9 @@ impl<S: Store> Tree<S> {
         }
         match self.store.object(path) {
             Ok(Object::Group { attributes, .. }) => {
-                let is_beside = |name: &&String| names::is_time(name) || names::is_sensor(name);
+                let is_beside = |name: &&String| {
+                    names::is_time(name) || names::is_sensor(name) || vocabulary::may_count(name)
+                };
                 let times = self.members(&group).keys().filter(is_beside).cloned().collect();
                 Object::Group { attributes, times }
             }
@@ -170,7 +173,9 @@ impl<S: Store> Tree<S> {
                 let path = format!("{group}/{name}");
                 if let Object::Dataset(told) = self.object(&path)
                     && told.type_name != MATLAB_OTHER
-                    && told.shape.is_some_and(|shape| shape.iter().all(|n| *n == 1))
+                    && told
+                        .shape
+                        .is_some_and(|shape| shape.iter().all(|n| *n == 1) || may_be_factors(&name, &shape))
                     && let Some(held) = self.store.value(&path)
                 {
                     let inner =
@@ -189,6 +194,13 @@ impl<S: Store> Tree<S> {
             .entry(group.to_owned())
             .or_insert_with(|| store.members(if group.is_empty() { "/" } else { group }))
     }
+}
+
+/// Whether a dataset holds a factor for each of some channels: `channel_bit_volts`.
+fn may_be_factors(name: &str, shape: &[usize]) -> bool {
+    names::role(name, 1).is_none()
+        && names::rate_meaning(name).is_none()
+        && shape.iter().product::<usize>() <= MOST_ONES
 }
 
 /// One value in place of several that are the same, so that nobody goes through them for every column.

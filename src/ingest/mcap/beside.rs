@@ -46,6 +46,9 @@ impl Slots {
                     let (name, unit) = (beside.field.as_str().into(), unit.and_then(words).cloned());
                     said.rates.push(StatedRate { name, meaning, level, value, unit });
                 }
+                (Says::Factor, Some(Value::Array(all))) if !all.is_empty() => {
+                    said.numbers.push((all.get(0), beside));
+                }
                 (_, Some(Value::Number { value, .. })) => said.numbers.push((*value, beside)),
                 _ => {}
             }
@@ -60,15 +63,22 @@ impl SaidBeside<'_> {
         self.nearest(|says| says == Says::Time)
     }
 
+    /// Numbers that may be factors of the samples, each with its field, where no scale is applied.
+    pub(super) fn factors(&self) -> impl Iterator<Item = (f64, &Beside)> {
+        let is_scaled = self.nearest(|says| says == Says::Scale).is_some();
+        self.numbers.iter().filter(move |(_, beside)| beside.says == Says::Factor && !is_scaled).copied()
+    }
+
     fn nearest(&self, is_it: impl Fn(Says) -> bool) -> Option<(f64, &Beside)> {
         self.numbers.iter().find(|(_, beside)| is_it(beside.says)).copied()
     }
 
-    /// The samples as the message means them: the valid ones, value = raw · scale + offset.
+    /// The samples as the message means them: the valid ones, value = raw · scale + offset; `is_settled`
+    /// where the cask file states what is not done here.
     ///
     /// # Errors
     /// It says what is not done here.
-    pub(super) fn applied(&self, mut value: Value) -> Result<Value, Refusal> {
+    pub(super) fn applied(&self, mut value: Value, is_settled: bool) -> Result<Value, Refusal> {
         let number = |says: Says| self.nearest(|own| own == says);
         let [scale, count, turns] = [Says::Scale, Says::Count, Says::Turns].map(|s| Some(number(s)?.0));
         if let (Some(turns), Value::Array(_)) = (turns.filter(|turns| *turns > 1.0), &value) {
@@ -78,11 +88,18 @@ impl SaidBeside<'_> {
                  else have the recorder write an array for each signal",
             ));
         }
+        if scale == Some(0.0) && !is_settled {
+            return Err(Refusal::new(
+                "its messages state scale = 0 beside the samples, as a field that was never set does",
+                "have the recorder write the scale, or write scale into this [[channel]] of the cask file",
+            ));
+        }
         // A factor of one changes nothing, nor does an offset of zero.
         let is_apart = |(number, _): &(f64, &Beside)| (*number - 1.0).abs() > f64::EPSILON;
         let conversion = number(Says::Conversion).filter(is_apart);
         let offset = number(Says::Offset).filter(|(number, _)| *number != 0.0);
-        if let (None, Some((number, beside))) = (scale, conversion.or(offset)) {
+        let scale = scale.filter(|scale| *scale != 0.0);
+        if let (None, Some((number, beside)), false) = (scale, conversion.or(offset), is_settled) {
             return Err(Refusal::new(
                 format!(
                     "its messages state {} = {} beside the samples, and nothing says whether these are \
@@ -90,8 +107,8 @@ impl SaidBeside<'_> {
                     beside.field,
                     short(number)
                 ),
-                "have the recorder write `scale` and `offset` beside them: value = raw · scale + offset; \
-                 scale = 1 where they are converted",
+                "write scale into this [[channel]] of the cask file, scale = 1 where they are converted; or \
+                 have the recorder write `scale` and `offset` beside them: value = raw · scale + offset",
             ));
         }
         if let (Some(count), Value::Array(samples)) = (count, &mut value) {

@@ -3,6 +3,7 @@
 use super::numbers::{Extent, append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
+use crate::ingest::factors;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::PREFIX;
 
@@ -53,6 +54,8 @@ pub(super) struct Column {
     units: Vec<String>,
     /// The rates that messages state, each once, as they come.
     rates: Vec<StatedRate>,
+    /// Numbers that may be factors of the samples, with their fields.
+    factors: Vec<(String, f64)>,
     /// Which sample or block came last with a stamp of exactly zero.
     zero_stamp: Option<usize>,
     /// Numbers that are the times of messages, where these carry such.
@@ -172,6 +175,19 @@ impl Column {
         }
     }
 
+    /// Takes a number that may be a factor of the samples.
+    pub(super) fn state_factor(&mut self, field: &str, factor: f64) {
+        if self.factors.iter().all(|(known, value)| known != field || *value != factor) {
+            state(&mut self.factors, (field.to_owned(), factor));
+        }
+    }
+
+    /// Those numbers, for people.
+    pub(super) fn factors(&self) -> Vec<String> {
+        let shown = |(field, factor): &(String, f64)| factors::unexplained(field, &factor.to_string());
+        self.factors.iter().filter_map(shown).collect()
+    }
+
     /// Takes a rate that a message states.
     pub(super) fn state_rate(&mut self, rate: &StatedRate) {
         state(&mut self.rates, rate.clone());
@@ -230,6 +246,9 @@ impl Column {
             self.log(before + place, log_ns);
         }
         self.next_logged = self.next_logged.max(before + std::mem::take(&mut other.next_logged));
+        for (field, factor) in other.factors.drain(..) {
+            self.state_factor(&field, factor);
+        }
         self.refused = self.refused.take().or(other.refused.take());
         self.good_stamps += std::mem::take(&mut other.good_stamps);
         self.bad_stamps += std::mem::take(&mut other.bad_stamps);

@@ -103,6 +103,8 @@ pub(super) enum Says {
     Offset,
     /// A conversion that is not made here.
     Conversion,
+    /// By what they may be meant to be multiplied.
+    Factor,
     /// How many numbers of the array are samples.
     Count,
     /// How many signals stand in the array by turns.
@@ -134,6 +136,8 @@ pub(super) struct AskedField {
     pub(super) times: Option<Vec<FieldPath>>,
     /// The field that says which sensor a message is of, where the cask file names it.
     pub(super) sensor: Option<FieldPath>,
+    /// Whether the cask file states its scale.
+    pub(super) is_scaled: bool,
 }
 
 impl AskedField {
@@ -145,7 +149,7 @@ impl AskedField {
 
     /// Of which nothing more is said.
     pub(super) fn plain(path: FieldPath) -> Self {
-        Self { path, is_array: false, times: None, sensor: None }
+        Self { path, is_array: false, times: None, sensor: None, is_scaled: false }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::path::{FieldPath, Step};
 use super::plan::{AskedField, Beside, Field, Leaf, Plan, RATE_NAMES, STAMP_NAMES, Says, UNIT_NAMES, Want};
+use crate::ingest::factors;
 use crate::ingest::hdf5::names::{AttributeRole, role};
 use crate::ingest::vocabulary::{self, Meaning};
 
@@ -10,6 +11,10 @@ use crate::ingest::vocabulary::{self, Meaning};
 const MOST_BESIDE: usize = 32;
 /// So many fields of a message type are heeded: no sensor's message says more of its samples.
 const MOST_TELLING: usize = 64;
+
+/// Fields whose own say something of the samples beside them.
+const META: [&str; 8] =
+    ["meta", "metadata", "info", "config", "settings", "calibration", "cal", "attributes"];
 
 impl Plan {
     /// The plan for what is asked of messages with such `leaves`, as far as these are known; other fields are
@@ -132,7 +137,7 @@ struct Telling {
 impl Telling {
     /// Those among the leaves of a message type, the first of them.
     fn among(leaves: &[Leaf]) -> Vec<Self> {
-        leaves.iter().filter(|leaf| !leaf.is_array).filter_map(Self::of).take(MOST_TELLING).collect()
+        leaves.iter().filter_map(Self::of).take(MOST_TELLING).collect()
     }
 
     fn of(leaf: &Leaf) -> Option<Self> {
@@ -148,6 +153,15 @@ impl Telling {
                 return Some(Self { message: FieldPath(outer.to_vec()), path, says: Says::Turns });
             }
             _ => {}
+        }
+        if leaf.is_array {
+            says = says.filter(|says| *says == Says::Factor);
+        }
+        if let (Some(Says::Scale | Says::Factor), Some((Step::Name(inner), outer))) =
+            (says, message.split_last())
+            && META.contains(&inner.as_str())
+        {
+            (message, says) = (outer, Some(Says::Factor));
         }
         // The stamp of a header is known by its name.
         says = says.filter(|says| *says != Says::Time || message.len() + 1 == path.0.len());
@@ -171,6 +185,7 @@ impl Says {
             (Some(AttributeRole::Conversion), _) => Self::Conversion,
             (_, Some(Meaning::Count)) => Self::Count,
             (_, Some(meaning)) if !RATE_NAMES.contains(&name) => Self::Rate { meaning, level: 0, unit: None },
+            _ if is_signal && factors::is_factor(name) => Self::Factor,
             _ => return None,
         })
     }

@@ -46,7 +46,7 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         if let Some(change) = of_channel.column.unit_change() {
             issues.push(complaint::unit_change(spec, change).map_err(|refusal| refused(spec, refusal))?);
         }
-        let unit = of_channel.unit();
+        let (unit, factors) = (of_channel.unit(), of_channel.column.factors());
         // A second channel on the same field gets its own copy.
         let column = if chosen[position + 1..].contains(&at) {
             of_channel.column.clone()
@@ -55,7 +55,7 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         };
         let uniform = column.uniform(zero_ns, spec.sample_rate_hz);
         let uniform = uniform.map_err(|refusal| refused(spec, refusal.at(&spec.source.to_string())))?;
-        channels.push(RawChannel { uniform, unit });
+        channels.push(RawChannel { uniform, unit, factors });
     }
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
 }

@@ -141,7 +141,8 @@ impl Gathered {
             said.unit.into_iter().for_each(|unit| column.state_unit(unit));
             said.rates.iter().for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(said.stamp, message.log_time_ns);
-            match said.applied(value) {
+            said.factors().for_each(|(factor, beside)| column.state_factor(&beside.field, factor));
+            match said.applied(value, field.asked.is_scaled) {
                 Ok(value) => column.take(value, time, said.tick()),
                 Err(refusal) => column.refuse(refusal),
             }

@@ -309,7 +309,7 @@ fn asked_of(file: &CaskFile, topic: &str) -> Vec<AskedField> {
             time => beside(time).unwrap_or_default(),
         });
         let sensor = spec.rows.as_ref().and_then(|rows| within(&rows.column));
-        Some(AskedField { path, is_array: false, times, sensor })
+        Some(AskedField { path, is_array: false, times, sensor, is_scaled: spec.scale.is_some() })
     };
     file.channels.iter().filter_map(asked).collect()
 }

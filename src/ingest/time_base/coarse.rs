@@ -12,7 +12,7 @@ use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times, usual_step};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown::digits;
-use crate::numerics::as_f64;
+use crate::numerics::{as_count, as_f64, extent};
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are
 /// even.
@@ -56,8 +56,15 @@ pub(super) fn place(
     claims: &Claims,
     mut issues: Vec<Finding>,
 ) -> Result<Uniform, Refusal> {
-    let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
-    let step_s = usual_step(times_s);
+    let changes_of =
+        |times: &[f64]| -> Vec<usize> { (1..times.len()).filter(|&i| times[i] > times[i - 1]).collect() };
+    let (mut changes, step_s) = (changes_of(times_s), usual_step(times_s));
+    let filled = filled(times_s, &samples, &changes, step_s);
+    let mut times_s = times_s;
+    if let Some(filled) = &filled {
+        (times_s, samples, changes) = (&filled.times, filled.samples.clone(), changes_of(&filled.times));
+        issues.push(filled.finding.clone());
+    }
     no_rows_of_sensors(&changes, step_s, times_s.len(), claims)?;
     let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
@@ -93,6 +100,57 @@ pub(super) fn place(
     issues.extend(taken.issues);
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+/// Times and samples with those that are missing.
+struct FilledTimes {
+    times: Vec<f64>,
+    samples: Samples,
+    finding: Finding,
+}
+
+/// Rows that are missing in steps of the times that hold fewer than nine in ten others do, or that are not
+/// there: such a step is lost as a whole, since nothing says which of its rows are.
+fn filled(times_s: &[f64], samples: &Samples, changes: &[usize], step_s: f64) -> Option<FilledTimes> {
+    /// Rates that differ from a whole number of samples a step lack one row now and then.
+    const MOST_OF_DRIFT: usize = 2;
+    let steps: Vec<(usize, usize)> = changes.windows(2).map(|pair| (pair[0], pair[1])).collect();
+    let mut counts: Vec<usize> = steps.iter().map(|(from, to)| to - from).collect();
+    counts.sort_unstable();
+    let usual = counts.get(counts.len() / 2).copied().filter(|usual| *usual > 1)?;
+    let others = counts.iter().filter(|count| **count != usual).count();
+    if counts.len() < LEAST_CHANGES || 10 * others > counts.len() || counts.last() != Some(&usual) {
+        return None;
+    }
+    let skipped = |at: usize| ((times_s[at] - times_s[at - 1]) / step_s).round() - 1.0;
+    let short: Vec<(usize, usize)> = steps.iter().copied().filter(|(from, to)| to - from < usual).collect();
+    let by_one = short.iter().filter(|(from, to)| to - from + 1 == usual).count();
+    let jumps = changes.iter().filter(|at| skipped(**at) >= 1.0);
+    let lost = jumps.clone().map(|at| as_count(skipped(*at))).sum::<usize>() * usual;
+    if (short.is_empty() && lost == 0) || by_one > MOST_OF_DRIFT || lost > times_s.len() {
+        return None;
+    }
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut row = 0;
+    while row < times_s.len() {
+        if changes.binary_search(&row).is_ok() {
+            for step in 1..=as_count(skipped(row).max(0.0)) {
+                times.extend(vec![times_s[row - 1] + as_f64(step) * step_s; usual]);
+            }
+        }
+        let step = short.iter().find(|(from, _)| *from == row);
+        let to = step.map_or(row + 1, |(_, to)| *to);
+        times.extend(vec![times_s[row]; if step.is_some() { usual } else { 1 }]);
+        values.resize(times.len() - usize::from(step.is_none()), f64::NAN);
+        values.extend(step.is_none().then(|| samples.get(row)));
+        row = to;
+    }
+    let missing = times.len() - times_s.len();
+    let finding = Finding::from(TimesFinding::ShortSteps { missing, step_s, usual });
+    let from_s = short.iter().map(|(from, _)| times_s[*from]).chain(jumps.map(|at| times_s[at - 1]));
+    let (first_s, last_s) = extent(from_s);
+    let finding = finding.between(first_s, last_s + step_s);
+    Some(FilledTimes { times, samples: samples.alike(values), finding })
 }
 
 /// Refuses times of which each stands exactly two, three or four times, as on rows of so many sensors, unless
@@ -250,6 +308,20 @@ mod tests {
     use crate::data::{IssueCode, Severity};
     use crate::ingest::time_base::{Uniform, from_times};
 
+    #[test]
+    fn a_row_that_a_step_of_the_times_lacks_is_missing() {
+        for (lost, missing) in [(300..301, 5), (300..302, 5), (303..315, 15), (0..0, 0)] {
+            let rows: Vec<usize> = (0..600).filter(|row| !lost.contains(row)).collect();
+            let times_s: Vec<f64> = rows.iter().map(|row| as_f64(row / 5) * 1e-3).collect();
+            let samples = Samples::F64(rows.iter().map(|row| as_f64(*row)).collect());
+            let placed = from_times(&times_s, samples, None).unwrap();
+            assert_eq!((placed.samples.len(), placed.samples.missing()), (600, missing), "{lost:?}");
+            let is_placed =
+                |row: usize| placed.samples.get(row).is_nan() || placed.samples.get(row) == as_f64(row);
+            assert!((0..600).all(is_placed), "{lost:?}");
+        }
+    }
+
     fn is_too_coarse(error: &Refusal) -> bool {
         error.to_string().contains("too few or too uneven to tell their rate")
     }
@@ -347,14 +419,13 @@ mod tests {
         // A block of 12 samples of 20 a step is lost in the middle.
         let mut lost = cut(20_000.0, 1e-3, 0.0, 9000);
         lost.drain(4000..4012);
-        let uniform = placed(&lost, None).unwrap();
-        assert_eq!(only(&uniform).0, Severity::Warning, "{}", only(&uniform).1);
-        assert!(only(&uniform).1.contains("samples may be missing"), "{}", only(&uniform).1);
+        let lack = |uniform: &Uniform| (uniform.samples.len(), uniform.samples.missing());
+        assert_eq!(lack(&placed(&lost, None).unwrap()), (9000, 20));
         // More than a step of them.
         lost.drain(6000..6200);
-        assert!(is_too_coarse(&placed(&lost, None).unwrap_err()));
-        let stated = placed(&lost, Some(20_000.0)).unwrap();
-        assert_eq!(only(&stated).0, Severity::Warning, "{}", only(&stated).1);
+        for stated_hz in [None, Some(20_000.0)] {
+            assert_eq!(lack(&placed(&lost, stated_hz).unwrap()), (9000, 240), "{stated_hz:?}");
+        }
         // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain
         // them either.
         for (step_s, count, lost_from) in [(0.05, 9000, 3000), (0.1, 7000, 4500)] {

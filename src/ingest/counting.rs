@@ -1,0 +1,192 @@
+//! Whole numbers beside samples to what they are by content: a counter of the rows, or the ids of sensors by
+//! turns.
+
+use super::clock::usual_step;
+use super::refusal::Refusal;
+use crate::numerics::{as_count, as_f64, robust};
+
+/// Fewer numbers show no pattern.
+const LEAST: usize = 16;
+/// More sensors than this by turns are not told from a counter that begins anew.
+const MOST_BY_TURNS: usize = 4;
+/// A counter loses at most so many rows as its first wrap ends, where no second wrap confirms it.
+const MOST_LOST_IN_WRAP: f64 = 64.0;
+
+/// A column that counts the rows.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Counter {
+    step: f64,
+    /// At which it begins anew.
+    wrap: Option<f64>,
+}
+
+impl Counter {
+    /// The rule of whole numbers that rise by one step in nine rows of ten, modulo the wrap that they show.
+    pub(super) fn of(counts: &[f64]) -> Option<Self> {
+        let are_whole = counts.iter().all(|count| count.fract() == 0.0 && count.abs() < 2_f64.powi(53));
+        if counts.len() < LEAST || !are_whole {
+            return None;
+        }
+        let steps: Vec<f64> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let step = robust::median(&mut steps.clone());
+        let wraps: Vec<f64> = steps.iter().filter(|d| **d < 0.0).map(|d| step - d).collect();
+        if step < 1.0 || 10 * wraps.len() > counts.len() {
+            return None;
+        }
+        let wrap = if wraps.is_empty() { None } else { Some(wrap_of(&wraps, step)?) };
+        let counter = Self { step, wrap };
+        let lost = || steps.iter().map(|d| counter.lost(*d));
+        // One that stands still or rises by less now and then is a clock.
+        let is_clock = lost().any(|lost| lost.fract() != 0.0 || lost < 0.0);
+        let is_steady = 10 * lost().filter(|lost| *lost == 0.0).count() >= 9 * steps.len();
+        (is_steady && !is_clock).then_some(counter)
+    }
+
+    fn lost(&self, step: f64) -> f64 {
+        let step = if step < 0.0 { step + self.wrap.unwrap_or_default() } else { step };
+        step / self.step - 1.0
+    }
+
+    /// Where rows are missing: the row before, and how many.
+    pub(super) fn jumps(&self, counts: &[f64]) -> Vec<(usize, f64)> {
+        let lost = counts.windows(2).enumerate().map(|(row, pair)| (row, self.lost(pair[1] - pair[0])));
+        lost.filter(|(_, lost)| *lost >= 1.0).collect()
+    }
+
+    /// The counts without their wraps, where there are any.
+    pub(super) fn unwrapped(&self, counts: &[f64]) -> Option<Vec<f64>> {
+        let wrap = self.wrap?;
+        let (mut turns, mut before) = (0.0, f64::NEG_INFINITY);
+        let all = counts.iter().map(|count| {
+            turns += if *count < before { wrap } else { 0.0 };
+            before = *count;
+            count + turns
+        });
+        Some(all.collect())
+    }
+}
+
+/// The wrap that most falls show; a single one must be that of a converter or of decimal digits, since a
+/// second recording begins anew too.
+fn wrap_of(wraps: &[f64], step: f64) -> Option<f64> {
+    let count = |wrap: f64| wraps.iter().filter(|own| **own == wrap).count();
+    let most = wraps.iter().copied().max_by(|a, b| (count(*a), *a).partial_cmp(&(count(*b), *b)).unwrap())?;
+    if wraps.len() > 1 && 2 * count(most) > wraps.len() {
+        return Some(most);
+    }
+    let natural = (4..=32).map(|bits| 2_f64.powi(bits)).chain((1..=9).map(|digits| 10_f64.powi(digits)));
+    let least = wraps.iter().copied().fold(0.0, f64::max);
+    let fitting = natural.filter(|wrap| (0.0..=MOST_LOST_IN_WRAP * step).contains(&(wrap - least)));
+    fitting.min_by(f64::total_cmp)
+}
+
+/// Values with rows put in that are missing, so many behind each row that is named.
+pub(super) fn with_missing(held: &[f64], missing: &[(usize, f64)]) -> Vec<f64> {
+    let (mut all, mut from) = (Vec::new(), 0);
+    for &(row, count) in missing {
+        all.extend_from_slice(&held[from..=row]);
+        all.resize(all.len() + as_count(count), f64::NAN);
+        from = row + 1;
+    }
+    all.extend_from_slice(&held[from..]);
+    all
+}
+
+/// Whether times leave room for so many rows that are missing behind a row; those that are cut to more than
+/// the samples' interval show nothing.
+pub(super) fn is_room(times: &[f64], row: usize, lost: f64) -> bool {
+    let (near, next) = (&times[row.saturating_sub(8)..=row], &times[row + 1..times.len().min(row + 9)]);
+    let is_cut = |times: &[f64]| times.windows(2).any(|pair| pair[1] <= pair[0]);
+    let usual = usual_step(&[near, next].concat());
+    !is_cut(near) && !is_cut(next) && times[row + 1] - times[row] > (lost + 0.5) * usual
+}
+
+/// The refusal of times that go on over rows which a counter shows to be missing, the first of them behind a
+/// row (from 0).
+pub(super) fn contradiction(counter: &str, lost: f64, (row, first): (usize, f64), times: &str) -> Refusal {
+    Refusal::new(
+        format!(
+            "{counter:?} counts the rows, and {lost} of them are missing, the first {first} behind row {}, where \
+             the times in {times:?} go on without a gap",
+            row + 1
+        ),
+        format!(
+            "where the counter is right write time = {counter:?} under [recording] of the cask file and \
+             sample_rate_hz into each [[channel]]; where it counts something else write time = {times:?}"
+        ),
+    )
+}
+
+/// Whether few whole numbers return one after another in nine rows of ten: the ids of sensors by turns.
+pub(super) fn are_ids_by_turns(ids: &[f64]) -> bool {
+    let mut seen: Vec<f64> = Vec::new();
+    for id in ids {
+        if id.fract() != 0.0 || id.is_nan() {
+            return false;
+        }
+        if !seen.contains(id) {
+            seen.push(*id);
+        }
+        if seen.len() > MOST_BY_TURNS {
+            return false;
+        }
+    }
+    let count = seen.len();
+    let is_next = |pair: &&[f64]| {
+        let place = |id: f64| seen.iter().position(|own| *own == id).unwrap_or_default();
+        (place(pair[0]) + 1) % count == place(pair[1])
+    };
+    let next = ids.windows(2).filter(is_next).count();
+    count > 1 && ids.len() >= LEAST.max(4 * count) && as_f64(next) >= 0.9 * as_f64(ids.len() - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counts(rows: std::ops::Range<u32>, step: u32, wrap: u32, lost: &[u32]) -> Vec<f64> {
+        rows.filter(|row| !lost.contains(row)).map(|row| f64::from(row * step % wrap)).collect()
+    }
+
+    #[test]
+    fn whole_numbers_that_rise_by_one_step_count_the_rows_whatever_their_wrap() {
+        for (step, wrap) in
+            [(1, u32::MAX), (1, 256), (1, 100), (1, 1000), (10, u32::MAX), (10, 65_536), (3, 256)]
+        {
+            let all = counts(0..1000, step, wrap, &[535, 536, 537, 538]);
+            let counter = Counter::of(&all).unwrap();
+            assert_eq!(counter.jumps(&all), [(534, 4.0)], "{step} {wrap}");
+            let plain = counter.unwrapped(&all).unwrap_or(all);
+            assert_eq!(plain.last(), Some(&f64::from(999 * step)), "{step} {wrap}");
+        }
+        let lost_in_wrap = counts(0..400, 1, 256, &[255, 256, 257]);
+        assert_eq!(Counter::of(&lost_in_wrap).unwrap().jumps(&lost_in_wrap), [(254, 3.0)]);
+        let from_one: Vec<f64> = counts(0..1000, 1, 100, &[7]).iter().map(|count| count + 1.0).collect();
+        assert_eq!(Counter::of(&from_one).unwrap().jumps(&from_one), [(6, 1.0)]);
+    }
+
+    #[test]
+    fn clocks_constants_and_records_that_begin_anew_are_no_counters() {
+        let none: [Vec<f64>; 5] = [
+            vec![21.0; 100],
+            (0..100).map(|i| f64::from(i / 16)).collect(),
+            (0..100).map(|i| f64::from(i) + f64::from(u8::from(i % 20 == 7))).collect(),
+            (0..100).map(|i| 0.5 * f64::from(i)).collect(),
+            counts(0..859, 1, 600, &[]),
+        ];
+        assert!(none.iter().all(|counts| Counter::of(counts).is_none()));
+    }
+
+    #[test]
+    fn numbers_that_return_one_after_another_are_ids() {
+        for cycle in [&[0.0, 1.0][..], &[7.0, 3.0, 5.0], &[1.0, 2.0, 3.0, 4.0]] {
+            let ids: Vec<f64> = cycle.iter().copied().cycle().take(100).collect();
+            assert!(are_ids_by_turns(&ids), "{cycle:?}");
+        }
+        let flag: Vec<f64> = (0..100).map(|i| f64::from(u8::from(i % 20 > 9))).collect();
+        let low_bits: Vec<f64> = (0_u32..100).map(|i| f64::from(i * i * 7 % 11 % 3)).collect();
+        for other in [flag, low_bits, vec![0.0; 100], counts(0..100, 1, 7, &[])] {
+            assert!(!are_ids_by_turns(&other), "{other:?}");
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! The samples of channels to what no column of a recording says of them: rows of several sensors by turns,
+//! and blocks that were written twice.
+
+use crate::data::{Channel, ChannelFinding, Finding, Samples, Span, TimesFinding};
+use crate::numerics::{as_f64, robust};
+use std::collections::HashMap;
+
+/// Samples count that are this part of the largest, from the median: only those of a shock move a velocity.
+const LARGE: f64 = 0.05;
+/// So many large samples are looked at.
+const MOST_LARGE: usize = 1 << 18;
+/// The rows are cut into so many parts of equal energy, which must all show the same factors.
+const PARTS: usize = 6;
+/// Large samples a sensor, weighted by their energy, below which chance or a short pulse makes factors.
+const LEAST_ROWS: f64 = 12.0;
+/// Sensors that differ by less, over their mean, move k by less than its interval.
+const LEAST_DIFFERENCE: f64 = 0.04;
+/// The parts keep to the whole's difference within this part of it.
+const ALIKE: f64 = 0.35;
+/// Rows that are compared at first.
+const WINDOW: usize = 4;
+/// Bits by which a run must be less likely than chance among all pairs of rows.
+const CERTAIN_BITS: f64 = 30.0;
+/// More runs that repeat are those of a periodic signal.
+const MOST_RUNS: usize = 8;
+
+/// The samples of a channel about their median, with the least that counts as large.
+struct Centred<'a> {
+    samples: &'a Samples,
+    median: f64,
+    least: f64,
+}
+
+impl<'a> Centred<'a> {
+    fn of(samples: &'a Samples) -> Self {
+        let every = (samples.len() / 4096).max(1);
+        let thinned = (0..samples.len()).step_by(every).map(|i| samples.get(i));
+        let mut thinned: Vec<f64> = thinned.filter(|x| x.is_finite()).collect();
+        let median = if thinned.is_empty() { 0.0 } else { robust::median(&mut thinned) };
+        let far = |most: f64, i: usize| most.max((samples.get(i) - median).abs());
+        let most = (0..samples.len()).fold(0.0, far);
+        Self { samples, median, least: LARGE * most }
+    }
+
+    fn at(&self, row: usize) -> f64 {
+        self.samples.get(row) - self.median
+    }
+
+    fn is_large(&self, row: usize) -> bool {
+        self.at(row).abs() > self.least
+    }
+
+    fn large(&self) -> impl Iterator<Item = usize> {
+        (0..self.samples.len()).filter(|row| self.is_large(*row)).take(MOST_LARGE)
+    }
+}
+
+/// The factor between two sensors whose samples stand by turns, the lesser over the larger: odd rows against
+/// the interpolation of the even ones and the other way round, where it is the same throughout the recording.
+fn factor_by_turns(samples: &Samples) -> Option<f64> {
+    let centred = Centred::of(samples);
+    let about = |row: usize| (centred.at(row - 1) + 2.0 * centred.at(row) + centred.at(row + 1)) / 4.0;
+    let is_inside = |row: &usize| *row > 0 && row + 1 < samples.len();
+    let rows = centred.large().filter(is_inside).map(|row| (row, about(row)));
+    let rows: Vec<(usize, f64)> = rows.filter(|(_, mean)| mean.is_finite()).collect();
+    let energy: f64 = rows.iter().map(|(_, mean)| mean * mean).sum();
+    let fourth: f64 = rows.iter().map(|(_, mean)| mean.powi(4)).sum();
+    if energy * energy < 2.0 * LEAST_ROWS * fourth || energy <= 0.0 {
+        return None;
+    }
+    // Of each part, of even and odd rows: the products and the squares.
+    let mut sums = [[(0.0, 0.0); 2]; PARTS];
+    let mut before = 0.0;
+    for (row, mean) in rows {
+        let part = (0..PARTS - 1).find(|part| before < energy * as_f64(part + 1) / as_f64(PARTS));
+        let (products, squares) = &mut sums[part.unwrap_or(PARTS - 1)][row % 2];
+        (*products, *squares) = (*products + centred.at(row) * mean, *squares + mean * mean);
+        before += mean * mean;
+    }
+    let difference = |[even, odd]: [(f64, f64); 2]| even.0 / even.1 - odd.0 / odd.1;
+    let add = |all: [(f64, f64); 2], part: &[(f64, f64); 2]| {
+        [0, 1].map(|row| (all[row].0 + part[row].0, all[row].1 + part[row].1))
+    };
+    let whole = difference(sums.iter().fold([(0.0, 0.0); 2], add));
+    let is_alike = |part: &[(f64, f64); 2]| (difference(*part) - whole).abs() <= ALIKE * whole.abs();
+    let is_so = whole.abs() >= LEAST_DIFFERENCE && sums.iter().all(is_alike);
+    is_so.then(|| (2.0 - whole.abs()) / (2.0 + whole.abs()))
+}
+
+/// Says of a channel that its rows are of several sensors by turns, where its samples show it.
+pub(super) fn by_turns(channel: &Channel) -> Option<Finding> {
+    let factor = factor_by_turns(&channel.samples)?;
+    Some(ChannelFinding::ByTurns { factor }.on(&channel.name))
+}
+
+/// Takes blocks that were written a second time for lost, with a finding for each: in all channels of one
+/// clock at once, since one of them alone may be periodic.
+pub(super) fn drop_repeated(channels: &mut [Channel], issues: &mut Vec<Finding>) {
+    let clock = |c: &Channel| (c.samples.len(), c.sample_rate_hz.to_bits(), c.start_s.to_bits());
+    let mut clocks: Vec<_> = channels.iter().map(clock).collect();
+    clocks.sort_unstable();
+    clocks.dedup();
+    for own in clocks {
+        let mut together: Vec<&mut Channel> = channels.iter_mut().filter(|c| clock(c) == own).collect();
+        let runs = runs(&together.iter().map(|c| Centred::of(&c.samples)).collect::<Vec<_>>());
+        for channel in &mut together {
+            for &RepeatedRun { from, copy, count } in &runs {
+                let time_s = |row: usize| channel.start_s + as_f64(row) / channel.sample_rate_hz;
+                let found =
+                    TimesFinding::Repeated { samples: count, of_s: time_s(from), from_s: time_s(copy) };
+                issues
+                    .push(Finding::from(found).between(time_s(copy), time_s(copy + count)).on(&channel.name));
+                let span = Span { from: copy, to: copy + count };
+                channel.samples.lose(span);
+                channel.gaps.push(span);
+            }
+            channel.gaps.sort_by_key(|span| span.from);
+        }
+    }
+}
+
+/// Rows that are the same at two places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct RepeatedRun {
+    from: usize,
+    /// The first row of the copy.
+    copy: usize,
+    count: usize,
+}
+
+fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
+    let rows = channels.first().map_or(0, |channel| channel.samples.len());
+    let is_large = |row: usize| channels.iter().any(|channel| channel.is_large(row));
+    let large: Vec<usize> = (0..rows).filter(|row| is_large(*row)).take(MOST_LARGE).collect();
+    let bits = |row: usize| channels.iter().map(move |channel| channel.samples.get(row).to_bits());
+    let are_same = |one: usize, other: usize| {
+        bits(one).eq(bits(other)) && channels.iter().any(|channel| channel.at(one).is_finite())
+    };
+    let mix = |hash: u64, bits: u64| (hash ^ bits).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
+    let whole = large.iter().filter(|row| **row + WINDOW <= rows);
+    let mut windows: Vec<(u64, usize)> =
+        whole.map(|&row| ((row..row + WINDOW).flat_map(bits).fold(0xcbf2_9ce4, mix), row)).collect();
+    windows.sort_unstable();
+    let mut found: Vec<RepeatedRun> = Vec::new();
+    for same in windows.chunk_by(|one, other| one.0 == other.0).filter(|same| same.len() == 2) {
+        let (one, other) = (same[0].1, same[1].1);
+        let is_known = |run: &RepeatedRun| {
+            run.copy - run.from == other - one && (run.copy..run.copy + run.count).contains(&other)
+        };
+        if found.iter().any(is_known) {
+            continue;
+        }
+        let lag = other - one;
+        let back = (1..=one).take_while(|back| are_same(one - back, other - back)).count();
+        let on = (0..rows - other).take_while(|on| are_same(one + on, other + on)).count();
+        let (from, count) = (one - back, back + on);
+        // What begins and ends at rest is an event that came twice; what overlaps itself, or reaches an end of
+        // the recording, is periodic.
+        let is_cut = is_large(from) || is_large(from + count - 1);
+        let is_inside = from > 0 && from + lag + count < rows;
+        if count <= lag && count >= WINDOW && is_cut && is_inside {
+            found.push(RepeatedRun { from, copy: from + lag, count });
+        }
+    }
+    if found.is_empty() {
+        return found;
+    }
+    let known = channels.iter().map(|channel| Frequencies::of(channel, &large)).collect::<Vec<_>>();
+    let certain = CERTAIN_BITS + 2.0 * as_f64(large.len()).log2();
+    found.retain(|&RepeatedRun { from, count, .. }| {
+        let inner = from + 1..from + count - 1;
+        let own = known.iter().map(|known| inner.clone().map(|row| known.bits(row)).sum::<f64>());
+        own.sum::<f64>() >= certain
+    });
+    found.sort_unstable();
+    if found.len() > MOST_RUNS { Vec::new() } else { found }
+}
+
+/// How often the values of a channel come, and those of its second differences, of which a smooth signal has
+/// few.
+struct Frequencies<'a> {
+    channel: &'a Centred<'a>,
+    rows: f64,
+    values: HashMap<u64, u32>,
+    bends: HashMap<u64, u32>,
+}
+
+impl<'a> Frequencies<'a> {
+    fn of(channel: &'a Centred<'a>, large: &[usize]) -> Self {
+        let mut known =
+            Self { channel, rows: as_f64(large.len()), values: HashMap::new(), bends: HashMap::new() };
+        for &row in large.iter().filter(|row| **row > 0 && **row + 1 < channel.samples.len()) {
+            let (value, bend) = (known.value(row), known.bend(row));
+            *known.values.entry(value).or_default() += 1;
+            *known.bends.entry(bend).or_default() += 1;
+        }
+        known
+    }
+
+    fn value(&self, row: usize) -> u64 {
+        self.channel.samples.get(row).to_bits()
+    }
+
+    fn bend(&self, row: usize) -> u64 {
+        let bend = self.channel.at(row - 1) - 2.0 * self.channel.at(row) + self.channel.at(row + 1);
+        // Free of the last digits of the differences.
+        ((bend / self.channel.least * 1e5).round() + 0.0).to_bits()
+    }
+
+    /// How unlikely the sample in a row is, in bits.
+    fn bits(&self, row: usize) -> f64 {
+        let of = |known: &HashMap<u64, u32>, key: u64| {
+            let count = known.get(&key).copied().unwrap_or(1);
+            (self.rows / f64::from(count)).log2().max(0.0)
+        };
+        of(&self.values, self.value(row)).min(of(&self.bends, self.bend(row)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drop's shocks and ringing with noise, so many rows a millisecond.
+    fn shocks(rate: f64, noise: f64, digits: f64) -> Vec<f64> {
+        let mut seed = 7_u64;
+        let mut chance = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1 << 24) - 0.5
+        };
+        let pulse =
+            |t: f64| if (0.0..3.0).contains(&t) { (t * std::f64::consts::PI / 3.0).sin() } else { 0.0 };
+        let ring = |t: f64| if t > 0.0 { (-t / 8.0).exp() * (t * 2.1).sin() } else { 0.0 };
+        let at = |t: f64| 700.0 * pulse(t - 50.0) + 90.0 * ring(t - 50.0) + 300.0 * pulse(t - 90.0);
+        (0..(120.0 * rate) as usize)
+            .map(|i| ((at(as_f64(i) / rate) + noise * chance()) * digits).round() / digits)
+            .collect()
+    }
+
+    fn factor(samples: Vec<f64>) -> Option<f64> {
+        factor_by_turns(&Samples::F64(samples))
+    }
+
+    #[test]
+    fn odd_rows_of_another_sensor_are_seen_and_nothing_else() {
+        for other in [0.7, 0.8, 0.93, 1.1, 1.25] {
+            let rows = shocks(20.0, 0.3, 1e3).into_iter().enumerate();
+            let found = factor(rows.map(|(i, x)| if i % 2 == 0 { x } else { other * x }).collect());
+            let expected = f64::min(other, 1.0 / other);
+            assert!((found.unwrap() - expected).abs() < 0.02, "{other}: {found:?}");
+        }
+        for rate in [1.0, 2.0, 5.0, 10.0, 20.0, 100.0] {
+            for (noise, digits) in [(0.0, 1e9), (0.3, 1e3), (30.0, 1e3), (0.3, 0.05)] {
+                assert_eq!(factor(shocks(rate, noise, digits)), None, "{rate} {noise} {digits}");
+            }
+        }
+        assert_eq!(factor(vec![21.0; 1000]), None);
+        assert_eq!(factor((0..1000).map(|i| f64::from(u8::from(i % 40 > 19))).collect()), None);
+    }
+
+    #[test]
+    fn a_block_that_was_written_twice_is_lost_and_nothing_else() {
+        let found = |a: &[f64], b: &[f64]| {
+            let both = [a, b].map(|samples| Samples::F64(samples.to_vec()));
+            runs(&both.iter().map(Centred::of).collect::<Vec<_>>())
+        };
+        for rate in [5.0, 10.0, 50.0] {
+            for (noise, digits) in [(0.3, 1e3), (0.3, 10.0), (0.0, 1e3), (0.0, 1.0), (0.3, 0.1)] {
+                let mut a = shocks(rate, noise, digits);
+                let mut b: Vec<f64> = a.iter().rev().map(|x| (x * 0.7 * digits).round() / digits).collect();
+                assert_eq!(found(&a, &b), [], "{rate} {noise} {digits}");
+                let from = (50.2 * rate) as usize;
+                for samples in [&mut a, &mut b] {
+                    samples.copy_within(from..from + 12, from + 12);
+                }
+                let run = RepeatedRun { from, copy: from + 12, count: 12 };
+                let is_certain = digits >= 10.0 && noise > 0.0;
+                assert!(!is_certain || found(&a, &b) == [run], "{rate} {noise}: {:?}", found(&a, &b));
+            }
+        }
+        let hum: Vec<f64> = (0..2000).map(|i| (f64::from(i % 200) * 0.0314).sin()).collect();
+        assert_eq!(found(&hum, &hum), []);
+    }
+}
