@@ -154,8 +154,8 @@ fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
         let back = (1..=one).take_while(|back| are_same(one - back, other - back)).count();
         let on = (0..rows - other).take_while(|on| are_same(one + on, other + on)).count();
         let (from, count) = (one - back, back + on);
-        // What begins and ends at rest is an event that came twice; what overlaps itself, or reaches an end of
-        // the recording, is periodic.
+        // What begins and ends at rest is an event that came twice; what overlaps itself, or reaches an end
+        // of the recording, is periodic.
         let is_cut = is_large(from) || is_large(from + count - 1);
         let is_inside = from > 0 && from + lag + count < rows;
         if count <= lag && count >= WINDOW && is_cut && is_inside {

@@ -77,8 +77,8 @@ pub(super) fn sensors_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
     of_names(names::is_sensor).chain(unnamed).filter(|ids| ids.length == column.length).collect()
 }
 
-/// What may count the samples of a channel: by its name, or a field of its records in whole numbers of 32 bits
-/// and more.
+/// What may count the samples of a channel: by its name, or a field of its records in whole numbers of 32
+/// bits and more.
 pub(super) fn counters_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
     /// More counters have no records.
     const MOST: usize = 4;
