@@ -158,10 +158,7 @@ fn moved(
         .filter(|_| is_whole)
         .and_then(|at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
-    let fit::RungTaken { mut quantities, budget, choice: reconstruction, .. } = taken;
-    if let Some(tabulated) = &tabulated {
-        tabulated.doubt_end(&mut quantities);
-    }
+    let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
     Some(Flown {
         flight,
         setup,

@@ -28,10 +28,16 @@ pub(super) fn of(
     recording: &Recording,
     file: &CaskFile,
     findings: Vec<Finding>,
-    AfterImpact { impact, events, flown }: AfterImpact,
+    AfterImpact { impact, events, mut flown }: AfterImpact,
     shown: ShownSignals,
     measured: Option<Measured>,
 ) -> Analysis {
+    // Checks and comparison go by the contact as a whole; what is stated is open to both its touches.
+    if let Some(flown) = &mut flown
+        && let Some(tabulated) = &flown.tabulated
+    {
+        tabulated.doubt_end(&mut flown.quantities);
+    }
     let stated = flown.as_ref().filter(|_| measured.is_some());
     let quantities = stated.map(|flown| &flown.quantities);
     let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, flown));

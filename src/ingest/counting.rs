@@ -106,8 +106,8 @@ pub(super) fn is_room(times: &[f64], row: usize, lost: f64) -> bool {
 pub(super) fn contradiction(counter: &str, lost: f64, (row, first): (usize, f64), times: &str) -> Refusal {
     Refusal::new(
         format!(
-            "{counter:?} counts the rows, and {lost} of them are missing, the first {first} behind row {}, where \
-             the times in {times:?} go on without a gap",
+            "{counter:?} counts the rows, and {lost} of them are missing, the first {first} behind row {}, \
+             where the times in {times:?} go on without a gap",
             row + 1
         ),
         format!(

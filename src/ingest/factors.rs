@@ -8,16 +8,17 @@ use super::{RawChannel, error};
 use crate::data::{ChannelSpec, Samples, acceleration_unit_m_s2};
 
 /// Parts of names, as [`plain`] has them, of a factor between stored numbers and a quantity.
-const FACTORS: &str = "scal skal factor faktor gain verst resol aufl lsb tovolt bitvolt volts perbit percount \
-                       perdigit perunit countsper calib kalib coef koef mult slope steigung conver umrechn \
-                       sensit empfind polynom formula";
+const FACTORS: &str = "scal skal factor faktor gain verst resol aufl lsb tovolt bitvolt volts perbit \
+                       percount perdigit perunit countsper calib kalib coef koef mult slope steigung \
+                       conver umrechn sensit empfind polynom formula";
 /// Parts of names of what is no factor, whatever its value.
-const OTHERS: &str = "time zeit date datum start begin trigger delay duration dauer version firmware software \
-                      revis model serial seri number nummer channel kanal count anzahl samples rows zeilen index \
-                      temp humid feucht mass weight gewicht height höhe hoehe length länge laenge width breite \
-                      angle winkel position distance abstand speed geschw press druck filter cutoff grenz \
-                      bandwidth frequ frequenz rate bits latitude longitude altitude year month page offset min \
-                      x0 xorg xoff xzero deltax max peak spitze mean mittel rms sum std battery sensor device gravity";
+const OTHERS: &str = "time zeit date datum start begin trigger delay duration dauer version firmware \
+                      software revis model serial seri number nummer channel kanal count anzahl samples \
+                      rows zeilen index temp humid feucht mass weight gewicht height höhe hoehe length \
+                      länge laenge width breite angle winkel position distance abstand speed geschw press \
+                      druck filter cutoff grenz bandwidth frequ frequenz rate bits latitude longitude \
+                      altitude year month page offset min x0 xorg xoff xzero deltax max peak spitze mean \
+                      mittel rms sum std battery sensor device gravity";
 /// Words for stored numbers that are in no unit.
 const COUNTS: [&str; 12] =
     ["lsb", "lsbs", "count", "counts", "cts", "digit", "digits", "raw", "adc", "adu", "bit", "bits"];
@@ -85,8 +86,8 @@ pub(super) fn settled(spec: &ChannelSpec, raw: &RawChannel) -> Result<(), Refusa
     }
     Err(Refusal::new(
         format!(
-            "{} holds stored numbers, beside which stands {}, and nothing says whether these are converted by \
-             it already",
+            "{} holds stored numbers, beside which stands {}, and nothing says whether these are converted \
+             by it already",
             spec.source,
             error::handful(&names)
         ),

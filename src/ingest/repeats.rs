@@ -209,11 +209,11 @@ impl<'a> Frequencies<'a> {
 
     /// How unlikely the sample in a row is, in bits.
     fn bits(&self, row: usize) -> f64 {
-        let of = |known: &HashMap<u64, u32>, key: u64| {
+        let rarity = |known: &HashMap<u64, u32>, key: u64| {
             let count = known.get(&key).copied().unwrap_or(1);
             (self.rows / f64::from(count)).log2().max(0.0)
         };
-        of(&self.values, self.value(row)).min(of(&self.bends, self.bend(row)))
+        rarity(&self.values, self.value(row)).min(rarity(&self.bends, self.bend(row)))
     }
 }
 

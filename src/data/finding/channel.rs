@@ -147,8 +147,8 @@ pub enum ChannelFinding {
     /// Rows of two sensors by turns, with the factor between them.
     ByTurns { factor: f64 } => (Code::Scale, Error, Motion),
         ("holds the rows of two sensors by turns: throughout the shocks every other row reads {:.2} of its \
-         neighbours; where a column tells them apart take one, `where = {{ column = …, is = … }}`, else write \
-         every other row into a file of its own", factor);
+         neighbours; where a column tells them apart take one, `where = {{ column = …, is = … }}`, else \
+         write every other row into a file of its own", factor);
     /// Samples beyond the full scale that the cask file states.
     BeyondFullScale { reads_m_s2: f64, full_scale_m_s2: f64 } => (Code::Clipped, Warning, Nothing),
         ("reads up to {:.0} g and has a `full_scale` of {:.0} g: what it reads beyond its full scale is no \

@@ -22,8 +22,10 @@ pub enum TableFinding of Table {
         ("the column {header:?} counts the rows, and {lost} of them are missing, the first {count} behind \
          row {row} of the table; the others keep their places by it");
     /// A column that counts the rows jumps where the times that the cask file names do not.
-    CounterBesideTimes { header: String, lost: f64, row: usize, times: String } => (Code::Gap, Warning, LostSamples),
+    CounterBesideTimes { header: String, lost: f64, row: usize, times: String } =>
+        (Code::Gap, Warning, LostSamples),
         ("the column {header:?} counts the rows, and {lost} of them are missing, the first behind row {row} \
-         of the table; the times in {times:?}, which the cask file names, go on without a gap and were followed");
+         of the table; the times in {times:?}, which the cask file names, go on without a gap and were \
+         followed");
 }
 }

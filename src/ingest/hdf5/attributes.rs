@@ -71,9 +71,9 @@ impl Attributes {
             let what = if are_counts { "whole numbers are counts of the recorder," } else { "numbers are" };
             return Err(Refusal::new(
                 format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
-                "write into this [[channel]] of the cask file what the numbers are to be multiplied by to be in \
-                 `unit`, such as scale = 0.9, or scale = 1 where they are converted already; in a copy the \
-                 dataset may have attributes scale and offset: value = raw · scale + offset",
+                "write into this [[channel]] of the cask file what the numbers are to be multiplied by to be \
+                 in `unit`, such as scale = 0.9, or scale = 1 where they are converted already; in a copy \
+                 the dataset may have attributes scale and offset: value = raw · scale + offset",
             ));
         }
         Ok(attributes)
