@@ -69,7 +69,7 @@ impl Counter {
 /// The wrap that most falls show; a single one must be that of a converter or of decimal digits, since a
 /// second recording begins anew too.
 fn wrap_of(wraps: &[f64], step: f64) -> Option<f64> {
-    let count = |wrap: f64| wraps.iter().filter(|own| **own == wrap).count();
+    let count = |wrap: f64| wraps.iter().filter(|own| **own - wrap == 0.0).count();
     let most = wraps.iter().copied().max_by(|a, b| (count(*a), *a).partial_cmp(&(count(*b), *b)).unwrap())?;
     if wraps.len() > 1 && 2 * count(most) > wraps.len() {
         return Some(most);
@@ -133,7 +133,7 @@ pub(super) fn are_ids_by_turns(ids: &[f64]) -> bool {
     }
     let count = seen.len();
     let is_next = |pair: &&[f64]| {
-        let place = |id: f64| seen.iter().position(|own| *own == id).unwrap_or_default();
+        let place = |id: f64| seen.iter().position(|own| *own - id == 0.0).unwrap_or_default();
         (place(pair[0]) + 1) % count == place(pair[1])
     };
     let next = ids.windows(2).filter(is_next).count();

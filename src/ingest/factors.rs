@@ -63,7 +63,7 @@ pub(super) fn unexplained(name: &str, text: &str) -> Option<String> {
         || acceleration_unit_m_s2(unit).is_some()
         || COUNTS.contains(&&*unit.to_lowercase())
         || matches!(&*unit.to_lowercase(), "" | "v" | "mv" | "µv" | "uv" | "volt" | "volts");
-    let is_idle = number == 0.0 || number == 1.0;
+    let is_idle = number == 0.0 || number - 1.0 == 0.0;
     let is_open = is_named || (number.fract() != 0.0 && !has_part(OTHERS, &plain(name)));
     (!is_cut && !is_idle && is_of_samples && is_open).then(shown)
 }

@@ -220,19 +220,20 @@ impl<'a> Frequencies<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::as_count;
 
     /// A drop's shocks and ringing with noise, so many rows a millisecond.
     fn shocks(rate: f64, noise: f64, digits: f64) -> Vec<f64> {
         let mut seed = 7_u64;
         let mut chance = move || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 40) as f64 / f64::from(1 << 24) - 0.5
+            f64::from(u32::try_from(seed >> 40).unwrap()) / f64::from(1 << 24) - 0.5
         };
         let pulse =
             |t: f64| if (0.0..3.0).contains(&t) { (t * std::f64::consts::PI / 3.0).sin() } else { 0.0 };
         let ring = |t: f64| if t > 0.0 { (-t / 8.0).exp() * (t * 2.1).sin() } else { 0.0 };
         let at = |t: f64| 700.0 * pulse(t - 50.0) + 90.0 * ring(t - 50.0) + 300.0 * pulse(t - 90.0);
-        (0..(120.0 * rate) as usize)
+        (0..as_count(120.0 * rate))
             .map(|i| ((at(as_f64(i) / rate) + noise * chance()) * digits).round() / digits)
             .collect()
     }
@@ -269,7 +270,7 @@ mod tests {
                 let mut a = shocks(rate, noise, digits);
                 let mut b: Vec<f64> = a.iter().rev().map(|x| (x * 0.7 * digits).round() / digits).collect();
                 assert_eq!(found(&a, &b), [], "{rate} {noise} {digits}");
-                let from = (50.2 * rate) as usize;
+                let from = as_count(50.2 * rate);
                 for samples in [&mut a, &mut b] {
                     samples.copy_within(from..from + 12, from + 12);
                 }

@@ -177,7 +177,7 @@ impl Column {
 
     /// Takes a number that may be a factor of the samples.
     pub(super) fn state_factor(&mut self, field: &str, factor: f64) {
-        if self.factors.iter().all(|(known, value)| known != field || *value != factor) {
+        if self.factors.iter().all(|(known, value)| known != field || *value - factor != 0.0) {
             state(&mut self.factors, (field.to_owned(), factor));
         }
     }

@@ -317,7 +317,7 @@ mod tests {
             let placed = from_times(&times_s, samples, None).unwrap();
             assert_eq!((placed.samples.len(), placed.samples.missing()), (600, missing), "{lost:?}");
             let is_placed =
-                |row: usize| placed.samples.get(row).is_nan() || placed.samples.get(row) == as_f64(row);
+                |row: usize| placed.samples.get(row).is_nan() || placed.samples.get(row) - as_f64(row) == 0.0;
             assert!((0..600).all(is_placed), "{lost:?}");
         }
     }
