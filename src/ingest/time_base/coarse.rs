@@ -138,8 +138,8 @@ fn filled(times_s: &[f64], samples: &Samples, changes: &[usize], step_s: f64) ->
                 times.extend(vec![times_s[row - 1] + as_f64(step) * step_s; usual]);
             }
         }
-        let step = short.iter().find(|(from, _)| *from == row);
-        let to = step.map_or(row + 1, |(_, to)| *to);
+        let step = short.binary_search_by_key(&row, |(from, _)| *from).ok().map(|at| short[at]);
+        let to = step.map_or(row + 1, |(_, to)| to);
         times.extend(vec![times_s[row]; if step.is_some() { usual } else { 1 }]);
         values.resize(times.len() - usize::from(step.is_none()), f64::NAN);
         values.extend(step.is_none().then(|| samples.get(row)));
@@ -419,12 +419,15 @@ mod tests {
         // A block of 12 samples of 20 a step is lost in the middle.
         let mut lost = cut(20_000.0, 1e-3, 0.0, 9000);
         lost.drain(4000..4012);
-        let lack = |uniform: &Uniform| (uniform.samples.len(), uniform.samples.missing());
-        assert_eq!(lack(&placed(&lost, None).unwrap()), (9000, 20));
+        let lack = |uniform: &Uniform| {
+            let warns = uniform.issues.iter().any(|issue| issue.severity == Severity::Warning);
+            (warns, uniform.samples.len(), uniform.samples.missing())
+        };
+        assert_eq!(lack(&placed(&lost, None).unwrap()), (true, 9000, 20));
         // More than a step of them.
         lost.drain(6000..6200);
         for stated_hz in [None, Some(20_000.0)] {
-            assert_eq!(lack(&placed(&lost, stated_hz).unwrap()), (9000, 240), "{stated_hz:?}");
+            assert_eq!(lack(&placed(&lost, stated_hz).unwrap()), (true, 9000, 240), "{stated_hz:?}");
         }
         // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain
         // them either.
