@@ -209,6 +209,15 @@ fn searched(
     best.map(|(_, found)| search.beyond_last_stage(found))
 }
 
+/// What a flight leaves of an end's signal in the calmest of its quarters but the first, m/s²: fast modes ring
+/// at the beginning, and the end may hold the slap-down's foot.
+fn calm_m_s2(second: &motion::RingingRemoved, flight: &FlightFit) -> f64 {
+    let quarter_s = (flight.to_s - flight.from_s) / 4.0;
+    let quarters_s = [1.0, 2.0, 3.0].map(|n| flight.from_s + n * quarter_s);
+    let largest_m_s2 = |from_s: f64| second.largest_m_s2(&(from_s..from_s + quarter_s));
+    quarters_s.into_iter().map(largest_m_s2).fold(f64::INFINITY, f64::min)
+}
+
 /// Where the first fit begins that ends at `end_s`, if nothing tells a longer contact, s.
 fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
     contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S)
@@ -330,12 +339,7 @@ impl Search<'_> {
         let most_left_m_s = EXPLAINED_M_S.max(SHOWN * self.file.drop.impact_velocity_m_s);
         let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
         if is_shown {
-            // The calmest quarter but the first: fast modes ring at the beginning, and the end may hold the
-            // slap-down's foot.
-            let quarter_s = (flight.to_s - flight.from_s) / 4.0;
-            let quarters_s = [1.0, 2.0, 3.0].map(|n| flight.from_s + n * quarter_s);
-            let largest_m_s2 = |from_s: f64| second.largest_m_s2(&(from_s..from_s + quarter_s));
-            let calm_m_s2 = quarters_s.into_iter().map(largest_m_s2).fold(f64::INFINITY, f64::min);
+            let calm_m_s2 = calm_m_s2(second, flight);
             let from_s = self.earliest_s.max(attempt.free_s);
             attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2));
             attempt.end_s = self.flight_end_s(attempt.slap_down);
@@ -346,10 +350,15 @@ impl Search<'_> {
     }
 
     /// What the last round ended with, the separation by the impulse.
-    fn conclude(&self, (first, _): &Ends, attempt: Attempt) -> FoundFlight {
-        let Attempt { mut separation, slap_down, fitted, others, .. } = attempt;
+    fn conclude(&self, (first, second): &Ends, attempt: Attempt) -> FoundFlight {
+        let Attempt { mut separation, mut slap_down, fitted, others, .. } = attempt;
         let contact_s = self.integrated.contact_s;
         let (flight, window) = fitted.unzip();
+        if let (Some(flight), Some(struck)) = (&flight, slap_down) {
+            let calm_m_s2 = calm_m_s2(second, flight);
+            let from_s = self.earliest_s.max(flight.from_s);
+            slap_down = Some(events::departure(second.signal(), struck, from_s, calm_m_s2));
+        }
         if let Some(window) = &window {
             separation =
                 events::by_impulse(first.signal(), contact_s, separation, &(window.from_s..window.to_s));

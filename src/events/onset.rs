@@ -22,6 +22,10 @@ const EARLIER_STAGE: f64 = 0.02;
 const LEVEL_S: f64 = 1e-3;
 /// … where that is no more of its peak than accelerometers have.
 const MOST_LEVEL: f64 = 0.05;
+/// What a calm signal does is the slap-down's from so many times what the flight shows on …
+const DEPARTS: f64 = 2.0;
+/// … and back to a pause of this length, s.
+const PAUSE_S: f64 = 1e-3;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight
 /// from 5°. A cask shorter than 4 m, a model perhaps, rings and turns faster in proportion.
 const WIDTH_S: f64 = 0.025;
@@ -148,6 +152,31 @@ pub fn slap_down(
         }
         from = from.saturating_sub(reach).max(earliest);
     }
+}
+
+/// The slap-down as the beginning of what a calm signal does without a pause until the rise that was found: a
+/// body that bends takes the sensors of a corner that is held the other way first.
+///
+/// `from_s` is where the signal is known to be calm, but for `calm_m_s2`.
+pub fn departure(signal: &Signal, struck: At, from_s: f64, calm_m_s2: f64) -> At {
+    let rate_hz = signal.sample_rate_hz;
+    let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTS * calm_m_s2);
+    let [from, to] = [from_s, struck.time_s].map(|time_s| signal.index_from(time_s));
+    let Some(force) = signal.force_m_s2.get(from..to) else { return struck };
+    let pause = as_count(PAUSE_S * rate_hz).max(2);
+    let beyond = (0..force.len()).rev().filter(|&i| force[i].abs() > level);
+    let mut first = force.len();
+    for i in beyond {
+        if first - i > pause {
+            break;
+        }
+        first = i;
+    }
+    let doubled = (first..force.len()).find(|&i| force[i].abs() > 2.0 * level).unwrap_or(first);
+    let rise_s = as_f64((doubled - first).clamp(1, pause)) / rate_hz;
+    let time_s = signal.time_s(from + first) - rise_s / 2.0;
+    let is_earlier = struck.time_s - time_s > 2.0 * struck.u_s;
+    if is_earlier { At { time_s, u_s: rise_s / 2.0 } } else { struck }
 }
 
 /// Which rise of a stretch begins the pulse.
@@ -395,6 +424,27 @@ mod tests {
         // Six standard deviations are 80 % of the peak; means over a tenth of the pulse show its foot.
         assert!((found.time_s - 0.08).abs() < 6e-4 && found.u_s < 6e-4, "{found:?}");
         assert!((found.time_s - 0.08).abs() < 3.0 * found.u_s, "{found:?}");
+    }
+
+    #[test]
+    fn a_body_that_bends_first_has_struck_where_it_leaves_its_calm() {
+        // A hum of 3 m/s² all along, a blow of a cable, and 8 ms of the other direction before the rise.
+        let bent = |pause_s: f64| {
+            let plain = signal(End::Second, 2e4, 0.08, 300.0);
+            let before = |t: f64| match t - 0.08 + pause_s {
+                t if (-0.03..-0.029).contains(&t) => 40.0,
+                t if (-0.008..0.0).contains(&t) => -60.0 * (PI * (t + 0.008) / 0.008).sin().abs().sqrt(),
+                _ => 3.0 * (500.0 * t).sin(),
+            };
+            let force_m_s2 =
+                plain.force_m_s2.iter().enumerate().map(|(i, force)| force + before(plain.time_s(i)));
+            Signal { force_m_s2: force_m_s2.collect(), ..plain.clone() }
+        };
+        let struck = At { time_s: 0.08, u_s: 1e-4 };
+        let found = departure(&bent(0.0), struck, 0.03, 3.0);
+        assert!((found.time_s - 0.072).abs() < 2e-4 && found.u_s < 2e-4, "{found:?}");
+        // What is over 3 ms before the rise was not the slap-down's.
+        assert_eq!(departure(&bent(0.003), struck, 0.03, 3.0), struck);
     }
 
     #[test]
