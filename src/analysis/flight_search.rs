@@ -357,7 +357,8 @@ impl Search<'_> {
         if let (Some(flight), Some(struck)) = (&flight, slap_down) {
             let calm_m_s2 = calm_m_s2(second, flight);
             let from_s = self.earliest_s.max(flight.from_s);
-            slap_down = Some(events::departure(second.signal(), struck, from_s, calm_m_s2));
+            let length_m = self.file.cask.length_m;
+            slap_down = Some(events::departure(second.signal(), length_m, struck, from_s, calm_m_s2));
         }
         if let Some(window) = &window {
             separation =

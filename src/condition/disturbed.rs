@@ -2,7 +2,8 @@
 
 use super::runs::runs_of_steps;
 use crate::data::{ChannelFinding, Finding, Severity, Signal, Span};
-use crate::numerics::{as_f64, reduce, robust};
+use crate::numerics::{as_count, as_f64, reduce, robust};
+use std::ops::Range;
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
 const SHARE_OF_PEAK: f64 = 0.05;
@@ -15,6 +16,11 @@ const AGREEMENT: f64 = 0.3;
 /// median of its second differences: a mode of a few samples a period has such extremes one beside the other.
 const AROUND: usize = 12;
 const CALM: f64 = 0.2;
+/// What is sharper than this share of a spike beside it, on its channel or another, says that the body is as
+/// sharp: bending waves of a struck cask come through a recorder's filter as bells of two to five samples …
+const AS_SHARP: f64 = 0.4;
+/// … within this time of it, s, and no fewer than [`AROUND`] samples.
+const BESIDE_S: f64 = 1e-3;
 /// Longest spike, in samples: a contact that breaks for longer is a dropout or a burst.
 const LONGEST_SPIKE: usize = 5;
 /// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too
@@ -38,8 +44,9 @@ fn is_lost(signal: &Signal, index: usize) -> bool {
     signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= index + 1 && index <= g.to)
 }
 
-/// Spikes of one to five samples with what they hold together; nothing is repaired.
-pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Finding> {
+/// Spikes of one to five samples of one of the signals with what they hold together; nothing is repaired.
+pub(super) fn spikes(signals: &[Signal], of: usize, velocity_step_m_s: f64) -> Option<Finding> {
+    let signal = signals.get(of)?;
     let force = &signal.force_m_s2;
     let height = height(reduce::peak(force), signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
@@ -54,7 +61,8 @@ pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Finding>
         let spike = (1..=LONGEST_SPIKE)
             .find_map(|width| area(force, i, width, height).map(|a| (width, a)))
             .map(|(width, area)| (width, area / signal.sample_rate_hz))
-            .filter(|(_, area_m_s)| *area_m_s < most_m_s && !is_lost(signal, i));
+            .filter(|(_, area_m_s)| *area_m_s < most_m_s && !is_lost(signal, i))
+            .filter(|(width, _)| *width == 1 || is_alone(signals, signal, i..i + width));
         if let Some((width, area_m_s)) = spike {
             found.push(i);
             held_m_s += area_m_s;
@@ -86,6 +94,28 @@ fn bends_around(force: &[f64], i: usize, width: usize) -> f64 {
     let beside = [i.saturating_sub(AROUND)..i, i + width..(i + width + AROUND).min(force.len())];
     let bends = beside.into_iter().flat_map(|range| force[range].windows(3));
     robust::median(&mut bends.map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).collect::<Vec<_>>())
+}
+
+/// Whether nothing about a run of samples is nearly as sharp, on its channel or on another of its rate.
+fn is_alone(signals: &[Signal], signal: &Signal, run: Range<usize>) -> bool {
+    let beside = AROUND.max(as_count(BESIDE_S * signal.sample_rate_hz));
+    let sharpest = |signal: &Signal, over: Range<usize>| {
+        let over = over.start.min(over.end)..over.end.min(signal.force_m_s2.len());
+        let bends = signal.force_m_s2.get(over).unwrap_or_default().windows(3);
+        bends.map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).fold(0.0, f64::max)
+    };
+    let spike = sharpest(signal, run.start.saturating_sub(2)..run.end + 2);
+    let [before, after] = [run.start.saturating_sub(beside + 2), run.end + beside + 2];
+    let is_like = |other: &&Signal| {
+        let is_of_rate = (other.sample_rate_hz / signal.sample_rate_hz - 1.0).abs() < 0.01;
+        is_of_rate && other.name != signal.name
+    };
+    let on_others = signals.iter().filter(is_like).map(|other| {
+        let [from, to] = [before, after].map(|i| other.index_from(signal.time_s(i)));
+        sharpest(other, from..to)
+    });
+    let on_own = [before..run.start.saturating_sub(1), run.end + 1..after].map(|over| sharpest(signal, over));
+    on_own.into_iter().chain(on_others).all(|sharp| sharp < AS_SHARP * spike)
 }
 
 /// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.
@@ -173,14 +203,14 @@ mod tests {
 
     #[test]
     fn a_pulse_has_neither() {
-        assert!(spikes(&pulse(), 20.0).is_none());
+        assert!(spikes(&[pulse()], 0, 20.0).is_none());
         assert!(mark_dropouts(&mut pulse(), 1.0, 0.04).is_none());
         // Nor a pulse of five samples, and ringing of fifteen samples a period.
         let mut short = pulse();
         short.force_m_s2[300..305].copy_from_slice(&[2000.0, 3600.0, 4000.0, 3500.0, 1900.0]);
-        assert!(spikes(&short, 1.5).is_none());
+        assert!(spikes(&[short], 0, 1.5).is_none());
         let ringing = |i: u32| 3000.0 * (f64::from(i) * std::f64::consts::TAU / 15.0).sin() + noise(i, 2);
-        assert!(spikes(&signal((0..900).map(ringing).collect()), 20.0).is_none());
+        assert!(spikes(&[signal((0..900).map(ringing).collect())], 0, 20.0).is_none());
     }
 
     #[test]
@@ -190,7 +220,7 @@ mod tests {
             for f in &mut spiky.force_m_s2[200..200 + width] {
                 *f += 900.0;
             }
-            let finding = spikes(&spiky, 20.0).expect("a spike");
+            let finding = spikes(&[spiky], 0, 20.0).expect("a spike");
             let FindingKind::Channel(ChannelFinding::Spikes { count: 1, held_m_s: held, .. }) = finding.what
             else {
                 panic!("{finding:?}")
@@ -203,7 +233,24 @@ mod tests {
         let mut small = pulse();
         small.force_m_s2[100] += 205.0;
         small.sample_rate_hz = 2e4;
-        assert_eq!(spikes(&small, 20.0).map(|i| i.severity), Some(Severity::Note));
+        assert_eq!(spikes(&[small], 0, 20.0).map(|i| i.severity), Some(Severity::Note));
+    }
+
+    #[test]
+    fn a_wave_that_another_channel_shows_as_sharp_is_no_spike() {
+        // A bell of a bending wave through a recorder's filter.
+        let struck = |at: usize, share: f64| {
+            let mut struck = pulse();
+            for (f, wave) in struck.force_m_s2[at..].iter_mut().zip([-10.0, -600.0, -1100.0, -650.0, -20.0]) {
+                *f += share * wave;
+            }
+            struck
+        };
+        let other = |name: &str, at: usize, share: f64| Signal { name: name.into(), ..struck(at, share) };
+        let is_spike = |signals: [Signal; 2]| spikes(&signals, 0, 20.0).is_some();
+        assert!(is_spike([struck(600, 1.0), other("A2", 600, 0.1)]));
+        assert!(is_spike([struck(600, 1.0), other("A2", 700, 1.0)]));
+        assert!(!is_spike([struck(600, 1.0), other("A2", 607, -0.6)]));
     }
 
     #[test]

@@ -72,7 +72,10 @@ pub fn condition(
     corrections: Corrections,
 ) -> (Vec<Signal>, Vec<Finding>) {
     let each = |channel| signal(channel, event, reach, corrections);
-    let (signals, findings): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
+    let (signals, mut findings): (Vec<_>, Vec<Vec<_>>) = recording.channels.par_iter().map(each).unzip();
+    for (of, of_channel) in findings.iter_mut().enumerate() {
+        of_channel.extend(disturbed::spikes(&signals, of, event.velocity_step_m_s));
+    }
     (signals, findings.into_iter().flatten().collect())
 }
 
@@ -121,7 +124,6 @@ fn signal(
     findings.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
     findings.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
     findings.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
-    findings.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
     (signal, findings)
 }
 

@@ -35,6 +35,11 @@ const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
 
+/// Width of the means by which R's velocity in a cask of `length_m` is compared, s.
+fn width_s(length_m: f64) -> f64 {
+    WIDTH_S.min(WIDTH_S_PER_M * length_m)
+}
+
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
@@ -114,7 +119,7 @@ pub fn slap_down(
     least_change_m_s: f64,
     calm_m_s2: Option<f64>,
 ) -> Option<At> {
-    let width_s = WIDTH_S.min(WIDTH_S_PER_M * length_m);
+    let width_s = width_s(length_m);
     let start = signal.index_from(between_s.start - width_s);
     let end = signal.index_from(between_s.end + width_s);
     let force = signal.force_m_s2.get(start..end)?;
@@ -155,11 +160,13 @@ pub fn slap_down(
 }
 
 /// The slap-down as the beginning of what a calm signal does without a pause until the rise that was found: a
-/// body that bends takes the sensors of a corner that is held the other way first.
+/// body of `length_m` that bends takes the sensors of a corner that is held the other way first.
 ///
-/// `from_s` is where the signal is known to be calm, but for `calm_m_s2`.
-pub fn departure(signal: &Signal, struck: At, from_s: f64, calm_m_s2: f64) -> At {
+/// From `from_s` on the signal is known to be calm, but for `calm_m_s2`. What has no pause for longer than
+/// the means are wide rings.
+pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m_s2: f64) -> At {
     let rate_hz = signal.sample_rate_hz;
+    let earliest_s = struck.time_s - width_s(length_m);
     let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTS * calm_m_s2);
     let [from, to] = [from_s, struck.time_s].map(|time_s| signal.index_from(time_s));
     let Some(force) = signal.force_m_s2.get(from..to) else { return struck };
@@ -176,7 +183,7 @@ pub fn departure(signal: &Signal, struck: At, from_s: f64, calm_m_s2: f64) -> At
     let rise_s = as_f64((doubled - first).clamp(1, pause)) / rate_hz;
     let time_s = signal.time_s(from + first) - rise_s / 2.0;
     let is_earlier = struck.time_s - time_s > 2.0 * struck.u_s;
-    if is_earlier { At { time_s, u_s: rise_s / 2.0 } } else { struck }
+    if is_earlier && time_s > earliest_s { At { time_s, u_s: rise_s / 2.0 } } else { struck }
 }
 
 /// Which rise of a stretch begins the pulse.
@@ -441,10 +448,12 @@ mod tests {
             Signal { force_m_s2: force_m_s2.collect(), ..plain.clone() }
         };
         let struck = At { time_s: 0.08, u_s: 1e-4 };
-        let found = departure(&bent(0.0), struck, 0.03, 3.0);
+        let found = departure(&bent(0.0), 5.0, struck, 0.03, 3.0);
         assert!((found.time_s - 0.072).abs() < 2e-4 && found.u_s < 2e-4, "{found:?}");
         // What is over 3 ms before the rise was not the slap-down's.
-        assert_eq!(departure(&bent(0.003), struck, 0.03, 3.0), struck);
+        assert_eq!(departure(&bent(0.003), 5.0, struck, 0.03, 3.0), struck);
+        // Nor is what a short body does for as long as ringing.
+        assert_eq!(departure(&bent(0.0), 1.0, struck, 0.03, 3.0), struck);
     }
 
     #[test]
