@@ -24,6 +24,9 @@ const EARLIEST_SLAP_DOWN: f64 = 0.3;
 /// R strikes with more than this share of v0 where it slaps down at all.
 const LEAST_SLAP_DOWN: f64 = 0.08;
 
+/// A pulse that the record ends in has begun with this share of that.
+const CUT_SHORT: f64 = 0.25;
+
 /// The first flight fit starts after this share of the time from contact to slap-down, and at the latest
 /// after so many s.
 const FIRST_CLEARANCE: f64 = 0.4;
@@ -341,7 +344,11 @@ impl Search<'_> {
         if is_shown {
             let calm_m_s2 = calm_m_s2(second, flight);
             let from_s = self.earliest_s.max(attempt.free_s);
-            attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2));
+            let cut_short = || {
+                let least_m_s = CUT_SHORT * self.least_m_s;
+                events::cut_short(second.signal(), self.file.cask.length_m, from_s, calm_m_s2, least_m_s)
+            };
+            attempt.slap_down = self.slap_down(second, from_s, Some(calm_m_s2)).or_else(cut_short);
             attempt.end_s = self.flight_end_s(attempt.slap_down);
         }
         attempt.separation =

@@ -7,6 +7,7 @@ use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End,
     Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal, transverse,
 };
+use crate::events::Hiding;
 use crate::{condition, events, judge};
 use missing_end::StandIn;
 use std::ops::Range;
@@ -54,13 +55,21 @@ impl Impact {
         );
         findings.extend(silent);
         let copied = judge::judge_copies(&recording.channels);
-        let event = changes
-            .locate(missing_end::least_step_m_s(file, recording))
-            .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s());
+        let least_step_m_s = missing_end::least_step_m_s(file, recording);
+        if let Some(Hiding { channel, noise_m_s }) = changes.hiding(least_step_m_s) {
+            findings.push(judge::judge_hidden(channel, noise_m_s, least_step_m_s));
+            return None;
+        }
+        let event =
+            changes.locate(least_step_m_s).filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s());
         let Some(event) = event else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), None));
             return None;
         };
+        if let Some(ahead) = changes.ahead(&event, drop.impact_velocity_m_s) {
+            findings.push(ChannelFinding::Ahead { ahead_s: -ahead.delay_s }.on(&ahead.channel));
+            return None;
+        }
         let usual = condition::Reach::of(&file.cask, drop);
         let farthest = if farther { usual.longest() } else { usual };
         let last_within_s =

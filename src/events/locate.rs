@@ -1,9 +1,10 @@
 //! Whole channels to the stretch in which the first impact lies, in one pass.
 
 use super::block_means_m_s2;
-use crate::data::{Axis, Channel, CoarseEvent, End};
+use crate::data::{Axis, Channel, CoarseEvent, End, Onset};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
 use std::ops::RangeInclusive;
 
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a
@@ -25,11 +26,19 @@ const SHARE: f64 = 0.4;
 /// a later one is.
 const SHARE_OF_LEAST: f64 = 0.5;
 
+/// Noise that walks this many times as far within the width passes for an impact in some width of a record.
+const WALKS: f64 = 4.0;
+
 /// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half
 /// of it …
 const LAST_SHARE: f64 = 0.3;
 /// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
+
+/// The second end first stirs with this share of its largest change …
+const FIRST_SHARE: f64 = 0.15;
+/// … and what stays below this share of the first impact's change falls still.
+const STILL: f64 = 0.1;
 
 /// A change like the first impact's this long after it is another drop, in falls of v0/g: by then a body that
 /// left the target with 0.7 v0 has come down twice, and strikes a third time with half of v0 at most.
@@ -51,6 +60,16 @@ struct Changing<'a> {
     blocks: usize,
     /// By how much the velocity changes over the width that ends with each block, m/s.
     changes_m_s: Vec<f64>,
+    /// What white noise alone changes it by over a width, m/s.
+    noise_m_s: f64,
+}
+
+/// Noise in which an impact is not found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hiding {
+    pub channel: String,
+    /// Standard deviation of what it changes the velocity by within 25 ms, m/s.
+    pub noise_m_s: f64,
 }
 
 impl<'a> Changes<'a> {
@@ -76,10 +95,41 @@ impl<'a> Changes<'a> {
     /// `None` where no channel moves at all, or the samples are too few to tell.
     pub fn locate(&self, least_step_m_s: f64) -> Option<CoarseEvent> {
         let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
-        let largest = reduce::peak(&struck.changes_m_s);
-        let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
-        let crossing = struck.changes_m_s.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
+        let least_m_s = struck.least_m_s(least_step_m_s);
+        let crossing = struck.changes_m_s.iter().position(|c| c.abs() >= least_m_s && least_m_s > 0.0)?;
         Some(struck.event_at(crossing))
+    }
+
+    /// The noise that would pass for the impact which [`Changes::locate`] seeks.
+    pub fn hiding(&self, least_step_m_s: f64) -> Option<Hiding> {
+        let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
+        let noise_m_s = struck.noise_m_s;
+        let hiding = || Hiding { channel: struck.channel.name.clone(), noise_m_s };
+        (WALKS * noise_m_s > struck.least_m_s(least_step_m_s)).then(hiding)
+    }
+
+    /// The channel of the second end that is struck while the first end still falls, and by how much sooner,
+    /// s: what its clock is ahead.
+    pub fn ahead(&self, event: &CoarseEvent, v0_m_s: f64) -> Option<Onset> {
+        let struck = self.struck()?;
+        let is_still = |at_s: f64| {
+            let least_m_s = STILL * event.velocity_step_m_s.abs();
+            let until_s = at_s + WIDTH_S;
+            let is_then = |i: &usize| struck.end_s(*i) < until_s;
+            (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
+        };
+        let far = self.0.iter().filter(|changing| changing.channel.end == End::Second);
+        let of_channel = |changing: &Changing| {
+            let largest_m_s = reduce::peak(&changing.changes_m_s);
+            let least_m_s = (FIRST_SHARE * largest_m_s).max(LAST_SHARE_OF_FALL * v0_m_s);
+            let least_m_s = least_m_s.max(WALKS * changing.noise_m_s);
+            let crossing = changing.changes_m_s.iter().position(|c| c.abs() >= least_m_s)?;
+            let at_s = changing.end_s(crossing) - WIDTH_S;
+            let delay_s = at_s - event.near_s;
+            let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
+            (delay_s < -WIDTH_S && is_still(at_s)).then_some(found)
+        };
+        far.filter_map(of_channel).next()
     }
 
     /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how
@@ -125,7 +175,16 @@ impl<'a> Changing<'a> {
             sum
         });
         let changes_m_s = changes.collect();
-        Some(Self { channel, block_s, blocks, changes_m_s })
+        // Neighbours differ by √2 of the noise, and by far less through what moves the cask.
+        let apart: Vec<f64> = means.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let noise_m_s2 = if apart.is_empty() { 0.0 } else { robust::spread(&apart) / SQRT_2 };
+        let noise_m_s = noise_m_s2 * block_s * as_f64(blocks).sqrt();
+        Some(Self { channel, block_s, blocks, changes_m_s, noise_m_s })
+    }
+
+    /// From which change on it is the first impact's, m/s.
+    fn least_m_s(&self, least_step_m_s: f64) -> f64 {
+        (SHARE * reduce::peak(&self.changes_m_s)).min(SHARE_OF_LEAST * least_step_m_s)
     }
 
     /// When a block ends, s.
@@ -199,6 +258,35 @@ mod tests {
             assert!(located(rate_hz, 0.0).is_none_or(|e| e.velocity_step_m_s.abs() < 0.4), "{rate_hz}");
         }
         assert_eq!(located(60.0, 9.0), None);
+    }
+
+    #[test]
+    fn a_second_end_that_is_struck_before_the_first_has_another_clock() {
+        let ahead = |first: &[(f64, f64)], second: &[(f64, f64)]| {
+            let second = Channel { name: "A2".into(), ..channel(End::Second, second) };
+            let channels = [channel(End::First, first), second];
+            let changes = Changes::of(&channels);
+            changes.ahead(&changes.locate(12.0).expect("an impact"), 13.3)
+        };
+        let found = ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(0.863, -4.0), (0.923, 20.0)]).expect("ahead");
+        assert!(found.channel == "A2" && (found.delay_s + 0.137).abs() < 0.005, "{found:?}");
+        assert_eq!(ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(1.0, -4.0), (1.06, 20.0)]), None);
+        // Exchanged ends: what is called the first one stirs as the other is struck.
+        assert_eq!(ahead(&[(1.0, -4.0), (1.06, 20.0)], &[(1.0, 18.0), (1.06, -6.0)]), None);
+    }
+
+    #[test]
+    fn noise_that_walks_as_far_as_an_impact_hides_it() {
+        let hiding = |noise_m_s2: f64| {
+            let Channel { samples, .. } = channel(End::First, &[(2.5, 20.0)]);
+            let noisy = |i: usize| samples.get(i) + noise_m_s2 * example::noise(u32::try_from(i).unwrap(), 1);
+            let channels = [example::channel((0..samples.len()).map(noisy).collect())];
+            Changes::of(&channels).hiding(13.0)
+        };
+        // White noise of 10 kHz walks by its size times 0.1 ms times √250 within 25 ms: 6.5 m/s over four.
+        assert_eq!(hiding(800.0), None);
+        let found = hiding(1300.0).expect("hidden");
+        assert!(found.channel == "A1" && (found.noise_m_s - 2.06).abs() < 0.3, "{found:?}");
     }
 
     #[test]

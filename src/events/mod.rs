@@ -8,8 +8,8 @@ mod separation;
 mod taps;
 
 pub use answer::answers;
-pub use locate::Changes;
-pub use onset::{departure, first_contact, slap_down};
+pub use locate::{Changes, Hiding};
+pub use onset::{cut_short, departure, first_contact, slap_down};
 pub use release::{FreeFall, at_rest, feels_gravity, free_fall, rest_over_fall};
 pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
 pub use taps::blow_answers;

@@ -186,6 +186,22 @@ pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m
     if is_earlier && time_s > earliest_s { At { time_s, u_s: rise_s / 2.0 } } else { struck }
 }
 
+/// The slap-down whose pulse the record ends in: what a calm signal does without a pause until then, if that
+/// changes the velocity by `least_change_m_s`.
+pub fn cut_short(
+    signal: &Signal,
+    length_m: f64,
+    from_s: f64,
+    calm_m_s2: f64,
+    least_change_m_s: f64,
+) -> Option<At> {
+    let end = At { time_s: signal.end_s(), u_s: 0.0 };
+    let found = departure(signal, length_m, end, from_s, calm_m_s2);
+    let pulse = signal.force_m_s2.get(signal.index_from(found.time_s)..)?;
+    let change_m_s = reduce::sum(pulse) / signal.sample_rate_hz;
+    (found != end && change_m_s > least_change_m_s).then_some(found)
+}
+
 /// Which rise of a stretch begins the pulse.
 #[derive(Clone, Copy, PartialEq)]
 enum Rise {
@@ -454,6 +470,16 @@ mod tests {
         assert_eq!(departure(&bent(0.003), 5.0, struck, 0.03, 3.0), struck);
         // Nor is what a short body does for as long as ringing.
         assert_eq!(departure(&bent(0.0), 1.0, struck, 0.03, 3.0), struck);
+    }
+
+    #[test]
+    fn a_record_that_ends_in_the_pulse_shows_where_that_began() {
+        let whole = signal(End::Second, 2e4, 0.08, 300.0);
+        let ends = |after_s: f64| whole.cut(0, whole.index_from(0.08 + after_s));
+        let found = cut_short(&ends(0.002), 5.0, 0.03, 3.0, 0.1).expect("an onset");
+        assert!((found.time_s - 0.08).abs() < 1e-4 && found.u_s < 1e-4, "{found:?}");
+        assert_eq!(cut_short(&ends(0.0005), 5.0, 0.03, 3.0, 0.1), None);
+        assert_eq!(cut_short(&whole, 5.0, 0.03, 3.0, 0.1), None);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What an analysis did not find to what that means: an impact, an end, a slap-down, a flight.
 
+use super::result::too_steep;
 use crate::data::{Cask, CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity, Tolerances};
 
 /// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from
@@ -29,10 +30,18 @@ pub fn judge_no_impact(
     DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt, without_rise }.into()
 }
 
+/// No impact that changes the velocity by so much at the least stands out of the noise of a channel, which
+/// changes it by this standard deviation.
+pub fn judge_hidden(channel: String, noise_m_s: f64, least_m_s: f64) -> Finding {
+    DropFinding::Hidden { channel, noise_m_s, least_m_s }.into()
+}
+
 /// The second end shows no slap-down in the time that was looked at after the first one left; the record may
-/// end with that time.
-pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
-    let found = if is_record_end && after_s < LONG_ENOUGH_S {
+/// end with that time, or the drop is so steep that none is expected.
+pub fn judge_no_slap_down(cask: &Cask, drop: &Drop, after_s: f64, is_record_end: bool) -> Finding {
+    let found = if let Some(too_steep) = too_steep(cask, drop) {
+        too_steep
+    } else if is_record_end && after_s < LONG_ENOUGH_S {
         DropFinding::EndsEarly { after_s }
     } else {
         DropFinding::NoSlapDown { after_s }
@@ -54,7 +63,10 @@ mod tests {
 
     #[test]
     fn a_record_ends_before_the_slap_down_only_where_it_ends() {
-        let code = |after_s, is_record_end| judge_no_slap_down(after_s, is_record_end).code;
+        let (cask, drop) = (Cask::block("rod", 1000.0, 5.0, 0.5), Drop::of_height(9.0, 0.3));
+        let code = |after_s, is_record_end| judge_no_slap_down(&cask, &drop, after_s, is_record_end).code;
+        let steep = judge_no_slap_down(&cask, &Drop::of_height(9.0, 1.5), 0.2, true);
+        assert_eq!(steep.code, IssueCode::NoSlapDown);
         assert_eq!(code(0.2, true), IssueCode::EndsEarly);
         assert_eq!(code(0.2, false), IssueCode::NoSlapDown);
         assert_eq!(code(0.7, true), IssueCode::NoSlapDown);

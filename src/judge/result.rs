@@ -2,7 +2,7 @@
 
 use super::turned::turned_m_s2;
 use crate::data::{
-    Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
+    Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, Drop, DropFinding, DropResult, End, Estimate,
     Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
     SLOWEST_BENDING_HZ, Severity, Signal, planar,
 };
@@ -39,6 +39,8 @@ const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 const LARGE_MISMATCH_M_S: f64 = 0.2;
 /// Chance passes an E_n of 1 in one comparison of twenty, and this in one of 400.
 const CHANCE_E_N: f64 = 1.5;
+/// Longest first pulse of a limiter, s.
+const LONGEST_PULSE_S: f64 = 0.025;
 /// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
 const LARGE_U_SHARE: f64 = 0.1;
 /// A bend of one channel's plateau below this share of v0 changes the speed by less than its interval.
@@ -61,20 +63,17 @@ pub fn judge_motion(
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
-    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
+    let lasts_s =
+        motion.curve.time_s.last().zip(motion.curve.time_s.first()).map_or(0.0, |(to, from)| to - from);
+    if quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S {
+        add(DropFinding::StrikeTogether { apart_s: lasts_s });
+    } else if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
         add(DropFinding::Restitution { k });
     } else if k.value < 0.0 {
         add(DropFinding::RestitutionDoubted { k, strained: None });
     }
     if quantities.angular_velocity.value <= 0.0 {
-        let cask = &cask_file.cask;
-        let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
-        let angle_deg = cask_file.drop.angle_rad.to_degrees();
-        add(if angle_deg > STEEP_SHARE * limit_deg {
-            DropFinding::TooSteep { angle_deg, limit_deg }
-        } else {
-            DropFinding::TurnsTheWrongWay
-        });
+        add(too_steep(&cask_file.cask, &cask_file.drop).unwrap_or(DropFinding::TurnsTheWrongWay));
     }
     let slip = quantities.slip_velocity;
     let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
@@ -89,6 +88,13 @@ pub fn judge_motion(
         add(DropFinding::Sinks { depth_m: -motion.lowest_first_end_m });
     }
     findings
+}
+
+/// A drop so steep that the second end does not strike.
+pub(super) fn too_steep(cask: &Cask, drop: &Drop) -> Option<DropFinding> {
+    let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
+    let angle_deg = drop.angle_rad.to_degrees();
+    (angle_deg > STEEP_SHARE * limit_deg).then_some(DropFinding::TooSteep { angle_deg, limit_deg })
 }
 
 /// A first end that is still pressed on the target as the second one strikes: what was taken for a flight

@@ -9,8 +9,8 @@ use super::text::{
     styled_lines, tail, true_minus, verdict_sentence, verdict_style, verdict_word,
 };
 use crate::data::{
-    Analysis, CaskFile, ClosureKind, DropResult, Estimate, Finding, LimitState, ReconstructionRung, Rung,
-    Severity, Untested,
+    Analysis, CaskFile, ClosureKind, DropFinding, DropResult, Estimate, Finding, FindingKind, LimitState,
+    ReconstructionRung, Rung, Severity, Untested,
 };
 
 /// Columns that the name of a row takes.
@@ -80,8 +80,12 @@ fn compared(result: &DropResult, file: &CaskFile) -> Option<String> {
 /// What the prediction takes from the recording that it is held against: "by the measured k, friction".
 pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
     let rung = result.model.as_ref().map_or(Rung::Rod, |model| model.rung);
-    let is_friction = file.has_open_friction() && rung >= Rung::Friction;
-    let friction = if is_friction { ", friction" } else { "" };
+    let is_assumed = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::OpenContact { .. }));
+    let friction = match file.has_open_friction() && rung >= Rung::Friction {
+        true if result.quality.iter().any(is_assumed) => ", the friction taken",
+        true => ", friction",
+        false => "",
+    };
     let time = if rung == Rung::FinitePulse { ", contact time" } else { "" };
     format!("by the measured k{friction}{time}")
 }

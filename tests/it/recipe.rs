@@ -162,5 +162,5 @@ fn the_recipe_gives_true_numbers_of_drawn_casks_without_any_optional_key() {
     println!("{passed} pass, {held} of {numbers} held");
     assert!(passed >= 50 && numbers >= 110, "{passed} pass with {numbers} numbers");
     let share = 100 * held / numbers;
-    assert!((93..=99).contains(&share), "{held} of {numbers} intervals hold");
+    assert!((93..=98).contains(&share), "{held} of {numbers} intervals hold");
 }

@@ -62,6 +62,11 @@ fn the_silent_damages_that_the_program_knows_are_those_of_the_recorded_full_run(
     let (_, chapter) = page.split_once("### What is silent").expect("the chapter");
     let (count, _) =
         chapter.trim_start_matches(|c: char| !c.is_ascii_digit()).split_once(' ').expect("a count");
+    // A damage that came after the run was recorded is one of which nothing is known.
+    let damages = std::fs::read_to_string(root().join("src/lab/damage/damages.tsv")).expect("the damages");
+    let grow = |row: &&str| !row.starts_with('#') && row.split('\t').nth(6).is_some_and(|sizes| sizes != "-");
+    let tried = format!(" of {} damages ", damages.lines().filter(grow).count());
+    assert!(chapter.contains(&tried), "the recorded run is not{tried}that there are");
     let (table, _) = chapter.split_once("\n### ").expect("the next chapter");
     let head =
         "# Recorded full run: a silent damage, from which size on what becomes of a drop, half-widths off.";

@@ -223,6 +223,11 @@ pub enum ChannelFinding {
          and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix \
          what was before with what came after, so k and the slap-down speed are not determined; fasten the \
          contents, or read the speed from the film", times_ms(after_s));
+    /// The channel is struck while the first end still falls.
+    Ahead { ahead_s: f64 } => (Code::Skew, Error, Everything),
+        ("is struck some {:.0} ms before the first end, which still falls by then: its recorder's clock is \
+          ahead; record with one trigger, or shift the times of one recorder in a copy until both show the \
+          first contact at one time", 1e3 * ahead_s);
     /// The channel answers before the first end is struck.
     AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool } => (Code::Skew, Warning, Nothing),
         ("answers the first impact {} before the first end is struck, which no body does: {ONE_TRIGGER}{}",

@@ -14,6 +14,11 @@ pub enum DropFinding of Drop {
         => (Code::NoImpact, Error, Everything),
         ("no impact was found: {}; check source, unit and that the recording covers the drop{}",
          what_was_seen(*least_m_s, *without_rise), doubt_of_rate(doubt.as_deref()));
+    /// Noise of a channel that changes its velocity within 25 ms nearly as much as an impact does.
+    Hidden { channel: String, noise_m_s: f64, least_m_s: f64 } => (Code::NoImpact, Error, Everything),
+        ("no impact can be told from noise: that of {channel} changes its velocity by ± {:.1} m/s within 25 \
+          ms, the first impact by {least_m_s:.1} m/s at the least: look for a loose cable, or use a sensor \
+          with a smaller range", 2.0 * noise_m_s);
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
     TooSlow { rate_hz: f64, samples: f64, least_hz: f64 } => (Code::LowRate, Error, ChannelAndMotion),
         ("{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: too \
@@ -39,6 +44,11 @@ pub enum DropFinding of Drop {
     Overlap { strikes_by_s: f64, lasts_s: f64 } => (Code::SecondContact, Error, Motion),
         ("by the stated angle the second end strikes within {:.1} ms of the first, whose impact lasts {:.1} \
          ms: contacts that overlap are not followed; check `angle_deg`", 1e3 * strikes_by_s, 1e3 * lasts_s);
+    /// R strikes while L still moves down.
+    StrikeTogether { apart_s: f64 } => (Code::SecondContact, Error, Motion),
+        ("the second end strikes {:.1} ms after the first, which is still moving down by then: no flight \
+          lies between the impacts, and neither k nor a slap-down speed can be told; check `angle_deg` if a \
+          slap-down was meant", 1e3 * apart_s);
     /// Another drop, so long after the one that was analysed.
     SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 }
         => (Code::SeveralDrops, Warning, Nothing),
@@ -76,7 +86,7 @@ pub enum DropFinding of Drop {
     /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
     /// friction that was taken.
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate } => (Code::Friction, Note, Nothing),
-        ("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it \
+        ("little tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it \
          sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between ({:.2} ± \
          {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state \
          `friction`", taken.value, taken.u95);
@@ -314,8 +324,8 @@ fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
         ),
         ClosureKind::Turning => format!(
             "the measured rotation differs by {how_far} from what the first impact would give a rigid body \
-             of this section, centre of gravity and inertia: check the length and each channel's scale and \
-             position, and state `inertia_kg_m2` and `cog_m`"
+             of this section, centre of gravity and inertia: check `length_m`, `height_m`, `cog_m` and \
+             `inertia_kg_m2` or state what is left out, and check each channel's scale and position"
         ),
         ClosureKind::SecondTurning => format!(
             "the rotation that the second impact gives differs by {how_far} from what its impulse would give \

@@ -23,6 +23,8 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
             plan.modes = vec![BendingMode { strength: 0.3, ..DropPlan::mode(1, frequency_hz) }];
         } else {
             plan.elastic = Some(ElasticBody { first_bending_hz: frequency_hz, damping: 0.01 });
+            // Its modes reach beyond half the sample rate, where a recorder has a filter.
+            plan.chain.anti_alias_hz = Some(plan.rate_hz / 4.0);
         }
         plan.chain.offset_m_s2 = 0.5 * STANDARD_GRAVITY_M_S2;
         plan

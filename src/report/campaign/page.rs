@@ -169,7 +169,10 @@ fn reasons(batch: &Batch) -> Option<Chapter> {
 fn of_series(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| format!("{} at {}", pool.quantity.words()[2], pool.angle_words());
     let unit = |pool: &Pool| if pool.quantity == PooledQuantity::K { "" } else { " m/s" };
-    let word = |pool: &Pool| pool.pooled.word().map_or(MISSING, scatter_words);
+    let word = |pool: &Pool| match pool.pooled.word() {
+        _ if pool.is_contradictory() => "that of drops which contradict each other",
+        word => word.map_or(MISSING, scatter_words),
+    };
     let repeats = ReportTable::of(&series.pools)
         .caption("Repeats")
         .head("quantity", pool)
@@ -177,7 +180,10 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
             0 => pool.pooled.count.to_string(),
             _ => format!("{} of {}", pool.pooled.count, pool.members.len()),
         })
-        .number("mean", |pool| pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool))
+        .number("mean", |pool| match pool.is_contradictory() {
+            true => MISSING.to_owned(),
+            false => pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool),
+        })
         .number("scatter", |pool| {
             significant(pool.pooled.scatter, 2) + if pool.pooled.count > 1 { unit(pool) } else { "" }
         })

@@ -2,7 +2,7 @@
 //! angle, date and number.
 
 use super::BatchRow;
-use super::series::{DropSeries, PooledQuantity, PredictedCurve, is_usable};
+use super::series::{DropSeries, Pool, PooledQuantity, PredictedCurve, is_usable};
 use crate::data::{BodyModel, Estimate};
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
@@ -68,7 +68,8 @@ impl DropSeries<'_> {
             .with_air(0.03),
         ];
         // Over date and number the drops at several angles stand among one another.
-        for pool in self.pools.iter().filter(|pool| pool.quantity == PooledQuantity::K) {
+        let has_mean = |pool: &&Pool| pool.quantity == PooledQuantity::K && !pool.is_contradictory();
+        for pool in self.pools.iter().filter(has_mean) {
             let [from, to] = pool.angles_deg;
             let ends = [from - MEAN_DEG, to + MEAN_DEG].map(|angle_deg| (angle_deg, pool.pooled.mean));
             panels[0].lines.push(Curve::new(GREY, ends.to_vec()).broken(Dash::Dashed));

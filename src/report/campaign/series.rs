@@ -66,6 +66,13 @@ pub(super) struct Pool<'a> {
     pub(super) pooled: Pooled,
 }
 
+impl Pool<'_> {
+    /// Whether each of the repeats contradicts the others.
+    pub(super) fn is_contradictory(&self) -> bool {
+        self.members.iter().all(|member| member.is_out)
+    }
+}
+
 /// Where a row stands among its repeats at its angle.
 #[derive(Clone, Copy, Default)]
 pub(super) struct RowPlace {
@@ -233,7 +240,7 @@ fn pool<'a>(angles_deg: [f64; 2], quantity: PooledQuantity, rows: &[&'a BatchRow
     let found = apart(&values);
     let kept: Vec<(f64, f64)> =
         values.iter().zip(&found).filter(|(_, (_, is_out))| !is_out).map(|(value, _)| *value).collect();
-    // Of two that contradict each other neither is the better one.
+    // Where all contradict one another none is the better one, and their mean is not shown.
     let pooled = pooled(if kept.is_empty() { &values } else { &kept })?;
     let members = rows.into_iter().zip(found).map(|(row, (e_n, is_out))| PoolMember { row, e_n, is_out });
     Some(Pool { angles_deg, quantity, members: members.collect(), pooled })

@@ -38,7 +38,7 @@ pub(super) fn oddities<'a>(series: &[DropSeries<'a>]) -> Vec<Oddity<'a>> {
                 2 => "the other repeat".to_owned(),
                 count => format!("the {} other repeats", count - 1),
             };
-            let what = format!("{name} {own}, E_n {}", fixed(e_n, 1));
+            let what = format!("{name} {own}, E_n {}", fixed(e_n, 2));
             let against = format!("disagrees with {others} of {place}");
             found.push(Oddity { row: member.row, size: e_n.abs(), what, against });
         }

@@ -114,7 +114,7 @@ pub(super) fn advice(study: &Study) -> Option<String> {
     let is_flat = advice.band_deg.is_some_and(|band| band.0 <= flat_deg);
     let flat = format!(" At {}° or flatter both ends may strike together.", degrees(flat_deg));
     let largest = criterion_value(Criterion::Speed, advice.largest_m_s);
-    let largest = format!(" The largest of all is {largest}, at {}°.", degrees(advice.at_deg));
+    let largest = format!(" The largest of the cask's body is {largest}, at {}°.", degrees(advice.at_deg));
     let flat = if is_flat { flat } else { String::new() };
     Some([drop.unwrap_or_else(none), largest, at_the_angle(advice), flat].concat())
 }
