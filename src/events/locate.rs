@@ -29,6 +29,10 @@ const SHARE_OF_LEAST: f64 = 0.5;
 /// Noise that walks this many times as far within the width passes for an impact in some width of a record.
 const WALKS: f64 = 4.0;
 
+/// Parts of a record of which the calmest shows the noise, and the fewest blocks of one.
+const PARTS: usize = 8;
+const LEAST_PART: usize = 20;
+
 /// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half
 /// of it …
 const LAST_SHARE: f64 = 0.3;
@@ -175,9 +179,11 @@ impl<'a> Changing<'a> {
             sum
         });
         let changes_m_s = changes.collect();
-        // Neighbours differ by √2 of the noise, and by far less through what moves the cask.
+        // Neighbours differ by √2 of the noise; the calmest part of the record shows no ringing.
         let apart: Vec<f64> = means.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let noise_m_s2 = if apart.is_empty() { 0.0 } else { robust::spread(&apart) / SQRT_2 };
+        let parts = apart.chunks((apart.len() / PARTS).max(LEAST_PART));
+        let spreads = parts.filter(|part| part.len() >= LEAST_PART).map(robust::spread);
+        let noise_m_s2 = spreads.reduce(f64::min).unwrap_or(0.0) / SQRT_2;
         let noise_m_s = noise_m_s2 * block_s * as_f64(blocks).sqrt();
         Some(Self { channel, block_s, blocks, changes_m_s, noise_m_s })
     }
