@@ -118,7 +118,7 @@ impl<'a> Changes<'a> {
         let struck = self.struck()?;
         let is_still = |at_s: f64| {
             let least_m_s = STILL * event.velocity_step_m_s.abs();
-            let until_s = at_s + WIDTH_S;
+            let until_s = at_s + 2.0 * WIDTH_S;
             let is_then = |i: &usize| struck.end_s(*i) < until_s;
             (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
         };
@@ -131,7 +131,7 @@ impl<'a> Changes<'a> {
             let at_s = changing.end_s(crossing) - WIDTH_S;
             let delay_s = at_s - event.near_s;
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
-            (delay_s < -WIDTH_S && is_still(at_s)).then_some(found)
+            (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
         };
         far.filter_map(of_channel).next()
     }
