@@ -45,8 +45,8 @@ fn is_lost(signal: &Signal, index: usize) -> bool {
 }
 
 /// Spikes of one to five samples of one of the signals with what they hold together; nothing is repaired.
-pub(super) fn spikes(signals: &[Signal], of: usize, velocity_step_m_s: f64) -> Option<Finding> {
-    let signal = signals.get(of)?;
+pub(super) fn spikes(signals: &[Signal], index: usize, velocity_step_m_s: f64) -> Option<Finding> {
+    let signal = signals.get(index)?;
     let force = &signal.force_m_s2;
     let height = height(reduce::peak(force), signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();

@@ -73,9 +73,9 @@ pub fn condition(
 ) -> (Vec<Signal>, Vec<Finding>) {
     let each = |channel| signal(channel, event, reach, corrections);
     let (signals, mut findings): (Vec<_>, Vec<Vec<_>>) = recording.channels.par_iter().map(each).unzip();
-    for (of, of_channel) in findings.iter_mut().enumerate() {
-        of_channel.extend(disturbed::spikes(&signals, of, event.velocity_step_m_s));
-    }
+    findings.par_iter_mut().enumerate().for_each(|(index, of_channel)| {
+        of_channel.extend(disturbed::spikes(&signals, index, event.velocity_step_m_s));
+    });
     (signals, findings.into_iter().flatten().collect())
 }
 
