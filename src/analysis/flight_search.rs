@@ -212,8 +212,8 @@ fn searched(
     best.map(|(_, found)| search.beyond_last_stage(found))
 }
 
-/// What a flight leaves of an end's signal in the calmest of its quarters but the first, m/s²: fast modes ring
-/// at the beginning, and the end may hold the slap-down's foot.
+/// What a flight leaves of an end's signal in the calmest of its quarters but the first, m/s²: fast modes
+/// ring at the beginning, and the end may hold the slap-down's foot.
 fn calm_m_s2(second: &motion::RingingRemoved, flight: &FlightFit) -> f64 {
     let quarter_s = (flight.to_s - flight.from_s) / 4.0;
     let quarters_s = [1.0, 2.0, 3.0].map(|n| flight.from_s + n * quarter_s);

@@ -122,7 +122,7 @@ impl<'a> Changes<'a> {
             let is_then = |i: &usize| struck.end_s(*i) < until_s;
             (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
         };
-        let far = self.0.iter().filter(|changing| changing.channel.end == End::Second);
+        let mut far = self.0.iter().filter(|changing| changing.channel.end == End::Second);
         let of_channel = |changing: &Changing| {
             let largest_m_s = reduce::peak(&changing.changes_m_s);
             let least_m_s = (FIRST_SHARE * largest_m_s).max(LAST_SHARE_OF_FALL * v0_m_s);
@@ -133,7 +133,7 @@ impl<'a> Changes<'a> {
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
             (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
         };
-        far.filter_map(of_channel).next()
+        far.find_map(of_channel)
     }
 
     /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how

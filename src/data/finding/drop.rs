@@ -17,8 +17,8 @@ pub enum DropFinding of Drop {
     /// Noise of a channel that changes its velocity within 25 ms nearly as much as an impact does.
     Hidden { channel: String, noise_m_s: f64, least_m_s: f64 } => (Code::NoImpact, Error, Everything),
         ("no impact can be told from noise and hum: those of {channel} change its velocity by ± {:.1} m/s \
-          within 25 ms, the first impact by {least_m_s:.1} m/s at the least: look for a loose cable or earth, \
-          or use a sensor with a smaller range", 2.0 * noise_m_s);
+          within 25 ms, the first impact by {least_m_s:.1} m/s at the least: look for a loose cable or \
+          earth, or use a sensor with a smaller range", 2.0 * noise_m_s);
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
     TooSlow { rate_hz: f64, samples: f64, least_hz: f64 } => (Code::LowRate, Error, ChannelAndMotion),
         ("{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: too \

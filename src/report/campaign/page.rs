@@ -180,9 +180,13 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
             0 => pool.pooled.count.to_string(),
             _ => format!("{} of {}", pool.pooled.count, pool.members.len()),
         })
-        .number("mean", |pool| match pool.is_contradictory() {
-            true => MISSING.to_owned(),
-            false => pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool),
+        .number("mean", |pool| {
+            let is_told = !pool.is_contradictory();
+            if is_told {
+                pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool)
+            } else {
+                MISSING.to_owned()
+            }
         })
         .number("scatter", |pool| {
             significant(pool.pooled.scatter, 2) + if pool.pooled.count > 1 { unit(pool) } else { "" }
