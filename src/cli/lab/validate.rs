@@ -21,7 +21,7 @@ pub struct Arguments {
     /// Write one scene of the campaign as recording, cask file and truth into --out
     #[arg(long, value_name = "NUMBER", requires = "out")]
     scene: Option<SceneNumber>,
-    /// Try the ways of working on fewer scenes, within a minute
+    /// Try the ways of working on fewer scenes
     #[arg(long, conflicts_with = "what")]
     quick: bool,
     /// Folder of your own reference recordings, with their expected values in reference.toml; they are part
