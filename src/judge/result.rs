@@ -65,15 +65,19 @@ pub fn judge_motion(
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
     let lasts_s =
         motion.curve.time_s.last().zip(motion.curve.time_s.first()).map_or(0.0, |(to, from)| to - from);
-    if quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S {
-        add(DropFinding::StrikeTogether { apart_s: lasts_s });
-    } else if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
-        add(DropFinding::Restitution { k });
+    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
+        let is_as_one = quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S;
+        let as_one = DropFinding::StrikeTogether { apart_s: lasts_s };
+        add(if is_as_one { as_one } else { DropFinding::Restitution { k } });
     } else if k.value < 0.0 {
         add(DropFinding::RestitutionDoubted { k, strained: None });
     }
     if quantities.angular_velocity.value <= 0.0 {
-        add(too_steep(&cask_file.cask, &cask_file.drop).unwrap_or(DropFinding::TurnsTheWrongWay));
+        match too_steep(&cask_file.cask, &cask_file.drop) {
+            // Said with the slap-down that was not found.
+            Some(_) if quantities.speed.is_none() => {}
+            found => add(found.unwrap_or(DropFinding::TurnsTheWrongWay)),
+        }
     }
     let slip = quantities.slip_velocity;
     let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
