@@ -4,8 +4,9 @@
 use super::flight_search::{self, Patience};
 use super::{missing_end, rest};
 use crate::data::{
-    At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End,
-    Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal, transverse,
+    At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop,
+    DropFinding, End, Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
+    transverse,
 };
 use crate::events::Hiding;
 use crate::{condition, events, judge};
@@ -57,7 +58,8 @@ impl Impact {
         let copied = judge::judge_copies(&recording.channels);
         let least_step_m_s = missing_end::least_step_m_s(file, recording);
         if let Some(Hiding { channel, noise_m_s }) = changes.hiding(least_step_m_s) {
-            findings.push(judge::judge_hidden(channel, noise_m_s, least_step_m_s));
+            let least_m_s = least_step_m_s;
+            findings.push(DropFinding::Hidden { channel, noise_m_s, least_m_s }.into());
             return None;
         }
         let event =

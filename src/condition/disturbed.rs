@@ -92,8 +92,12 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
 /// Median of the second differences about the `width` samples from `i` on, without them, m/s².
 fn bends_around(force: &[f64], i: usize, width: usize) -> f64 {
     let beside = [i.saturating_sub(AROUND)..i, i + width..(i + width + AROUND).min(force.len())];
-    let bends = beside.into_iter().flat_map(|range| force[range].windows(3));
-    robust::median(&mut bends.map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).collect::<Vec<_>>())
+    robust::median(&mut beside.into_iter().flat_map(|range| bends(&force[range])).collect::<Vec<_>>())
+}
+
+/// Sizes of the second differences of samples, m/s².
+fn bends(force: &[f64]) -> impl Iterator<Item = f64> {
+    force.windows(3).map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
 }
 
 /// Whether nothing about a run of samples is nearly as sharp, on its channel or on another of its rate.
@@ -101,8 +105,7 @@ fn is_alone(signals: &[Signal], signal: &Signal, run: Range<usize>) -> bool {
     let beside = AROUND.max(as_count(BESIDE_S * signal.sample_rate_hz));
     let sharpest = |signal: &Signal, over: Range<usize>| {
         let over = over.start.min(over.end)..over.end.min(signal.force_m_s2.len());
-        let bends = signal.force_m_s2.get(over).unwrap_or_default().windows(3);
-        bends.map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).fold(0.0, f64::max)
+        bends(signal.force_m_s2.get(over).unwrap_or_default()).fold(0.0, f64::max)
     };
     let spike = sharpest(signal, run.start.saturating_sub(2)..run.end + 2);
     let [before, after] = [run.start.saturating_sub(beside + 2), run.end + beside + 2];

@@ -10,7 +10,7 @@ const LONG_ENOUGH_S: f64 = 0.3;
 /// Fewer samples than this over the longest first pulse, 25 ms, neither show an impact nor that there is
 /// none.
 const LEAST_SAMPLES: f64 = 10.0;
-const LONGEST_PULSE_S: f64 = 0.025;
+pub(super) const LONGEST_PULSE_S: f64 = 0.025;
 
 /// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found
 /// so far may say why, or the rate at which the struck end is sampled.
@@ -28,12 +28,6 @@ pub fn judge_no_impact(
     let doubt = found.iter().find(is_doubt).cloned().map(Box::new);
     let without_rise = event.copied();
     DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt, without_rise }.into()
-}
-
-/// No impact that changes the velocity by so much at the least stands out of the noise of a channel, which
-/// changes it by this standard deviation.
-pub fn judge_hidden(channel: String, noise_m_s: f64, least_m_s: f64) -> Finding {
-    DropFinding::Hidden { channel, noise_m_s, least_m_s }.into()
 }
 
 /// The second end shows no slap-down in the time that was looked at after the first one left; the record may

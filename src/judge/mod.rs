@@ -31,7 +31,7 @@ pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use late_blow::{judge_late_blow, judge_rest, moves_the_cask};
 pub use limits::beside_limit;
-pub use missing::{judge_hidden, judge_no_impact, judge_no_slap_down, judge_overlap};
+pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
 pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotation};
 pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch};
 pub use rigid::{SensorPlace, judge_rigid, places};

@@ -1,5 +1,6 @@
 //! A reconstructed motion to what speaks against it.
 
+use super::missing::LONGEST_PULSE_S;
 use super::turned::turned_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, Drop, DropFinding, DropResult, End, Estimate,
@@ -39,8 +40,6 @@ const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 const LARGE_MISMATCH_M_S: f64 = 0.2;
 /// Chance passes an E_n of 1 in one comparison of twenty, and this in one of 400.
 const CHANCE_E_N: f64 = 1.5;
-/// Longest first pulse of a limiter, s.
-const LONGEST_PULSE_S: f64 = 0.025;
 /// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
 const LARGE_U_SHARE: f64 = 0.1;
 /// A bend of one channel's plateau below this share of v0 changes the speed by less than its interval.

@@ -80,11 +80,13 @@ fn compared(result: &DropResult, file: &CaskFile) -> Option<String> {
 /// What the prediction takes from the recording that it is held against: "by the measured k, friction".
 pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
     let rung = result.model.as_ref().map_or(Rung::Rod, |model| model.rung);
-    let is_assumed = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::OpenContact { .. }));
-    let friction = match file.has_open_friction() && rung >= Rung::Friction {
-        true if result.quality.iter().any(is_assumed) => ", the friction taken",
-        true => ", friction",
-        false => "",
+    let is_open = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::OpenContact { .. }));
+    let friction = if !file.has_open_friction() || rung < Rung::Friction {
+        ""
+    } else if result.quality.iter().any(is_open) {
+        ", the friction taken"
+    } else {
+        ", friction"
     };
     let time = if rung == Rung::FinitePulse { ", contact time" } else { "" };
     format!("by the measured k{friction}{time}")

@@ -83,7 +83,7 @@ pub enum DropFinding of Drop {
         ("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls \
          the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`",
          slip.value, slip.u95);
-    /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
+    /// Little tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
     /// friction that was taken.
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate } => (Code::Friction, Note, Nothing),
         ("little tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it \

@@ -181,12 +181,10 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
             _ => format!("{} of {}", pool.pooled.count, pool.members.len()),
         })
         .number("mean", |pool| {
-            let is_told = !pool.is_contradictory();
-            if is_told {
-                pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool)
-            } else {
-                MISSING.to_owned()
+            if pool.is_contradictory() {
+                return MISSING.to_owned();
             }
+            pair(pool.pooled.mean, pool.pooled.u95, "1") + unit(pool)
         })
         .number("scatter", |pool| {
             significant(pool.pooled.scatter, 2) + if pool.pooled.count > 1 { unit(pool) } else { "" }
