@@ -8,7 +8,7 @@ use super::first_screen::{RIGID, agreement, built_in, by_measured, of_corner, un
 use super::impacts::{impacts, not_determined, prototype};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
-use super::record::{self, GUARD_BAND, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
+use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::text::{
     Style, causes, determined, dropped, json_word, reasons, sentence, span_text, tail, taken_mark,
@@ -117,7 +117,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let banner = |style, word: &str, sentence| PartContent::Banner(Tone(style, word.to_owned()), sentence);
     let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
     let verdict = banner(verdict_style(result.verdict), word, verdict_sentence(result));
-    let limits = limits_said(&result.limits, usize::MAX).map(|said| format!("{said}. {GUARD_BAND}."));
+    let limits = limits_said(&result.limits, usize::MAX);
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
     let alarm = alarm.map(|said| banner(Style::Red, LIMIT_EXCEEDED, said));
     let banners = alarm.into_iter().chain([verdict]).map(ChapterPart::from);

@@ -148,7 +148,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let title = styled_lines(Style::Bold, &clamped(&title, width, 0, 1));
     let limits = limits_said(&result.limits, 3);
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
-    let alarm = alarm.map_or_else(String::new, |said| row(LIMIT_EXCEEDED, &said, width, 4));
+    let alarm = alarm.map_or_else(String::new, |said| row(LIMIT_EXCEEDED, &said, width, 5));
     let speed = result.slap_down.speed.as_ref();
     let holds = speed.map_or_else(String::new, |_| format!(" {RIGID} (± holds 95 %)"));
     let interval_by = defaults_that_weigh(result, file).unwrap_or_else(|| largest(&result.budget));
@@ -160,7 +160,7 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
         ("Predicted speed", compared(result, file), if result.exceeds_a_limit() { 1 } else { 2 }),
         ("Assumed", super::record::assumed(file, &result.budget), 2),
         ("Interval", Some(interval_by).filter(|_| is_number), if result.limits.is_empty() { 3 } else { 1 }),
-        ("Limits", limits, 4),
+        ("Limits", limits, 5),
     ];
     let said = rows.into_iter().filter_map(|(name, words, most)| Some((name, words?, most)));
     let numbers = said.filter(|(_, words, _)| !words.is_empty());
