@@ -1,6 +1,5 @@
 //! What an analysis did not find to what that means: an impact, an end, a slap-down, a flight.
 
-use super::result::too_steep;
 use crate::data::{Cask, CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity, Tolerances};
 
 /// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from
@@ -11,6 +10,9 @@ const LONG_ENOUGH_S: f64 = 0.3;
 /// none.
 const LEAST_SAMPLES: f64 = 10.0;
 pub(super) const LONGEST_PULSE_S: f64 = 0.025;
+
+/// From this share of the angle on at which the corner lies under the centre of gravity, a cask hardly turns.
+const STEEP_SHARE: f64 = 0.97;
 
 /// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found
 /// so far may say why, or the rate at which the struck end is sampled.
@@ -49,6 +51,13 @@ pub fn judge_overlap(lasts_s: f64, cask: &Cask, drop: &Drop, tolerances: &Tolera
         + (drop.angular_velocity_rad_s - tolerances.angular_velocity_rad_s) * cask.length_m;
     let strikes_by_s = cask.length_m * (drop.angle_rad + tolerances.angle_rad).sin() / down_m_s;
     (down_m_s > 0.0 && lasts_s > strikes_by_s).then(|| DropFinding::Overlap { strikes_by_s, lasts_s }.into())
+}
+
+/// A drop so steep that the second end does not strike.
+pub(super) fn too_steep(cask: &Cask, drop: &Drop) -> Option<DropFinding> {
+    let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
+    let angle_deg = drop.angle_rad.to_degrees();
+    (angle_deg > STEEP_SHARE * limit_deg).then_some(DropFinding::TooSteep { angle_deg, limit_deg })
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! A reconstructed motion to what speaks against it.
 
-use super::missing::LONGEST_PULSE_S;
+use super::missing::{LONGEST_PULSE_S, too_steep};
 use super::turned::turned_m_s2;
 use crate::data::{
-    Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, Drop, DropFinding, DropResult, End, Estimate,
+    Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
     Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
     SLOWEST_BENDING_HZ, Severity, Signal, planar,
 };
@@ -11,8 +11,6 @@ use crate::numerics::noise::integral_uncertainty_by;
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
-/// From this share of the angle on at which the corner lies under the centre of gravity, a cask hardly turns.
-const STEEP_SHARE: f64 = 0.97;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a
 /// slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.1;
@@ -91,13 +89,6 @@ pub fn judge_motion(
         add(DropFinding::Sinks { depth_m: -motion.lowest_first_end_m });
     }
     findings
-}
-
-/// A drop so steep that the second end does not strike.
-pub(super) fn too_steep(cask: &Cask, drop: &Drop) -> Option<DropFinding> {
-    let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
-    let angle_deg = drop.angle_rad.to_degrees();
-    (angle_deg > STEEP_SHARE * limit_deg).then_some(DropFinding::TooSteep { angle_deg, limit_deg })
 }
 
 /// A first end that is still pressed on the target as the second one strikes: what was taken for a flight
