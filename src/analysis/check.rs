@@ -84,7 +84,7 @@ fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding
         let (first_contact, slap_down) =
             (Some(At::exactly(end_s)), Some(At::exactly(end_s + needs.flight_s)));
         let events = Events { first_contact, slap_down, ..Events::default() };
-        found.extend(judge::judge_noise(signal, &events, file.drop.impact_velocity_m_s));
+        found.extend(judge::judge_noise(signal, &events, None, file.drop.impact_velocity_m_s));
         let own = needs.channels.iter().find(|needs| needs.name == channel.name);
         found.extend(own.into_iter().flat_map(|own| judge::judge_chain(channel, signal, &own.peaks)));
     }

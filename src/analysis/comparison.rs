@@ -55,7 +55,7 @@ impl Measured {
                     .between(landing.begin_s, landing.begin_s)
             }));
             // One blow is told once.
-            if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
+            if findings.iter().all(|f| f.code != IssueCode::SecondContact || f.effect == Effect::Nothing) {
                 let blows = judge::judge_blows(impact.recorded(), flight, events, findings, &file.cask);
                 findings.extend(blows.filter(|blows| change_the_motion(blows, flight, impact, events, file)));
             }
@@ -114,13 +114,15 @@ fn change_the_motion(
     file: &CaskFile,
 ) -> bool {
     let (signals, drop) = (&impact.signals, &file.drop);
+    let contact_s = impact.contact.time_s;
+    let events_s = [contact_s, events.separation_s().unwrap_or(contact_s)];
     let window = motion::Window {
         from_s: flight.from_s,
         to_s: events.slap_down_s().map_or(flight.to_s, |struck_s| struck_s - motion::BEFORE_SLAP_DOWN_S),
         drift: flight.drift,
-        angular_velocity_rad_s: motion::turned_rad_s(signals, flight, drop.angular_velocity_rad_s),
+        angular_velocity_rad_s: motion::turned_rad_s(signals, flight, drop.angular_velocity_rad_s, events_s),
     };
-    let integrated = Integrated::over(signals, impact.contact.time_s);
+    let integrated = Integrated::over(signals, contact_s);
     let step_m_s = |at_s| motion::step_m_s(flight, &integrated, &window, file.cask.cog_m, at_s);
     [shocks.from_s, shocks.to_s]
         .into_iter()

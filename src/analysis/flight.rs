@@ -118,7 +118,9 @@ fn moved(
 ) -> Option<Flown> {
     let signals = &impact.signals;
     let (setup, friction) = contact(file, integrated, &flight, events);
-    let turning_rad_s = motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s);
+    let contact_s = impact.contact.time_s;
+    let events_s = [contact_s, events.separation_s().unwrap_or(contact_s)];
+    let turning_rad_s = motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s, events_s);
     let cask = &file.cask;
     let measured = fit::FitData {
         signals,

@@ -311,12 +311,14 @@ impl Search<'_> {
     fn fit(&self, attempt: &Attempt) -> (motion::Window, Vec<FlightFit>) {
         let (signals, cog_m) = (&self.integrated.signals, self.file.cask.cog_m);
         let before = attempt.fitted.as_ref().map(|(flight, _)| flight);
+        let events_s = [self.integrated.contact_s, attempt.separation.time_s];
+        let before_rad_s = self.file.drop.angular_velocity_rad_s;
         let window = motion::Window {
             from_s: attempt.free_s,
             to_s: attempt.end_s - motion::BEFORE_SLAP_DOWN_S,
             drift: self.file.corrections.zero_shift,
             angular_velocity_rad_s: before
-                .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
+                .map_or(0.0, |f| motion::turned_rad_s(signals, f, before_rad_s, events_s)),
         };
         // After R the modes ring on from both impacts: what drove them is not one force.
         let drive = self

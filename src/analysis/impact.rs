@@ -14,6 +14,17 @@ use missing_end::StandIn;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// How a first impact and the flight after it are sought.
+#[derive(Clone, Copy)]
+pub(super) struct Seek {
+    /// Whether beyond the latest slap-down that the angle allows.
+    pub farther: bool,
+    /// How long the flight is sought.
+    pub patience: Patience,
+    /// The longest that a bending wave takes along the cask, s.
+    pub wave_s: f64,
+}
+
 /// The first impact, and what the analysis of it goes by.
 pub(super) struct Impact {
     /// The conditioned signals; the last one stands in for an end that has none, where `stand_in` is.
@@ -41,12 +52,11 @@ pub(super) struct Impact {
 
 impl Impact {
     /// Finds the first impact and cuts the recording after the latest slap-down that the angle allows, or
-    /// `farther`. `None` if no channel shows an impact; that is then the only finding.
+    /// farther. `None` if no channel shows an impact; that is then the only finding.
     pub fn find(
         recording: &Recording,
         file: &CaskFile,
-        farther: bool,
-        patience: Patience,
+        seek: Seek,
         findings: &mut Vec<Finding>,
     ) -> Option<Self> {
         let drop = &file.drop;
@@ -73,7 +83,7 @@ impl Impact {
             return None;
         }
         let usual = condition::Reach::of(&file.cask, drop);
-        let farthest = if farther { usual.longest() } else { usual };
+        let farthest = if seek.farther { usual.longest() } else { usual };
         let last_within_s =
             |reach: condition::Reach| changes.last_s(&event, drop.impact_velocity_m_s, reach.after_s);
         let last_s = last_within_s(farthest);
@@ -92,7 +102,7 @@ impl Impact {
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
-        let u_skew_s = align(file, &mut signals, contact.time_s, findings);
+        let u_skew_s = align(file, &mut signals, (contact.time_s, seek.wave_s), findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (own_rests, fall_s) = before(recording, drop, contact.time_s);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
@@ -107,7 +117,7 @@ impl Impact {
             sought_to_s: sought_to_s.min(recording.end_s()),
             is_record_end: recording.end_s() <= sought_to_s,
             goes_on,
-            patience,
+            patience: seek.patience,
             others: Arc::clone(&recording.others),
         };
         findings.extend(judge::judge_fall(drop, &impact.events()));
@@ -175,11 +185,16 @@ fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) ->
 
 /// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a
 /// bending wave explains as well leaves open of R's times, as a standard uncertainty, s.
-fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut Vec<Finding>) -> f64 {
+fn align(
+    file: &CaskFile,
+    signals: &mut [Signal],
+    (contact_s, wave_s): (f64, f64),
+    findings: &mut Vec<Finding>,
+) -> f64 {
     let onsets = events::answers(signals, contact_s);
     let mut u_skew_s = 0.0_f64;
     for onset in &onsets {
-        let Some(finding) = judge::judge_skew(onset, signals, &file.cask, file.corrections.skew) else {
+        let Some(finding) = judge::judge_skew(onset, signals, wave_s, file.corrections.skew) else {
             continue;
         };
         let is_shifted = finding.severity == Severity::Warning && file.corrections.skew;

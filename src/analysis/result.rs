@@ -5,9 +5,9 @@ use super::flight::Flown;
 use super::setup::sticking;
 use super::{AfterImpact, impacts};
 use crate::data::{
-    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
-    Finding, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice, Prediction, Quantities, Recording,
-    Rung, Setting, Severity, Signal, SlapDown,
+    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropFinding, DropResult, End,
+    Estimate, Events, Finding, FindingKind, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice,
+    Prediction, Quantities, Recording, Rung, Setting, Severity, Signal, SlapDown, Untested,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -37,6 +37,9 @@ pub(super) fn of(
         && let Some(tabulated) = &flown.tabulated
     {
         tabulated.doubt_end(&mut flown.quantities);
+    }
+    if let Some(flown) = &mut flown {
+        doubt_landing(flown, &findings);
     }
     let stated = flown.as_ref().filter(|_| measured.is_some());
     let quantities = stated.map(|flown| &flown.quantities);
@@ -74,6 +77,8 @@ pub(super) fn of(
             result.budget = flown.budget;
             result.slap_down.local_speed = flown.local_speed;
             result.untested = flown.untested;
+            let effect = |input: &Untested| input.moves.in_half_widths(&flown.quantities);
+            result.untested.sort_by(|a, b| effect(b).total_cmp(&effect(a)));
             result.flight = Some(flown.flight);
             motion = Some(flown.motion.curve);
         }
@@ -83,6 +88,19 @@ pub(super) fn of(
     let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
     analysis(recording, file, result, move || Curves { channels: channels(), motion, others: vec![] })
+}
+
+/// Lets the intervals of the speeds reach as far as a landing of L that may come before R strikes.
+fn doubt_landing(flown: &mut Flown, findings: &[Finding]) {
+    let effect_m_s = |f: &Finding| match f.what {
+        FindingKind::Drop(DropFinding::MayLand { effect_m_s, .. }) => Some(effect_m_s),
+        _ => None,
+    };
+    let Some(effect_m_s) = findings.iter().find_map(effect_m_s) else { return };
+    let Quantities { speed, vertical_velocity, .. } = &mut flown.quantities;
+    for speed in [speed, vertical_velocity, &mut flown.local_speed].into_iter().flatten() {
+        speed.u95 += effect_m_s;
+    }
 }
 
 fn analysis(

@@ -29,6 +29,10 @@ const LEAST_STEP: f64 = 1e-9;
 /// taken to be less.
 const NOISE_LEFT: f64 = 0.6;
 
+/// Fewest samples of a limited flank, and the least that it falls by, as a share of the peak.
+const LEAST_FLANK: usize = 12;
+const FLANK_SHARE: f64 = 0.2;
+
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
 /// extreme, as indices.
 ///
@@ -76,9 +80,23 @@ pub(super) fn clipped(
         let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
         let further: Vec<Span> = limits.into_iter().filter(|s| !is_known(s)).collect();
         spans.extend(further);
+        spans.extend(limited_flanks(force, roughness, peak));
     }
     spans.sort_by_key(|s| s.from);
     spans
+}
+
+/// The flanks towards 0 that fall in one straight line between two kinks, as no force does: the amplifier does
+/// not follow it. A limiter's rise is straight, too, and its fall as it lets go is rounded.
+fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
+    let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();
+    flanks.retain(|flank| {
+        let (from, to) = (force[flank.from], force[flank.to]);
+        let is_long = flank.to - flank.from >= LEAST_FLANK && (from - to).abs() > FLANK_SHARE * peak;
+        is_long && from.abs() > to.abs()
+    });
+    flanks
 }
 
 /// Samples beyond the stated full scale and the noise on it, which then is none.

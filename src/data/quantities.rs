@@ -256,3 +256,11 @@ pub struct UntestedMoves {
     /// The slap-down speed, m/s.
     pub slap_down_speed_m_s: Option<f64>,
 }
+
+impl UntestedMoves {
+    /// The larger of both, in half-widths of what it moves.
+    pub fn in_half_widths(&self, quantities: &Quantities) -> f64 {
+        let of = |by: Option<f64>, moved: Option<Estimate>| by.zip(moved).map_or(0.0, |(by, of)| by / of.u95);
+        of(self.k, Some(quantities.k)).max(of(self.slap_down_speed_m_s, quantities.speed))
+    }
+}

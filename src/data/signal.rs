@@ -11,6 +11,9 @@ pub const MOST_LOST_M_S: f64 = 0.27;
 /// known to a sixth then.
 const CLEAR_OF_NOISE: f64 = 6.0;
 
+/// A limited level changes by less than this share of it, a limited flank by more.
+const LEVEL_SHARE: f64 = 0.2;
+
 /// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
 ///
 /// Sample i was taken at `start_s + i / sample_rate_hz`. Missing samples are 0 and listed in `gaps`.
@@ -43,7 +46,7 @@ pub struct Signal {
     pub noise_spectrum: Vec<(f64, f64)>,
     /// Length of the free fall that offset and noise were taken from, s; 0 where there was too little.
     pub free_fall_s: f64,
-    /// Samples that stand at a limit.
+    /// Samples that stand at a limit, of their size or of their slope.
     pub clipped: Vec<Span>,
     /// Stretches without samples.
     pub gaps: Vec<Span>,
@@ -102,8 +105,15 @@ impl Signal {
         }
     }
 
+    /// True if the chain limits the slope of the signal over a stretch, not its size.
+    pub fn is_flank(&self, span: &Span) -> bool {
+        let at = |i: usize| self.force_m_s2.get(i).copied().unwrap_or(0.0);
+        let (first, last) = (at(span.from), at(span.to.saturating_sub(1)));
+        (first - last).abs() > LEVEL_SHARE * first.abs().max(last.abs())
+    }
+
     /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top:
-    /// (ṡ_in + ṡ_out) T² / 12.
+    /// (ṡ_in + ṡ_out) T² / 12. A limited flank adds up to all that lies under it: half is taken.
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn lost_to_clipping_m_s(&self, from_s: f64, to_s: f64) -> f64 {
         let force = |i: usize| self.force_m_s2.get(i).copied();
@@ -111,6 +121,10 @@ impl Signal {
             .iter()
             .filter(|span| self.time_s(span.from) < to_s && self.time_s(span.to) > from_s)
             .map(|span| {
+                if self.is_flank(span) {
+                    let under = self.force_m_s2.get(span.from..span.to).unwrap_or_default();
+                    return under.iter().sum::<f64>().abs() / self.sample_rate_hz / 2.0;
+                }
                 let length_s = (span.to - span.from) as f64 / self.sample_rate_hz;
                 let level = force(span.from).unwrap_or(0.0);
                 // The slope over as many samples beyond as it takes to stand out of the noise.

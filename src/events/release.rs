@@ -5,6 +5,7 @@ use super::block_means_m_s2;
 use crate::data::{AtRest, Channel, Drop, RestLevel, RestReading, of_either};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::cell::OnceCell;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a
@@ -135,8 +136,9 @@ struct Record<'a> {
     size: usize,
     blocks: Vec<f64>,
     weight_m_s2: f64,
-    /// As [`Record::converter_step_m_s2`] finds it, once.
+    /// As the methods of their names find them, once.
     converter_step_m_s2: OnceCell<f64>,
+    u_rounding_m_s2: OnceCell<f64>,
 }
 
 impl<'a> Record<'a> {
@@ -153,6 +155,7 @@ impl<'a> Record<'a> {
             blocks,
             weight_m_s2,
             converter_step_m_s2: OnceCell::new(),
+            u_rounding_m_s2: OnceCell::new(),
         })
     }
 
@@ -190,7 +193,8 @@ impl<'a> Record<'a> {
         let end = departure.map_or(contact, |block| self.touch(step, block, falling));
         let of_fall = self.levels(step + 2..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
         let at_rest = self.calm_before(step, &of_fall);
-        let rest = robust::mean_and_rms(&at_rest).0 - falling;
+        let fall = robust::mean_and_rms(&of_fall).0;
+        let rest = robust::mean_and_rms(&at_rest).0 - if fall.is_finite() { fall } else { falling };
         let u_falling = self.u_mean(&of_fall, TOUCH * self.weight_m_s2);
         let u_rest = u_falling.hypot(self.u_mean(&at_rest, robust::mean_and_rms(&of_fall).1));
         if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_rest {
@@ -202,8 +206,22 @@ impl<'a> Record<'a> {
         Some((FreeFall { release_s, end_s, rest_m_s2: rest, u_rest_m_s2: u_rest }, end - start))
     }
 
-    /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise
-    /// is less.
+    /// Standard uncertainty of a level by the converter's rounding, m/s²: noise before it takes that off
+    ///
+    /// u = q/√12 e^(−2π²σ²/q²)
+    fn u_rounding_m_s2(&self) -> f64 {
+        *self.u_rounding_m_s2.get_or_init(|| {
+            let step = self.converter_step_m_s2();
+            let samples = self.force_m_s2(0..self.samples.len());
+            let pairs = samples.windows(2).step_by(robust::stride(samples.len()));
+            let apart: Vec<f64> = pairs.map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
+            let square = (robust::spread(&apart).powi(2) / 2.0 / step.powi(2) - 1.0 / 12.0).max(0.0);
+            let left = if square.is_finite() { (-2.0 * PI * PI * square).exp() } else { 1.0 };
+            left * step / 12.0_f64.sqrt()
+        })
+    }
+
+    /// Smallest difference of neighbouring samples, m/s².
     fn converter_step_m_s2(&self) -> f64 {
         *self.converter_step_m_s2.get_or_init(|| {
             let scale = self.channel.scale_m_s2.abs();
@@ -243,7 +261,7 @@ impl<'a> Record<'a> {
         };
         // A scatter over n levels is known to 1/√(2n) of itself: few are given that margin twice.
         let margin = 1.0 + (2.0 / n).sqrt();
-        margin * scatter_m_s2.max(drift_m_s2).hypot(self.converter_step_m_s2() / 12.0_f64.sqrt())
+        margin * scatter_m_s2.max(drift_m_s2).hypot(self.u_rounding_m_s2())
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where

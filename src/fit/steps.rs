@@ -19,14 +19,11 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
     let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
     let flight_s = measured.flight.to_s - measured.flight.from_s;
     let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
-    let drift_m_s = if measured.flight.drift {
-        0.0
-    } else {
-        let length_s = pulse_s + flight_s / 2.0;
-        let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
-        // Without a spectrum the offset's own uncertainty is all that is known.
-        noise_m_s.max(signal.u_offset_m_s2 * length_s)
-    };
+    // A drift that was fitted leaves the noise of the contact alone.
+    let length_s = pulse_s + if measured.flight.drift { 0.0 } else { flight_s / 2.0 };
+    let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+    // Without a spectrum the offset's own uncertainty is all that is known.
+    let drift_m_s = noise_m_s.max(signal.u_offset_m_s2 * length_s);
     let ringing_m_s: f64 = measured
         .flight
         .modes

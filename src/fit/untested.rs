@@ -27,14 +27,14 @@ pub(super) struct SilentMistake {
     untested: Untested,
 }
 
-/// The mistakes that no closure would find, largest effect first.
+/// The mistakes that no closure would find.
 pub(super) fn silent(
     measured: &FitData,
     inputs: &[UncertainInput],
     influences: &[Influence],
     stated: &Quantities,
 ) -> Vec<SilentMistake> {
-    let mut silent: Vec<(f64, SilentMistake)> = Vec::new();
+    let mut silent = Vec::new();
     for (input, (own, influence)) in inputs.iter().zip(influences).enumerate() {
         let Some((of_key, by_u)) = of_key(measured, own) else { continue };
         let moved = &influence.quantities;
@@ -52,10 +52,9 @@ pub(super) fn silent(
             slap_down_speed_m_s: moved.speed.map(|by_m_s| by_u * by_m_s.abs()),
         };
         let untested = Untested { moves, ..of_key };
-        silent.push((by_u / wrong_u, SilentMistake { input, wrong_u, untested }));
+        silent.push(SilentMistake { input, wrong_u, untested });
     }
-    silent.sort_by(|a, b| b.0.total_cmp(&a.0));
-    silent.into_iter().map(|(_, mistake)| mistake).collect()
+    silent
 }
 
 /// Those of them that no other check finds either; `finds` says whether one does in velocity steps.

@@ -2,7 +2,7 @@
 
 use super::sampling;
 use crate::data::{
-    Axis, CaskFile, ChannelFinding, During, Effect, End, Events, Finding, MOST_LOST_M_S,
+    Axis, CaskFile, ChannelFinding, During, Effect, End, Events, Finding, FlightFit, MOST_LOST_M_S,
     STANDARD_GRAVITY_M_S2, Severity, Signal,
 };
 use crate::numerics::noise::integral_uncertainty_by;
@@ -33,6 +33,7 @@ const PEAKS: f64 = 3.0;
 pub fn judge_channels(
     signals: &[Signal],
     events: &Events,
+    flight: Option<&FlightFit>,
     cask_file: &CaskFile,
     found: &[Finding],
 ) -> Vec<Finding> {
@@ -48,7 +49,7 @@ pub fn judge_channels(
     let disturbances = found.iter().filter(|f| f.effect == Effect::Disturbance);
     let disturbed: Vec<&str> = disturbances.filter_map(|f| f.channel.as_deref()).collect();
     findings.extend(sampling::judge_sampling(signals, events, &disturbed));
-    findings.extend(judge_by_themselves(signals, events, cask_file));
+    findings.extend(judge_by_themselves(signals, events, flight, cask_file));
     findings
 }
 
@@ -57,7 +58,8 @@ pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
     signal.lost_to_clipping_m_s(from_s, to_s) > MOST_LOST_M_S
 }
 
-/// One finding a channel and part of the drop: what stands at a limit before, between and after the impacts.
+/// One finding a channel, kind of limit and part of the drop: what stands at a limit before, between and after
+/// the impacts.
 fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
     let separation_s = events.separation_s().unwrap_or(f64::INFINITY);
     let slap_down_s = events.slap_down_s().unwrap_or(f64::INFINITY);
@@ -66,21 +68,34 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
         (separation_s..slap_down_s, During::Flight),
         (slap_down_s..f64::INFINITY, During::SlapDown),
     ];
-    let of_part = |(part_s, during): (Range<f64>, During)| {
-        let spans: Vec<_> =
-            signal.clipped.iter().filter(|s| part_s.contains(&signal.time_s(s.from))).collect();
+    let of_part = |(part_s, during): (Range<f64>, During), is_flank: bool| {
+        let spans = signal.clipped.iter().filter(|s| part_s.contains(&signal.time_s(s.from)));
+        let spans: Vec<_> = spans.filter(|s| signal.is_flank(s) == is_flank).collect();
         let (first, last) = (spans.first()?, spans.last()?);
         let lost_m_s = signal.lost_to_clipping_m_s(part_s.start, part_s.end);
-        let found = ChannelFinding::Clipped {
-            limit_m_s2: (signal.force_m_s2[first.from] + signal.removed_offset_m_s2).abs(),
-            samples: spans.iter().map(|s| s.to - s.from).sum(),
-            during,
-            lost_m_s,
-            takes_step: during != During::SlapDown && lost_m_s > MOST_LOST_M_S,
+        let (samples, takes_step) = (
+            spans.iter().map(|s| s.to - s.from).sum(),
+            during != During::SlapDown && lost_m_s > MOST_LOST_M_S,
+        );
+        let level_m_s2 = signal.force_m_s2[first.from];
+        let found = if is_flank {
+            let fall_m_s2 = level_m_s2 - signal.force_m_s2[first.to - 1];
+            let length_s = signal.time_s(first.to - 1) - signal.time_s(first.from);
+            ChannelFinding::Slewed {
+                slope_m_s3: (fall_m_s2 / length_s).abs(),
+                samples,
+                during,
+                lost_m_s,
+                takes_step,
+            }
+        } else {
+            let limit_m_s2 = (level_m_s2 + signal.removed_offset_m_s2).abs();
+            ChannelFinding::Clipped { limit_m_s2, samples, during, lost_m_s, takes_step }
         };
         Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
     };
-    parts.into_iter().filter_map(of_part).collect()
+    let of_kind = |is_flank| parts.clone().into_iter().filter_map(move |part| of_part(part, is_flank));
+    of_kind(false).chain(of_kind(true)).collect()
 }
 
 fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<f64>) -> Option<Finding> {
@@ -90,22 +105,36 @@ fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<
 }
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
-fn judge_by_themselves(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
+fn judge_by_themselves(
+    signals: &[Signal],
+    events: &Events,
+    flight: Option<&FlightFit>,
+    cask_file: &CaskFile,
+) -> Vec<Finding> {
     let mut findings = judge_places(signals, cask_file);
     for signal in signals {
-        findings.extend(judge_noise(signal, events, cask_file.drop.impact_velocity_m_s));
+        findings.extend(judge_noise(signal, events, flight, cask_file.drop.impact_velocity_m_s));
         findings.extend(under_way(signal, events));
     }
     findings.extend(units(signals));
     findings
 }
 
-/// What the noise before first contact makes of the velocity.
-pub fn judge_noise(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
+/// The uncertainty of the velocity that the noise before first contact causes: no more than the noise of the
+/// contact and the flight's fit, whose plateau averages it, together.
+pub fn judge_noise(
+    signal: &Signal,
+    events: &Events,
+    flight: Option<&FlightFit>,
+    impact_velocity_m_s: f64,
+) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
-    let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+    let walk_m_s = |length_s| integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+    let plateau = flight.and_then(|flight| flight.plateau(&signal.name)).zip(events.separation_s());
+    let of_fit_m_s = plateau.map(|(plateau, left_s)| plateau.u_m_s.hypot(walk_m_s(left_s - contact_s)));
+    let u_m_s = walk_m_s(length_s).min(of_fit_m_s.unwrap_or(f64::INFINITY));
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
     (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.on(&signal.name))

@@ -123,9 +123,12 @@ pub fn judge_touch(
     let u_m = quantities.angle.map_or(0.0, |angle| angle.u95.to_radians()) * cask.length_m / 2.0;
     if depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s {
         Some(DropFinding::Settles { depth_m, effect_m_s }.into())
+    } else if above_m > u_m || by_landing_m_s < interval_m_s {
+        None
+    } else if above_m > -2.0 * u_m {
+        Some(DropFinding::MayLand { above_m, u_m, effect_m_s: by_landing_m_s }.into())
     } else {
-        (above_m < u_m && by_landing_m_s > interval_m_s)
-            .then(|| DropFinding::MayLand { above_m, u_m, effect_m_s: by_landing_m_s }.into())
+        Some(DropFinding::Settles { depth_m: -above_m, effect_m_s: by_landing_m_s }.into())
     }
 }
 

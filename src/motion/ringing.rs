@@ -10,6 +10,11 @@ use std::ops::Range;
 /// to it: the fit knows nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
 
+/// Mean of ω² in a contact over ω² of the flight: 3/8 where the force is a half sine.
+const TURNING_SHARE: f64 = 0.375;
+/// ω² η is at most a quarter of a step: each round leaves a quarter of the error.
+const ROUNDS: usize = 4;
+
 /// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
 pub struct RingingRemoved {
     signal: Signal,
@@ -80,8 +85,16 @@ impl RingingRemoved {
 /// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went
 /// with their offset, rad/s: the root of the difference of both squares, negative where the cask turns more
 /// slowly than before.
-pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f64 {
-    let gained_rad_s = rotation_rad_s(signals, fit);
+///
+/// The steps of channels off the axis hold −ω² η from the contact on: L left at `left_s`   (14)
+pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64, events_s: [f64; 2]) -> f64 {
+    let [contact_s, left_s] = events_s;
+    let turned_s = (fit.from_s - left_s + TURNING_SHARE * (left_s - contact_s)).max(0.0);
+    let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
+    let offsets: Vec<(f64, f64)> = across.map(|s| (s.position_m, s.offset_m)).collect();
+    let read_rad_s = rotation_rad_s(signals, fit);
+    let by_square_s = turned_s * slope(&offsets);
+    let gained_rad_s = (0..ROUNDS).fold(read_rad_s, |w, _| read_rad_s - w * w.abs() * by_square_s);
     if before_rad_s == 0.0 {
         return gained_rad_s.abs();
     }
@@ -127,10 +140,15 @@ pub fn rotation_by<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &Fligh
     let points: Vec<(f64, f64)> = across
         .filter_map(|(name, position_m)| Some((position_m, fit.plateau(name)?.velocity_step_m_s)))
         .collect();
+    -slope(&points)
+}
+
+/// Slope of the least-squares line through points (x, y); 0 where there is none.
+fn slope(points: &[(f64, f64)]) -> f64 {
     let n = as_f64(points.len().max(1));
     let mean = points.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
     let (square, product) = points
         .iter()
         .fold((0.0, 0.0), |(s, q), p| (s + (p.0 - mean.0).powi(2), q + (p.0 - mean.0) * (p.1 - mean.1)));
-    if square > 0.0 { -product / square } else { 0.0 }
+    if square > 0.0 { product / square } else { 0.0 }
 }

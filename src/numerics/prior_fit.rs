@@ -13,6 +13,9 @@ const STEP: f64 = 0.05;
 /// A fit that leaves this χ² for each observation may have stuck where it began.
 const IMPROBABLE: f64 = 10.0;
 
+/// More unknowns are sought in as many directions as there are observations.
+const MOST_UNKNOWNS: usize = 150;
+
 /// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the
 /// model fails there.
 pub type Residuals<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
@@ -51,6 +54,9 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
     let solved_from = |unknowns| search.minimize(PriorProblem { residuals, slopes, unknowns });
     let begun = residuals(&vec![0.0; count])?;
     let observations = as_f64(begun.len());
+    if count > MOST_UNKNOWNS && begun.len() < count / 2 {
+        return in_few_directions(count, residuals, slopes);
+    }
     let (mut solved, _) = solved_from(DVector::zeros(count));
     if chi_square(&solved) > IMPROBABLE * observations {
         // Where the model jumps or ripples at the start its slope there leads nowhere; that over a standard
@@ -60,20 +66,41 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
             solved = other;
         }
     }
-    let left = residuals(solved.unknowns.as_slice())?;
-    let jacobian = slopes(solved.unknowns.as_slice())?;
-    // q̂ = (1 + JᵀJ)⁻¹ (prior + Jᵀ observation)   (31)
-    let normal = DMatrix::identity(count, count) + jacobian.tr_mul(&jacobian);
-    let covariance = normal.cholesky()?.inverse();
-    let mut response = DMatrix::zeros(count, count + left.len());
-    response.columns_mut(0, count).copy_from(&covariance);
-    response.columns_mut(count, left.len()).copy_from(&(&covariance * jacobian.transpose()));
     let chi_square = chi_square(&solved);
-    chi_square.is_finite().then(|| PriorFit {
-        unknowns: solved.unknowns.as_slice().to_vec(),
-        chi_square,
-        response,
-    })
+    ended(solved.unknowns.as_slice(), chi_square, slopes)
+}
+
+/// The same where unknowns are many: at the most probable ones q = −Jᵀ r, so that they lie in as many directions
+/// as there are observations.
+fn in_few_directions(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
+    let mut unknowns = DVector::zeros(count);
+    let mut chi_square = f64::INFINITY;
+    // J changes on the way: the second time the directions are those at the end of the first.
+    for _ in 0..2 {
+        let directions = slopes(unknowns.as_slice())?.transpose().qr().q();
+        let at = |along: &[f64]| &directions * DVector::from_column_slice(along);
+        let along = directions.tr_mul(&unknowns);
+        let solved = fit(along.len(), &|along| residuals(at(along).as_slice()), &|along| {
+            Some(slopes(at(along).as_slice())? * &directions)
+        })?;
+        unknowns = at(&solved.unknowns);
+        chi_square = solved.chi_square;
+    }
+    ended(unknowns.as_slice(), chi_square, slopes)
+}
+
+/// What each datum tells where a search ended: (1 + JᵀJ)⁻¹ (prior + Jᵀ observation), in which the inverse is
+/// 1 − Jᵀ (1 + JJᵀ)⁻¹ J   (31)
+fn ended(unknowns: &[f64], chi_square: f64, slopes: Slopes) -> Option<PriorFit> {
+    let jacobian = slopes(unknowns)?;
+    let (rows, count) = jacobian.shape();
+    let of_observations = DMatrix::identity(rows, rows) + &jacobian * jacobian.transpose();
+    let covariance =
+        DMatrix::identity(count, count) - jacobian.tr_mul(&(of_observations.cholesky()?.solve(&jacobian)));
+    let mut response = DMatrix::zeros(count, count + rows);
+    response.columns_mut(0, count).copy_from(&covariance);
+    response.columns_mut(count, rows).copy_from(&(&covariance * jacobian.transpose()));
+    chi_square.is_finite().then(|| PriorFit { unknowns: unknowns.to_vec(), chi_square, response })
 }
 
 /// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`,
@@ -161,6 +188,23 @@ mod tests {
 
     fn by_differences(count: usize, residuals: Residuals) -> Option<PriorFit> {
         fit(count, residuals, &|at| derivatives(&residuals(at)?, residuals, at, &|_| false))
+    }
+
+    #[test]
+    fn many_unknowns_are_found_in_few_directions() {
+        let weight = |i: usize, j: usize| (as_f64(i * 7 + j * 3)).sin();
+        let residuals = |q: &[f64]| {
+            let along = |j: usize| q.iter().enumerate().map(|(i, q)| weight(i, j) * q).sum::<f64>();
+            let left = (0..3).map(|j| 2.0 * along(j) + 0.1 * along(0) * along(j) - 5.0);
+            Some(left.collect::<Vec<f64>>())
+        };
+        let slopes = |at: &[f64]| derivatives(&residuals(at)?, &residuals, at, &|_| true);
+        let whole = fit(60, &residuals, &slopes).expect("a fit");
+        let few = in_few_directions(60, &residuals, &slopes).expect("a fit");
+        assert!((whole.chi_square - few.chi_square).abs() < 1e-5 * whole.chi_square, "{few:?}");
+        let apart = whole.unknowns.iter().zip(&few.unknowns).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f64::max) < 1e-3);
+        assert!((whole.response - few.response).amax() < 1e-3);
     }
 
     #[test]

@@ -78,15 +78,15 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
 pub(super) const LIMIT_EXCEEDED: &str = "LIMIT EXCEEDED";
 
 /// The decision rule by which a limit is kept or exceeded.
-const GUARD_BAND: &str = "Decision rule: guard band of the 95 % half-width (JCGM 106:2012, 8.3)";
+const GUARD_BAND: &str = "Rule: guard band of ± (JCGM 106:2012, 8.3)";
 
 const LIMITS_CAPTION: &str = "Exceeded: the whole interval lies beyond the customer's limit. Kept: all of it \
                               lies within. Undecided: it holds the limit, or the quantity is not determined. \
                               Deceleration (at the centre of gravity), force, crush, energy: the larger of \
                               both impacts'.";
 
-/// The limits that are exceeded, then those undecided, at most so many in full, then the count of those kept and the
-/// rule that decided; `None` without limits.
+/// The limits that are exceeded, then those undecided, at most so many in full, then the count of those kept
+/// and the rule that decided; `None` without limits.
 pub(super) fn limits_said(all: &[Limit], most: usize) -> Option<String> {
     let words = |limit: &Limit| {
         let bounds = [limit.least.map(|of| ("at least", of)), limit.most.map(|of| ("at most", of))];

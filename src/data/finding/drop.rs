@@ -105,10 +105,10 @@ pub enum DropFinding of Drop {
          left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, and \
          the flight leaves it out", 1e3 * depth_m);
     /// L may land as R strikes.
-    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Warning, Motion),
+    MayLand { above_m: f64, u_m: f64, effect_m_s: f64 } => (Code::SecondContact, Note, Nothing),
         ("the first end comes down again as the second end strikes: by the motion it is then {:.0} ± {:.0} \
          mm above where it left, and a landing before that changes the slap-down speed by up to \
-         {effect_m_s:.2} m/s", 1e3 * above_m, 2e3 * u_m);
+         {effect_m_s:.2} m/s, which is in its interval", 1e3 * above_m, 2e3 * u_m);
     /// The velocities step in the flight.
     Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \

@@ -91,7 +91,7 @@ pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Refusal> {
             "name one of the datasets in it; `dropcheck inspect` lists them",
         )),
         Object::NamedType => Some(Refusal::of(path, "is a type, not a dataset", NUMBERS)),
-        Object::NotFollowed(what) => Some(Refusal::new(what, OWN_DATA).at(path)),
+        Object::NotFollowed(what) => Some(Refusal::new(what, NO_LINKS).at(path)),
         Object::Broken(words) => Some(fault::of_words(words).at(path)),
     }
 }
@@ -178,7 +178,8 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Refusal> {
     Err(Refusal::new(format!("{what}, which is not read"), remedy).at(name))
 }
 
-const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack IN OUT` makes one";
+const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack -f GZIP=1 IN OUT` makes one";
+const NO_LINKS: &str = "ask for a recording that holds its own data: `h5repack --merge IN OUT` makes one";
 const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";
 
 /// How the numbers of a dataset are read; a fault where it holds none.
