@@ -197,7 +197,8 @@ impl<'a> Record<'a> {
         let rest = robust::mean_and_rms(&at_rest).0 - if fall.is_finite() { fall } else { falling };
         let u_falling = self.u_mean(&of_fall, TOUCH * self.weight_m_s2);
         let u_rest = u_falling.hypot(self.u_mean(&at_rest, robust::mean_and_rms(&of_fall).1));
-        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_rest {
+        let u_step = u_rest.hypot(self.converter_step_m_s2() / 6.0_f64.sqrt());
+        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_step {
             return None;
         }
         let start = self.crossing(step, falling + 0.5 * rest);
