@@ -25,14 +25,9 @@ impl Chance {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Evenly between the logarithms of two values.
-    pub(super) fn log_even(&mut self, low: f64, high: f64) -> f64 {
-        self.even(low.ln(), high.ln()).exp()
-    }
-
     /// Evenly between the logarithms of the ends of a range.
-    pub(super) fn log_even_in(&mut self, [low, high]: Range) -> f64 {
-        self.log_even(low, high)
+    pub(super) fn log_even(&mut self, [low, high]: Range) -> f64 {
+        self.even(low.ln(), high.ln()).exp()
     }
 
     /// True with this probability.

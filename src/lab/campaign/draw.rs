@@ -141,9 +141,9 @@ fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
 fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
     let mut build = chance.one_of(&BUILDS);
     if chance.is(0.6) {
-        let length_m = round(chance.log_even_in(envelope::LENGTH_M), 3);
-        let section_m = three_digits(length_m / chance.log_even_in(envelope::SLENDERNESS));
-        let mass_kg = length_m * section_m * section_m * chance.log_even_in(envelope::DENSITY_KG_M3);
+        let length_m = round(chance.log_even(envelope::LENGTH_M), 3);
+        let section_m = three_digits(length_m / chance.log_even(envelope::SLENDERNESS));
+        let mass_kg = length_m * section_m * section_m * chance.log_even(envelope::DENSITY_KG_M3);
         build = Build { name: DRAWN, mass_kg: three_digits(mass_kg), length_m, section_m };
     }
     let mut cask = build.cask();
@@ -164,7 +164,7 @@ fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
 fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     // L lands again where it is thrown up little and R has a long way.
     let usual = if wish.flight == BetweenImpacts::LandsAgain { 0.2 } else { 0.7 };
-    let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even(0.3, 12.0), 2) };
+    let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even([0.3, 12.0]), 2) };
     Drop::of_height(height_m, angle_deg.to_radians())
 }
 
@@ -183,26 +183,26 @@ fn contact(chance: &mut Chance) -> (Contact, bool) {
 fn impacts(chance: &mut Chance, cask: &Cask, impact_velocity_m_s: f64) -> [WantedImpact; 2] {
     // R strikes half as fast again, about.
     [1.0, 1.5].map(|faster| {
-        let restitution = chance.log_even_in(envelope::RESTITUTION);
+        let restitution = chance.log_even(envelope::RESTITUTION);
         // An elastic end of v0 and T is crushed by v0 T · 2/(π (1 + k)).
         let most_m = LARGEST_CRUSH * cask.height_m;
         let longest_s = most_m * FRAC_PI_2 * (1.0 + restitution) / (faster * impact_velocity_m_s);
         WantedImpact {
-            duration_s: longest_s.min(1e-3 * chance.log_even_in(envelope::PULSE_MS)),
+            duration_s: longest_s.min(1e-3 * chance.log_even(envelope::PULSE_MS)),
             restitution,
-            yield_share: chance.is(1.0 / 3.0).then(|| chance.log_even_in(envelope::PLATEAU)),
+            yield_share: chance.is(1.0 / 3.0).then(|| chance.log_even(envelope::PLATEAU)),
         }
     })
 }
 
 fn elastic_body(chance: &mut Chance) -> ElasticBody {
-    let first_bending_hz = chance.log_even_in(envelope::FIRST_BENDING_HZ);
-    ElasticBody { first_bending_hz, damping: chance.log_even_in(envelope::DAMPING) }
+    let first_bending_hz = chance.log_even(envelope::FIRST_BENDING_HZ);
+    ElasticBody { first_bending_hz, damping: chance.log_even(envelope::DAMPING) }
 }
 
 /// One to three bending modes of 30 to 400 Hz.
 fn modes(chance: &mut Chance) -> Vec<BendingMode> {
-    let first_hz = chance.log_even(30.0, 160.0);
+    let first_hz = chance.log_even([30.0, 160.0]);
     let strength = if chance.is(0.5) { chance.even(0.2, 1.0) } else { 1.0 };
     let most = chance.one_of(&[1, 1, 1, 2, 2, 3]);
     let mode = |(order, overtone): (u8, f64)| BendingMode {

@@ -140,7 +140,7 @@ mod tests {
             sample_rate_hz: drop.scene.channels[0].sample_rate_hz,
             scale: 1.0 + chance.within(drop.stated.tolerances.calibration),
             offset_rad_s: chance.even(-3.0, 3.0).to_radians(),
-            white_noise_rad_s: chance.log_even(0.05, 0.5).to_radians(),
+            white_noise_rad_s: chance.log_even([0.05, 0.5]).to_radians(),
         };
         let rate = Some(RateSpec { polarity: 1.0, calibration: None });
         let read = ChannelSpec::plain("W1", end, "W1", position_m);

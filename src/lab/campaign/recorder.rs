@@ -92,7 +92,7 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let more = [End::First, End::Second].into_iter().cycle().zip(3..).take(10);
     let more: Vec<_> = more.map(|(end, i)| place(&format!("A{i}"), end, Axis::Transverse, inner)).collect();
     let axial = place("X1", End::First, Axis::Axial, near);
-    let count = if chance.is(0.5) { 2 } else { as_count(chance.log_even_in(SENSORS).round()) };
+    let count = if chance.is(0.5) { 2 } else { as_count(chance.log_even(SENSORS).round()) };
     let least = if wish.third_channel { 3 } else { 2 };
     seats.extend(more.into_iter().take(count.max(least) - 2));
     seats.extend(wish.axial.unwrap_or(chance.is(0.15)).then_some(axial));
@@ -101,11 +101,11 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
 
 /// What all channels have in common: filter, sensor type, level of the noise.
 fn chain(chance: &mut Chance, rate_hz: f64) -> Chain {
-    let noise_m_s2 = chance.log_even(0.02, 0.5) * STANDARD_GRAVITY_M_S2;
+    let noise_m_s2 = chance.log_even([0.02, 0.5]) * STANDARD_GRAVITY_M_S2;
     // Power of the 1/f part.
     let pink = chance.even(0.0, 0.1);
-    let resonance_hz = rate_hz * chance.log_even(0.8, 2.0);
-    let damping = chance.log_even(0.02, 0.7);
+    let resonance_hz = rate_hz * chance.log_even([0.8, 2.0]);
+    let damping = chance.log_even([0.02, 0.7]);
     Chain {
         resonance: (chance.is(0.5) && rate_hz <= RESONANT_HZ).then_some((resonance_hz, damping)),
         anti_alias_hz: Some(rate_hz / chance.even(2.5, 4.0)),
@@ -135,24 +135,21 @@ fn mounted(case: &mut DrawnDrop, seat: SceneChannel, exact: bool) -> SceneChanne
 /// Gives every channel a converter that its peak fills to a share; half of the cask files state the full
 /// scale.
 fn converters(case: &mut DrawnDrop) {
+    /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
+    const OVERSHOOT: f64 = 0.05;
     let bits = case.chance.one_of(&[16_u8, 18, 20, 24]);
     let is_stated = case.chance.is(0.5);
     for i in 0..case.scene.channels.len() {
-        let room = case.chance.log_even(1.2, 10.0);
+        let room = case.chance.log_even([1.2, 10.0]);
         let peak_m_s2 = case.peak_m_s2(i);
-        let limit_m_s2 = room * (peak_m_s2 + beyond_m_s2(case, i, peak_m_s2));
+        // Its channel adds offset, noise, and what its filters overshoot.
+        let chain = &case.scene.channels[i].chain;
+        let noise_m_s2 = 5.0 * (chain.white_noise_m_s2 + chain.pink_noise_m_s2);
+        let beyond_m_s2 = OVERSHOOT * peak_m_s2 + chain.offset_m_s2.abs() + noise_m_s2;
+        let limit_m_s2 = room * (peak_m_s2 + beyond_m_s2);
         case.scene.channels[i].chain.full_scale_m_s2 = Some(limit_m_s2);
         case.scene.channels[i].chain.bits = Some(bits);
         case.stated.channels[i].full_scale =
             is_stated.then(|| limit_m_s2 / unit_m_s2(&case.scene.channels[i].unit));
     }
-}
-
-/// What channel `i` adds to that: offset, noise, and what its filters overshoot, m/s².
-fn beyond_m_s2(case: &DrawnDrop, i: usize, peak_m_s2: f64) -> f64 {
-    /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
-    const OVERSHOOT: f64 = 0.05;
-    let chain = &case.scene.channels[i].chain;
-    let noise_m_s2 = 5.0 * (chain.white_noise_m_s2 + chain.pink_noise_m_s2);
-    OVERSHOOT * peak_m_s2 + chain.offset_m_s2.abs() + noise_m_s2
 }

@@ -152,7 +152,7 @@ fn roll(case: &mut DrawnDrop, size: f64, is_stated: bool) {
 fn whip(case: &mut DrawnDrop, size: f64) {
     let which = case.chance.index(2);
     let amplitude_m_s2 = case.chance.sign() * size / 100.0 * case.peak_m_s2(which);
-    let wave = (amplitude_m_s2, case.chance.log_even(4.0, 60.0));
+    let wave = (amplitude_m_s2, case.chance.log_even([4.0, 60.0]));
     case.scene.channels[which].chain.whip = Some(wave);
     unlimited(case);
 }

@@ -2,7 +2,6 @@
 //! until the analysis fails.
 
 mod chain;
-mod physical;
 mod samples;
 mod stated;
 mod wish;

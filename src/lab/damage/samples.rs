@@ -147,7 +147,7 @@ fn base_strain(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f
 
 /// What heat leaves in a channel from the peak of its first impact on, which fades within 5 to 100 ms.
 fn thermal(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let (share, fades_s) = (case.chance.sign() * size / 100.0, case.chance.log_even(5e-3, 0.1));
+    let (share, fades_s) = (case.chance.sign() * size / 100.0, case.chance.log_even([5e-3, 0.1]));
     let half_way_s = case.way_s() / 2.0;
     let which = case.chance.index(2);
     let channel = &mut recording.channels[which];

@@ -1,6 +1,11 @@
-//! Words of the table to what a damage needs of the drop that it strikes.
+//! Words of the table to what a damage needs of the drop that it strikes, and a kind of drop to the scene
+//! that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
 
-use crate::data::Contact;
+use super::super::chance::Chance;
+use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
+use super::super::drawn::{LEAST_FRICTION, cask_file};
+use super::super::synth;
+use crate::data::{Axis, Cask, CaskFile, Contact};
 
 /// What happens between the two impacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -53,4 +58,90 @@ impl Wish {
             ..Self::default()
         }
     }
+    /// A sound drop as the damage needs it.
+    pub(super) fn equip(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+        if self.rest == Some(true) {
+            (scene.rest, scene.before_s) = (true, scene.fall_s() + 0.2);
+        }
+        let first = scene.channels[0].clone();
+        let beside = |name: &str, axis| SceneChannel {
+            name: name.to_owned(),
+            axis,
+            position_m: 3.0 * first.position_m,
+            ..first.clone()
+        };
+        scene.channels.extend(self.third_channel.then(|| beside("A3", Axis::Transverse)));
+        scene.channels.extend((self.axial == Some(true)).then(|| beside("A5", Axis::Axial)));
+        if scene.contact == Contact::Unknown {
+            let defaults = vec!["contact.friction".to_owned()];
+            *stated = cask_file(scene.cask.clone(), scene.drop, scene.contact, defaults);
+        }
+        self.fulfil(scene, stated, chance);
+    }
+
+    /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of
+    /// something else does nothing.
+    pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+        let Self { kind, size, .. } = *self;
+        match kind {
+            "turning" | "turning_unstated" => {
+                let more_rad_s = chance.sign() * size.to_radians();
+                scene.drop = scene.drop.turned(&scene.cask, more_rad_s);
+                if kind == "turning" {
+                    stated.drop = stated.drop.turned(&stated.cask, more_rad_s);
+                }
+            }
+            "swinging" | "swinging_unstated" => {
+                let more_m_s = chance.sign() * size;
+                scene.drop.horizontal_velocity_m_s += more_m_s;
+                if kind == "swinging" {
+                    stated.drop.horizontal_velocity_m_s = more_m_s;
+                }
+            }
+            "guided" | "guided_seen" | "guided_rest" => {
+                scene.extras.guided = size / 100.0;
+                scene.drop = slowed(scene.drop, scene.extras.guided);
+            }
+            "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
+            "lock_up" => lock_up(size, scene),
+            "footprint" | "footprint_wide" => scene.first_end.footprint = size,
+            "friction_falls" | "rough_falls" => {
+                scene.contact = Contact::Coulomb(size);
+                let fast = (size * chance.even(0.3, 0.8)).max(LEAST_FRICTION);
+                scene.extras.falling_friction = Some((fast, chance.log_even([0.3, 3.0])));
+            }
+            "friction_changes" | "rough_changes" => {
+                scene.contact = Contact::Coulomb(size);
+                scene.extras.returning_friction = Some((size * chance.even(0.3, 1.5)).max(LEAST_FRICTION));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A body of `size` percent of the cask's mass, which rattles at both its ends with a play of 2 to 60 mm.
+fn contents(size: f64, cask: &Cask, chance: &mut Chance) -> Vec<LooseMass> {
+    let play_m = chance.log_even([2e-3, 60e-3]);
+    let pulse_s = chance.even(1e-3, 3e-3);
+    let loose = |(nearest, farthest)| LooseMass {
+        mass_kg: size / 200.0 * cask.mass_kg,
+        position_m: chance.even(nearest, farthest) * cask.length_m,
+        gap_m: chance.even(0.0, play_m),
+        play_m,
+        pulse_s,
+        damping_s_m: chance.even(0.05, 0.4),
+    };
+    [(0.15, 0.4), (0.6, 0.85)].map(loose).into()
+}
+
+/// A limiter that yields at half of its elastic peak and locks up at `size` percent of the crush that it
+/// would then have, four times as stiff.
+fn lock_up(size: f64, scene: &mut Scene) {
+    scene.first_end.yield_n = None;
+    let peak_n = synth::simulate(scene).steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max);
+    let loading_n_m = scene.first_end.loading_n_m;
+    scene.first_end.yield_n = Some(0.5 * peak_n);
+    // The work F²/2 K of the elastic end is that of half the force over (2 + 1/2) F/2 K.
+    let crush_m = 1.25 * peak_n / loading_n_m;
+    scene.first_end.lock_up = Some((size / 100.0 * crush_m, 4.0 * loading_n_m));
 }
