@@ -5,15 +5,14 @@
 
 mod analog;
 mod disturbance;
-mod recorder;
 
 use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2, rate_unit_rad_s};
 use crate::lab::data::{
     Chain, MotionStep, RateSensor, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
 };
-use crate::numerics::{as_f64, single};
+use crate::numerics::{as_count, single};
 
-/// What a perfect sensor at a channel's place and axis reads at given times, m/s².
+/// What a perfect sensor at a channel's place and axis reads at given times, m/s²; one of turning, rad/s.
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
 
 /// The drop as the chain sees it.
@@ -27,18 +26,19 @@ struct SensedDrop<'a> {
 
 /// What the recorder of `scene` writes of `motion`. The same scene gives the same bits.
 pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
-    let force =
-        |channel: &SceneChannel, times_s: &[f64]| super::specific_force_m_s2(scene, motion, channel, times_s);
+    let force = |seat: &SceneChannel, times_s: &[f64]| match rate_unit_rad_s(&seat.unit) {
+        Some(_) => super::rotation_rad_s(scene, motion, seat.position_m, times_s),
+        None => super::specific_force_m_s2(scene, motion, seat, times_s),
+    };
     let last_s = motion.steps.last().map_or(0.0, |step| step.time_s);
     let drive = SensedDrop {
         force_m_s2: &force,
         contacts_s: contacts_s(motion),
         end_s: motion.truth.slap_t.map_or(last_s, |slap_s| slap_s + scene.after_s),
     };
+    let seats = seated(scene).into_iter().chain(scene.extras.rates.iter().map(turning));
     let mut channels: Vec<SyntheticChannel> =
-        seated(scene).iter().enumerate().map(|(i, seat)| channel(scene, seat, i, &drive)).collect();
-    let rates = scene.extras.rates.iter().zip(channels.len()..);
-    channels.extend(rates.map(|(sensor, index)| rate(scene, motion, drive.end_s, sensor, index)));
+        seats.enumerate().map(|(i, seat)| channel(scene, &seat, i, &drive)).collect();
     let earliest_s = channels.iter().map(|c| c.start_s).reduce(f64::min).unwrap_or(0.0);
     for channel in &mut channels {
         channel.start_s -= earliest_s;
@@ -83,18 +83,19 @@ fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
 
 fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop) -> SyntheticChannel {
     let rate_hz = seat.sample_rate_hz * (1.0 + scene.clock_error);
-    let count = recorder::count((scene.before_s + drive.end_s) * rate_hz);
+    let count = count((scene.before_s + drive.end_s) * rate_hz);
     let mut samples_m_s2 = analog::sampled(scene, seat, drive, rate_hz, count);
     let times = disturbance::SampleTimes { from_s: -scene.before_s, rate_hz };
     disturbance::add(&mut samples_m_s2, (scene.seed, index), &seat.chain, &times, &drive.contacts_s);
     let sign = if seat.chain.swapped_polarity { -1.0 } else { 1.0 };
     for sample in &mut samples_m_s2 {
-        *sample = recorder::converted(*sample * seat.chain.scale * sign, &seat.chain);
+        *sample = converted(*sample * seat.chain.scale * sign, &seat.chain);
     }
-    recorder::hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz, None);
-    recorder::hold(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz, Some(f64::NAN));
-    let unit_m_s2 = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
-    let samples = samples_m_s2.iter().map(|x| single(x / unit_m_s2)).collect();
+    hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz, None);
+    hold(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz, Some(f64::NAN));
+    let of_force = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
+    let unit = rate_unit_rad_s(&seat.unit).unwrap_or(of_force);
+    let samples = samples_m_s2.iter().map(|x| single(x / unit)).collect();
     SyntheticChannel {
         name: seat.name.clone(),
         unit: seat.unit.clone(),
@@ -104,33 +105,51 @@ fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop)
     }
 }
 
-/// What the recorder writes of an angular-rate sensor, until so long after first contact.
-fn rate(
-    scene: &Scene,
-    motion: &SimulatedMotion,
-    end_s: f64,
-    sensor: &RateSensor,
-    index: usize,
-) -> SyntheticChannel {
-    let rate_hz = sensor.sample_rate_hz * (1.0 + scene.clock_error);
-    let count = recorder::count((scene.before_s + end_s) * rate_hz);
-    let times_s: Vec<f64> = (0..count).map(|i| as_f64(i) / rate_hz - scene.before_s).collect();
-    let chain = Chain {
-        offset_m_s2: sensor.offset_rad_s,
-        white_noise_m_s2: sensor.white_noise_rad_s,
-        ..Chain::perfect()
-    };
-    let mut samples = super::rotation_rad_s(scene, motion, sensor.position_m, &times_s);
-    let times = disturbance::SampleTimes { from_s: -scene.before_s, rate_hz };
-    disturbance::add(&mut samples, (scene.seed, index), &chain, &times, &[]);
-    let unit_rad_s = rate_unit_rad_s(&sensor.unit).unwrap_or(1.0);
-    let written = |sample: f64| single(sample * sensor.scale / unit_rad_s);
-    SyntheticChannel {
+/// The seat of an angular-rate sensor: its chain, in rad/s for m/s².
+fn turning(sensor: &RateSensor) -> SceneChannel {
+    SceneChannel {
         name: sensor.name.clone(),
+        position_m: sensor.position_m,
         unit: sensor.unit.clone(),
-        start_s: 0.0,
         sample_rate_hz: sensor.sample_rate_hz,
-        samples: samples.into_iter().map(written).collect(),
+        chain: Chain {
+            scale: sensor.scale,
+            offset_m_s2: sensor.offset_rad_s,
+            white_noise_m_s2: sensor.white_noise_rad_s,
+            ..Chain::default()
+        },
+        ..SceneChannel::default()
+    }
+}
+
+/// A count from a product of time and rate; at least 1.
+fn count(number: f64) -> usize {
+    as_count(number.round()).max(1)
+}
+
+/// The first index that is not before `number`.
+fn ceiling(number: f64) -> usize {
+    // A time that was meant to fall on a sample does so in spite of rounding.
+    as_count((number - 1e-6).ceil())
+}
+
+/// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step
+/// below it.
+fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
+    let Some(full_scale_m_s2) = chain.full_scale_m_s2 else { return signal_m_s2 };
+    let Some(bits) = chain.bits else { return signal_m_s2.clamp(-full_scale_m_s2, full_scale_m_s2) };
+    let codes = 2_f64.powi(i32::from(bits) - 1);
+    let step_m_s2 = full_scale_m_s2 / codes;
+    (signal_m_s2 / step_m_s2).round().clamp(-codes, codes - 1.0) * step_m_s2
+}
+
+/// Within each span, s after the first sample, the last value before it stays, or all is `lost`.
+fn hold(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64, lost: Option<f64>) {
+    for &(from_s, to_s) in spans_s {
+        let to = ceiling(to_s * rate_hz).min(samples.len());
+        let from = ceiling(from_s * rate_hz).min(to);
+        let held = from.checked_sub(1).map_or(0.0, |before| samples[before]);
+        samples[from..to].fill(lost.unwrap_or(held));
     }
 }
 

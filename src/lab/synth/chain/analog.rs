@@ -35,7 +35,7 @@ pub(super) fn sampled(
     let across = if seat.axis == Axis::Transverse { Axis::Axial } else { Axis::Transverse };
     let mounted = Mounted { seat, other: SceneChannel { axis: across, ..seat.clone() }, drive };
     let mut filters = Filters::at_start(scene, &mounted, fine_hz);
-    let stride = super::recorder::count(factor);
+    let stride = super::count(factor);
     let points = (count - 1) * stride + 1;
     let mut samples = Vec::with_capacity(count);
     let (mut signal, mut still_at) = (0.0, None);
@@ -186,7 +186,7 @@ mod tests {
     /// Amplitude of the filter's answer to a sine, from the last of 60 periods.
     #[allow(clippy::cast_precision_loss, reason = "small counts")]
     fn gain(mut next: impl FnMut(f64) -> f64, frequency_hz: f64, rate_hz: f64) -> f64 {
-        let period = super::super::recorder::count(rate_hz / frequency_hz);
+        let period = super::super::count(rate_hz / frequency_hz);
         let wave = |i: usize| (TAU * i as f64 / period as f64).sin();
         let out: Vec<f64> = (0..60 * period).map(|i| next(wave(i))).collect();
         out[59 * period..].iter().fold(0.0_f64, |peak, x| peak.max(x.abs()))

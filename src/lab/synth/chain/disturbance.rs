@@ -106,8 +106,7 @@ fn cable(
     for &(from_s, to_s) in contacts_s.iter().filter(|(from_s, to_s)| to_s > from_s) {
         let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(chance.even(0.0, 1.0));
         let phase = chance.even(0.0, TAU);
-        let [first, last] =
-            [from_s, to_s].map(|t| super::recorder::ceiling((t - times.from_s) * times.rate_hz));
+        let [first, last] = [from_s, to_s].map(|t| super::ceiling((t - times.from_s) * times.rate_hz));
         let last = last.min(samples_m_s2.len());
         for (i, sample) in samples_m_s2.iter_mut().enumerate().take(last).skip(first) {
             let since_s = times.at_s(i) - from_s;
