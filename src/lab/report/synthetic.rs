@@ -1,10 +1,8 @@
-//! A synthetic recording to the bytes of its three files: the recording, the cask file, the truth.
+//! A synthetic recording to the bytes of its three files, the recording, the cask file, the truth: each
+//! channel in a place that the cask file names.
 
 mod cask;
 mod mcap;
-mod place;
-
-pub use place::SyntheticFormat;
 
 use crate::lab::data::{Scene, SceneFile, SyntheticRecording, Truth};
 use crate::numerics::as_f64;
@@ -12,8 +10,30 @@ use crate::report::curves_h5::{filled, text, through_a_file};
 use crate::report::records::records;
 use crate::report::{ReportError, json};
 use miette::miette;
-use place::SyntheticPlace;
 use serde::Serialize;
+
+/// How a synthetic recording is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SyntheticFormat {
+    /// MCAP with blocks in JSON.
+    McapJson,
+    /// MCAP with blocks in protobuf.
+    McapProtobuf,
+    /// HDF5, a dataset a channel.
+    Hdf5,
+    /// CSV, a column a channel.
+    Csv,
+}
+
+/// Where a channel stands.
+struct SyntheticPlace {
+    /// Name within the format: of the topic or dataset below `/daq/`, or of the column.
+    name: String,
+    /// The source as the cask file writes it.
+    source: String,
+    /// Times of its own, as the cask file writes them, where the format does not tell.
+    time: Option<String>,
+}
 
 /// The files by name: `recording_name`, then the cask file and the truth beside it.
 ///
@@ -26,7 +46,7 @@ pub fn synthetic_files(
     format: SyntheticFormat,
 ) -> miette::Result<Vec<(String, Vec<u8>)>> {
     let recording = &recording.mounted(&scene_file.stated);
-    let places = place::places(recording, format);
+    let places = places(recording, format);
     let bytes = match format {
         SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
         SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, false)?,
@@ -126,6 +146,44 @@ pub fn synthetic_names(recording_name: &str) -> [String; 3] {
     [recording_name.to_owned(), format!("{stem}.toml"), format!("{stem}.truth.json")]
 }
 
+/// A place for every channel.
+fn places(recording: &SyntheticRecording, format: SyntheticFormat) -> Vec<SyntheticPlace> {
+    let mut taken: Vec<String> = vec!["time".into(), "time_s".into()];
+    let mut places = Vec::new();
+    for channel in &recording.channels {
+        let name = unused(&channel.name, &taken);
+        taken.push(name.to_lowercase());
+        let has_own_times = channel.start_s > 0.0;
+        let has_gaps = channel.samples.iter().any(|x| x.is_nan());
+        let (source, time) = match format {
+            SyntheticFormat::McapJson | SyntheticFormat::McapProtobuf => {
+                (format!("/daq/{name}.samples"), None)
+            }
+            SyntheticFormat::Hdf5 => (format!("/daq/{name}"), has_gaps.then(|| format!("/time_s/{name}"))),
+            SyntheticFormat::Csv => {
+                let time = if has_own_times { format!("time_{name}_s") } else { "time_s".into() };
+                (name.clone(), Some(time))
+            }
+        };
+        places.push(SyntheticPlace { name, source, time });
+    }
+    places
+}
+
+/// The name with only letters, digits, `_` and `-`, in no case like another's.
+fn unused(name: &str, taken: &[String]) -> String {
+    let mut name: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
+    // A bare number would count columns, and a spreadsheet would compute with a minus in front.
+    if name.bytes().all(|b| b.is_ascii_digit()) || name.starts_with('-') {
+        name.insert(0, 'A');
+    }
+    while taken.contains(&name.to_lowercase()) {
+        name.push('_');
+    }
+    name
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,5 +191,13 @@ mod tests {
     #[test]
     fn the_three_files_share_a_stem() {
         assert_eq!(synthetic_names("a.b.mcap"), ["a.b.mcap", "a.b.toml", "a.b.truth.json"]);
+    }
+
+    #[test]
+    fn no_two_channels_share_a_place() {
+        assert_eq!(unused("left.side", &[]), "left_side");
+        assert_eq!(unused("Left side", &["left_side".into()]), "Left_side_");
+        assert_eq!(unused("12", &[]), "A12");
+        assert_eq!(unused("time_s", &["time_s".into()]), "time_s_");
     }
 }

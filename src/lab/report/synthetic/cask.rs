@@ -1,7 +1,7 @@
 //! The scene as stated to a cask file that `analyze` reads with the recording.
 
-use super::place::SyntheticPlace;
-use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, OtherSpec, Unit};
+use super::SyntheticPlace;
+use crate::data::{Axis, CaskFile, ChannelSpec, Contact, Coupling, Unit};
 use crate::lab::chance::round;
 use std::fmt::{Display, Write};
 
@@ -10,7 +10,7 @@ fn line(text: &mut String, key: &str, value: impl Display) {
     let _ = writeln!(text, "{key} = {value}");
 }
 
-fn given(text: &mut String, key: &str, value: Option<f64>) {
+fn given(text: &mut String, key: &str, value: Option<impl Display>) {
     if let Some(value) = value {
         line(text, key, value);
     }
@@ -51,8 +51,10 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     for (spec, place) in file.channels.iter().zip(places) {
         channel(text, spec, place);
     }
+    // Angular-rate sensors.
     for (spec, place) in file.others.iter().zip(places.iter().skip(file.channels.len())) {
-        rate(text, spec, place);
+        head(text, &spec.read, place, "rate", spec.unit.as_deref().unwrap_or_default());
+        given(text, "time", place.time.as_deref().map(quoted));
     }
     whole
 }
@@ -68,14 +70,6 @@ fn head(text: &mut String, read: &ChannelSpec, place: &SyntheticPlace, axis: &st
     }
 }
 
-/// An angular-rate sensor.
-fn rate(text: &mut String, spec: &OtherSpec, place: &SyntheticPlace) {
-    head(text, &spec.read, place, "rate", spec.unit.as_deref().unwrap_or_default());
-    if let Some(time) = &place.time {
-        line(text, "time", quoted(time));
-    }
-}
-
 fn channel(text: &mut String, spec: &ChannelSpec, place: &SyntheticPlace) {
     let axis = if spec.axis == Axis::Transverse { "transverse" } else { "axial" };
     let unit = if spec.unit == Some(Unit::MetrePerSecondSquared) { "m/s^2" } else { "g" };
@@ -83,13 +77,9 @@ fn channel(text: &mut String, spec: &ChannelSpec, place: &SyntheticPlace) {
     line(text, "position_m", spec.position_m);
     given(text, "offset_m", Some(spec.offset_m).filter(|offset_m| offset_m.abs() > 0.0));
     given(text, "lateral_m", Some(spec.lateral_m).filter(|lateral_m| lateral_m.abs() > 0.0));
-    if spec.polarity < 0.0 {
-        line(text, "polarity", -1);
-    }
+    given(text, "polarity", (spec.polarity < 0.0).then_some(-1));
     given(text, "full_scale", spec.full_scale);
-    if let Some(time) = &place.time {
-        line(text, "time", quoted(time));
-    }
+    given(text, "time", place.time.as_deref().map(quoted));
     if let Coupling::Ac { time_constant_s } = spec.coupling {
         line(text, "coupling", quoted("ac"));
         line(text, "time_constant_s", time_constant_s);

@@ -1,7 +1,7 @@
 //! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with
 //! their schema.
 
-use super::place::SyntheticPlace;
+use super::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use crate::numerics::{as_count, as_f64, nanoseconds};
 use crate::report::ReportError;
