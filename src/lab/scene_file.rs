@@ -3,7 +3,6 @@
 
 mod channel;
 mod keys;
-mod values;
 
 use crate::data::{Cask, CaskFile, Drop};
 use crate::ingest::IngestError;
@@ -14,8 +13,9 @@ use crate::lab::data::{
 };
 use crate::lab::drawn;
 use crate::lab::synth;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
 use std::path::Path;
-use values::{contradicts, flag, needs, value, whole};
 
 /// The scene file.
 const SCENE_FILE: Kind = Kind { name: "the scene file", root: &keys::ROOT, tables: &keys::TABLES };
@@ -209,6 +209,64 @@ fn affordable(root: &Section, tables: &[Section], scene: &Scene) -> Result<(), C
     let message = format!("sample_rate_hz over {long_s} s gives more than {MOST_SAMPLES:.0} samples");
     let mend = "shorten before_s and after_s, or lower sample_rate_hz";
     Err(table.refuse("sample_rate_hz", message, mend))
+}
+
+/// A number, the key's default where it is left out.
+fn value(table: &Section, key: &str) -> Result<f64, CaskFileError> {
+    let default = || table.row(key).and_then(|row| row.default.parse().ok()).unwrap_or(0.0);
+    Ok(table.given(key)?.unwrap_or_else(default))
+}
+
+/// `true` or `false`; false where the key is missing.
+fn flag(table: &Section, key: &str) -> Result<bool, CaskFileError> {
+    Ok(table.flag(key)?.unwrap_or(false))
+}
+
+/// A whole number of 0 or more, within the key's range.
+fn whole<T: std::str::FromStr>(table: &Section, key: &str) -> Result<Option<T>, CaskFileError> {
+    if table.given(key)?.is_none() {
+        return Ok(None);
+    }
+    let written = table.value(key).and_then(|value| value.get_ref().as_integer());
+    let whole = written.and_then(|integer| integer.as_str().replace('_', "").parse().ok());
+    whole.map(Some).ok_or_else(|| {
+        let mend = format!("write it without point, sign and quotes: {key} = 1");
+        table.refuse(key, format!("{key} is no whole number of 0 or more"), &mend)
+    })
+}
+
+/// A list of `[from, to]`, in s after the first sample.
+fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, CaskFileError> {
+    let Some(value) = table.value(key) else { return Ok(Vec::new()) };
+    let spans = Vec::<Vec<f64>>::deserialize(value.clone().into_deserializer()).ok();
+    let span = |span: Vec<f64>| match span[..] {
+        [from_s, to_s] if 0.0 <= from_s && from_s < to_s && to_s.is_finite() => Some((from_s, to_s)),
+        _ => None,
+    };
+    let spans: Option<Vec<_>> = spans.and_then(|spans| spans.into_iter().map(span).collect());
+    spans.ok_or_else(|| {
+        let mend = format!(
+            "write {key} = [[0.12, 0.14]]: from and to in s after the first sample, the later behind"
+        );
+        table.refuse(key, format!("{key} is no list of spans"), &mend)
+    })
+}
+
+/// Refuses the first of each pair of keys where the second is left out.
+fn needs(table: &Section, pairs: &[(&'static str, &str)]) -> Result<(), CaskFileError> {
+    for (key, other) in pairs {
+        if table.value(key).is_some() && table.value(other).is_none() {
+            let mend = format!("add {other}, or delete {key}");
+            return Err(contradicts(table, key, &format!("no meaning without {other}"), &mend));
+        }
+    }
+    Ok(())
+}
+
+/// The refusal of a key that the other keys of its table leave no meaning.
+fn contradicts(table: &Section, key: &str, expected: &str, mend: &str) -> CaskFileError {
+    let message = format!("{key} contradicts its table: {expected}");
+    table.refuse(key, message, mend)
 }
 
 #[cfg(test)]

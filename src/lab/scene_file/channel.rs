@@ -1,7 +1,7 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state
 //! it.
 
-use super::values::{flag, needs, spans_s, value, whole};
+use super::{flag, needs, spans_s, value, whole};
 use crate::data::{
     Axis, Cask, ChannelSpec, Coupling, End, OtherSpec, RateSpec, STANDARD_GRAVITY_M_S2, Source, Unit,
 };
