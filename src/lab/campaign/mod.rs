@@ -4,12 +4,11 @@
 mod draw;
 mod recorder;
 mod score;
-mod statistics;
 mod tables;
 mod tally;
 
-pub use statistics::outcome;
-pub(super) use statistics::{half_widths_between, half_widths_off, is_missed};
+pub use score::outcome;
+pub(super) use score::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
 pub(super) use tables::rungs;
 pub(super) use tally::BODIES;
@@ -158,7 +157,7 @@ mod tests {
         let request =
             CampaignRequest { scenes: 12, seed: 3, kinds: vec!["turning_unstated".into()], exact: false };
         let off = |row: &CampaignRow| {
-            let off = |name| row.quantities.get(name).and_then(statistics::half_widths_off).map(f64::abs);
+            let off = |name| row.quantities.get(name).and_then(half_widths_off).map(f64::abs);
             off("k").zip(off("speed")).map(|(k, speed)| k.max(speed))
         };
         // Of 100 such drops 2 half-widths were passed by none, of 12 without the sensor by 2.

@@ -1,6 +1,6 @@
-//! An analysis beside its truth to a row.
+//! An analysis beside its truth to a row, and a row to what became of its scene.
 
-use crate::data::{Analysis, Estimate, Severity};
+use crate::data::{Analysis, Estimate, Severity, Verdict};
 use crate::lab::chance::round;
 use crate::lab::data::{
     CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
@@ -8,6 +8,10 @@ use crate::lab::data::{
 use crate::lab::drawn::DrawnDrop;
 use crate::report::text::json_word;
 use std::collections::BTreeMap;
+
+/// An error above this many half-widths on a result that passed is a miss: the interval ends half its width,
+/// which is one half-width, short of the truth.
+const MISSED_BY: f64 = 2.0;
 
 /// A scene, drawn, struck by its damage and recorded.
 pub(super) struct RecordedScene {
@@ -89,4 +93,75 @@ fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
     names.sort();
     names.dedup();
     names
+}
+
+/// What became of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SceneOutcome {
+    /// Passed, and right.
+    Right,
+    /// Not passed, but its numbers hold.
+    Covered,
+    /// Not passed, and without numbers or with wrong ones.
+    Caught,
+    /// Passed, and wrong.
+    Missed,
+}
+
+impl SceneOutcome {
+    /// From the best to the worst.
+    pub(super) const ALL: [Self; 4] = [Self::Right, Self::Covered, Self::Caught, Self::Missed];
+
+    /// "right", "covered" and so on.
+    pub fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+}
+
+/// What became of the scene of this row, by speed and k.
+pub fn outcome(row: &CampaignRow) -> SceneOutcome {
+    let off = ["speed", "k"].map(|name| row.quantities.get(name).and_then(half_widths_off));
+    let worst = off.iter().flatten().fold(0.0_f64, |worst, off| worst.max(*off));
+    let has_both = off.iter().all(Option::is_some);
+    match row.verdict {
+        Some(Verdict::Pass) if worst > MISSED_BY => SceneOutcome::Missed,
+        Some(Verdict::Pass) if has_both => SceneOutcome::Right,
+        Some(_) if has_both && worst <= 1.0 => SceneOutcome::Covered,
+        _ => SceneOutcome::Caught,
+    }
+}
+
+/// Whether the row passed and is wrong.
+pub(in crate::lab) fn is_missed(row: &CampaignRow) -> bool {
+    outcome(row) == SceneOutcome::Missed
+}
+
+/// Distance from the truth in half-widths, where both are known.
+pub(in crate::lab) fn half_widths_off(scored: &Scored) -> Option<f64> {
+    let (stated, truth) = scored.stated.zip(scored.truth)?;
+    Some(half_widths_between(stated, truth))
+}
+
+/// The same of a statement.
+pub(in crate::lab) fn half_widths_between(stated: Stated, truth: f64) -> f64 {
+    // No number at all is as far off as can be.
+    let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
+    if off.is_nan() { f64::INFINITY } else { off }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_statement_is_held_against_its_own_half_width() {
+        let off = |value, u95| {
+            let stated = Some(Stated { value, u95 });
+            half_widths_off(&Scored { stated, truth: Some(0.5) }).expect("both known")
+        };
+        assert!((off(0.53, 0.02) - 1.5).abs() < 1e-9);
+        assert!(off(f64::NAN, 0.02).is_infinite());
+        assert!(off(0.5, 0.0).abs() < 1e-15);
+        assert!(half_widths_off(&Scored { stated: None, truth: Some(0.5) }).is_none());
+    }
 }

@@ -1,8 +1,8 @@
 //! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
 //! often it says so.
 
-use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread};
-use super::tally::{ClassTable, Tally};
+use super::score::SceneOutcome;
+use super::tally::{ClassTable, QUANTITIES, SceneGroup, Spread, Tally};
 use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{Campaign, CampaignRow, Stated};
 use crate::numerics::as_f64;
@@ -132,19 +132,19 @@ fn taken_rungs(tally: &Tally) -> ChapterPart {
 
 /// What every rung says of the drops that take one.
 fn other_rungs(tally: &Tally) -> ChapterPart {
-    let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.k.count() > 0).collect();
+    let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.spread("k").count() > 0).collect();
     ReportTable::of(&pairs)
         .chosen(|((taken, rung), _)| taken == rung)
         .text("taken", |((taken, _), _)| json_word(taken))
         .text("rung", |((_, rung), _)| json_word(rung))
-        .number("drops", |(_, said)| said.k.count().to_string())
-        .number("speed: 95th, %", |(_, said)| said.speed.error(0.95, 2))
-        .number("half-width, %", |(_, said)| said.speed.half_width(2))
-        .number("held", |(_, said)| said.speed.held())
-        .number("k: 95th", |(_, said)| said.k.error(0.95, 4))
-        .number("held", |(_, said)| said.k.held())
+        .number("drops", |(_, said)| said.spread("k").count().to_string())
+        .number("speed: 95th, %", |(_, said)| said.spread("speed").error(0.95, 2))
+        .number("half-width, %", |(_, said)| said.spread("speed").half_width(2))
+        .number("held", |(_, said)| said.spread("speed").held())
+        .number("k: 95th", |(_, said)| said.spread("k").error(0.95, 4))
+        .number("held", |(_, said)| said.spread("k").held())
         .number("changes the speed by, half-widths: 95th", |((taken, rung), said)| {
-            if taken == rung { "–".to_owned() } else { said.changes.error(0.95, 2) }
+            if taken == rung { "–".to_owned() } else { said.spread("change").error(0.95, 2) }
         })
         .into()
 }
