@@ -69,7 +69,6 @@ fn of_points(family: &str, class: &str, points: &[TrialPoint]) -> Option<f64> {
 fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     let rows = &campaign.rows;
     let has_passed = |row: &&CampaignRow| row.verdict == Some(Verdict::Pass);
-    let passed = || rows.iter().filter(has_passed);
     if let Some((what, body)) = measured.split_once(" of ") {
         let is_counted =
             |row: &CampaignRow| if what == "pass" { has_passed(&row) } else { !row.has_numbers() };
@@ -77,17 +76,13 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
         let counts: Vec<f64> = of_body.map(|row| f64::from(u8::from(is_counted(row)))).collect();
         return (Some(100.0 * mean_and_rms(&counts).0), String::new());
     }
-    match measured {
-        "passed and wrong" => {
-            listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.scene.to_string()))
-        }
-        quantity => {
-            let scored = passed().filter_map(|row| row.quantities.get(quantity));
-            let mut off: Vec<f64> = scored.filter_map(half_widths_off).collect();
-            off.sort_by(f64::total_cmp);
-            (Some(quantile(&off, 0.95)).filter(|off| off.is_finite()), String::new())
-        }
+    if measured == "passed and wrong" {
+        return listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.scene.to_string()));
     }
+    let scored = rows.iter().filter(has_passed).filter_map(|row| row.quantities.get(measured));
+    let mut off: Vec<f64> = scored.filter_map(half_widths_off).collect();
+    off.sort_by(f64::total_cmp);
+    (Some(quantile(&off, 0.95)).filter(|off| off.is_finite()), String::new())
 }
 
 /// By how many half-widths a drop is silently off that counts: one beyond its interval may be of the one in
@@ -100,23 +95,17 @@ fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
     let is_wrong = |drop: &TrialDrop| {
         drop.fate == TrialFate::Silent && drop.half_widths_off.is_some_and(|off| off > SILENT_BY)
     };
-    let is_silent = |map: &&TrialMap| {
-        map.instead.is_empty() && map.sizes.iter().flat_map(|size| &size.drops).any(is_wrong)
+    let is_alarm = |drop: &TrialDrop, body: &str| {
+        BODIES[usize::from(drop.is_elastic)] == body && drop.fate != TrialFate::Inside
     };
-    if let Some(body) = measured.strip_prefix("false alarms of ") {
-        let is_alarm =
-            |drop: &TrialDrop| BODIES[usize::from(drop.is_elastic)] == body && drop.fate != TrialFate::Inside;
-        let grow = maps.iter().filter(|map| map.sizes.len() > 1);
-        return listed(
-            grow.filter(|map| map.sizes[0].drops.iter().any(is_alarm)).map(|map| map.name.clone()),
-        );
-    }
-    match measured {
-        "silent though a record can tell" => {
-            listed(maps.iter().filter(is_silent).map(|map| map.name.clone()))
+    let is_counted = |map: &&TrialMap| match (measured.strip_prefix("false alarms of "), measured) {
+        (Some(body), _) => map.sizes.len() > 1 && map.sizes[0].drops.iter().any(|drop| is_alarm(drop, body)),
+        (None, "silent though a record can tell") => {
+            map.instead.is_empty() && map.sizes.iter().flat_map(|size| &size.drops).any(is_wrong)
         }
-        _ => listed(maps.iter().filter(|map| map.unnamed() > 0).map(|map| map.name.clone())),
-    }
+        _ => map.unnamed() > 0,
+    };
+    listed(maps.iter().filter(is_counted).map(|map| map.name.clone()))
 }
 
 fn of_own_recordings() -> Found {

@@ -45,26 +45,22 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
 fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
     let (drop, recording) = kind.grown(plan, size);
     let truth = &drop.motion.truth;
-    let Some(result) = drop.analyzed(&recording).map(|analysis| analysis.result) else {
-        return TrialDrop {
-            fate: TrialFate::Refused,
-            half_widths_off: None,
-            is_named: kind.told_by.is_empty(),
-            is_elastic: plan.elastic.is_some(),
-        };
-    };
+    // None where the recording is refused.
+    let result = drop.analyzed(&recording).map(|analysis| analysis.result);
+    let [speed, k] = result.as_ref().map_or([None; 2], |result| [result.slap_down.speed, result.k]);
     // Infinitely far where a number is given for what did not happen.
-    let off = [(result.slap_down.speed, truth.speed), (result.k, truth.k)]
+    let off = [(speed, truth.speed), (k, truth.k)]
         .map(|(stated, truth)| Some(half_widths_between(stated?.into(), truth.unwrap_or(f64::INFINITY))));
     let worst = off.iter().flatten().copied().reduce(f64::max);
-    let fate = match (off, result.verdict) {
+    let fate = match (off, result.as_ref().map(|result| result.verdict)) {
         ([Some(speed), Some(k)], _) if speed.max(k) <= 1.0 => TrialFate::Inside,
-        (_, Verdict::Pass) if worst.is_some_and(|worst| worst > 1.0) => TrialFate::Silent,
+        (_, Some(Verdict::Pass)) if worst.is_some_and(|worst| worst > 1.0) => TrialFate::Silent,
         ([Some(_), Some(_)], _) => TrialFate::Warned,
         _ => TrialFate::Refused,
     };
+    let mut findings = result.iter().flat_map(|result| &result.quality);
     let is_named = kind.told_by.is_empty()
-        || result.quality.iter().any(|finding| kind.told_by.contains(&&json_word(finding.code)[..]));
+        || findings.any(|finding| kind.told_by.contains(&&json_word(finding.code)[..]));
     TrialDrop { fate, half_widths_off: worst, is_named, is_elastic: drop.scene.elastic.is_some() }
 }
 

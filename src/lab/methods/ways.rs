@@ -156,8 +156,8 @@ pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
     let drops: Vec<FiledDrop> =
         CLASSES.iter().flat_map(|class| filed(class, request, folder.path())).collect();
-    let mut worked = vec![Worked::named(READING, false)];
-    worked.extend(WORKINGS.iter().map(|(name, _)| Worked::named(name, *name == TAKEN)));
+    let mut worked = vec![Worked::named(READING)];
+    worked.extend(WORKINGS.iter().map(|(name, _)| Worked::named(name)));
     for drop in &drops {
         // Each way has its turn on a file, after one that nobody times.
         black_box(read(drop));
@@ -209,7 +209,7 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     std::fs::write(&path, list).ok()?;
     let answered =
         Command::new("python3").args(["-c", include_str!("notebook.py")]).arg(path).output().ok()?;
-    let mut worked = Worked::named("notebook, least squares", false);
+    let mut worked = Worked::named("notebook, least squares");
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
         let [seconds, speed_m_s, k] = numbers[..] else { return None };
@@ -231,16 +231,14 @@ pub const READING: &str = "reading alone";
 
 /// What a way says of every drop, and how long it takes for each, ns.
 struct Worked {
-    name: String,
-    /// Whether it is what the program takes.
-    is_default: bool,
+    name: &'static str,
     answers: Vec<Answer>,
     times_ns: Vec<f64>,
 }
 
 impl Worked {
-    fn named(name: &str, is_default: bool) -> Self {
-        Self { name: name.to_owned(), is_default, answers: Vec::new(), times_ns: Vec::new() }
+    fn named(name: &'static str) -> Self {
+        Self { name, answers: Vec::new(), times_ns: Vec::new() }
     }
 
     /// One answer more, timed; no answer is an empty one.
@@ -284,9 +282,9 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
     let counted = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
     TrialPoint {
         family: WAYS[quantity].to_owned(),
-        method: way.name.clone(),
+        method: way.name.to_owned(),
         class: class.to_owned(),
-        is_default: way.is_default,
+        is_default: way.name == TAKEN,
         median_error,
         p95_error,
         error_unit: unit.to_owned(),
