@@ -31,7 +31,7 @@ pub fn limits(
         Some(("recordings", _)) => of_own_recordings(),
         Some(("finite elements", measured)) => of_finite_elements(measured, &finite_elements),
         Some((family, class)) => (of_points(family, class, points), String::new()),
-        None => (None, String::new()),
+        None => Found::default(),
     };
     let of_table = table().map(|limit| {
         let (value, which) = found(&limit.name);
@@ -109,7 +109,7 @@ fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
 }
 
 fn of_own_recordings() -> Found {
-    let Some(limits) = built_in(OWN) else { return (None, String::new()) };
+    let Some(limits) = built_in(OWN) else { return Found::default() };
     let lost = limits.into_iter().filter(|limit| !limit.is_kept());
     listed(lost.map(|limit| {
         if limit.which.is_empty() { limit.name } else { format!("{}: {}", limit.name, limit.which) }
@@ -131,10 +131,7 @@ fn of_finite_elements(measured: &str, limits: &[TrialLimit]) -> Found {
         return listed(drops.filter(|(_, off)| off.is_none()).map(|(drop, _)| drop));
     }
     let told = drops.filter_map(|(drop, off)| Some((drop, off?)));
-    match told.max_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((drop, off)) => (Some(off), drop),
-        None => (None, String::new()),
-    }
+    told.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(drop, off)| (Some(off), drop)).unwrap_or_default()
 }
 
 /// Names that are said of those that do not hold.

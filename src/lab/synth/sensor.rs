@@ -52,7 +52,8 @@ pub fn specific_force_m_s2(
             at.on_section_m_s2(scene, [xi_m, eta_m], &sections)
         } else {
             let [along_m_s2, across_m_s2] = at.rigid_m_s2(scene, [xi_m, eta_m]);
-            let bends: f64 = bending.iter().enumerate().map(|(i, [shape, _])| shape * at.mode_slope(i)).sum();
+            let bends: f64 =
+                bending.iter().enumerate().map(|(i, [shape, _])| shape * at.cubic_slope(at.mode(i))).sum();
             [along_m_s2, across_m_s2 + bends]
         };
         let pressing_n = if time_s < rolled_s { at.pressing_n() } else { 0.0 };
@@ -90,7 +91,7 @@ pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, 
             return turns * scene.drop.angular_velocity_rad_s;
         }
         let at = Between::new(motion, time_s);
-        let bending = tilts_1_m.iter().enumerate().map(|(i, tilt)| tilt * at.mode_value(i));
+        let bending = tilts_1_m.iter().enumerate().map(|(i, tilt)| tilt * at.cubic(at.mode(i)));
         -at.value(5) - bending.sum::<f64>()
     };
     times_s.iter().map(|&time_s| reads(time_s)).collect()
@@ -123,37 +124,36 @@ impl<'a> Between<'a> {
         Self { places, steps, modes, share, step_s }
     }
 
+    /// Quantity `i` of the state at both ends, and its rate.
+    fn state(&self, i: usize) -> [[f64; 2]; 2] {
+        [self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i])]
+    }
+
+    /// The rate of the coordinate of mode `i` at both ends, m/s, and its own rate, m/s².
+    fn mode(&self, i: usize) -> [[f64; 2]; 2] {
+        [self.modes.map(|modes| modes[i].rate_m_s), self.modes.map(|modes| modes[i].rate_m_s2)]
+    }
+
     /// Value of the cubic through quantity `i` of the state and its rates at both ends.
     fn value(&self, i: usize) -> f64 {
-        self.cubic(self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i]))
+        self.cubic(self.state(i))
     }
 
     /// Its slope.
     fn slope(&self, i: usize) -> f64 {
-        self.cubic_slope(self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i]))
+        self.cubic_slope(self.state(i))
     }
 
-    /// The rate of the coordinate of mode `i`, m/s.
-    fn mode_value(&self, i: usize) -> f64 {
-        self.cubic(self.modes.map(|modes| modes[i].rate_m_s), self.modes.map(|modes| modes[i].rate_m_s2))
-    }
-
-    /// The slope of that, m/s².
-    fn mode_slope(&self, i: usize) -> f64 {
-        self.cubic_slope(
-            self.modes.map(|modes| modes[i].rate_m_s),
-            self.modes.map(|modes| modes[i].rate_m_s2),
-        )
-    }
-
-    fn cubic(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+    /// Value of the cubic through these values with these slopes.
+    fn cubic(&self, [values, slopes]: [[f64; 2]; 2]) -> f64 {
         let (s, h) = (self.share, self.step_s);
         let r = 1.0 - s;
         r * r * ((1.0 + 2.0 * s) * values[0] + s * h * slopes[0])
             + s * s * ((1.0 + 2.0 * r) * values[1] - r * h * slopes[1])
     }
 
-    fn cubic_slope(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+    /// Its slope.
+    fn cubic_slope(&self, [values, slopes]: [[f64; 2]; 2]) -> f64 {
         let (s, r) = (self.share, 1.0 - self.share);
         if self.step_s <= 0.0 {
             return slopes[1];
@@ -187,7 +187,7 @@ impl<'a> Between<'a> {
         let between = |which: usize| {
             let [from, to] = self.places.map(|i| sections[i][which]);
             let [places, rates, slopes] = [0, 1, 2].map(|i| [from[i], to[i]]);
-            [self.cubic(places, rates), self.cubic(rates, slopes), self.cubic_slope(rates, slopes)]
+            [self.cubic([places, rates]), self.cubic([rates, slopes]), self.cubic_slope([rates, slopes])]
         };
         let ([w_m, w_m_s, w_m_s2], [tilt, tilt_rate, tilt_rate_s]) = (between(0), between(1));
         let [along, across] = self.rigid_m_s2(scene, [xi_m, w_m]);
