@@ -41,25 +41,18 @@ pub struct Body {
 }
 
 /// What L does between the first impact and the slap-down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, thiserror::Error)]
 #[serde(rename_all = "lowercase")]
 pub enum FlightRegime {
     /// L leaves the target with the first impact and does not come to rest on it.
+    #[error("free flight")]
     Free,
     /// k = 0 and the contact force stays a push: L pivots or slides on the target until R strikes.
+    #[error("contact kept")]
     Contact,
     /// L stays on the target for a part of the way.
+    #[error("contact kept in part")]
     Mixed,
-}
-
-impl std::fmt::Display for FlightRegime {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Free => "free flight",
-            Self::Contact => "contact kept",
-            Self::Mixed => "contact kept in part",
-        })
-    }
 }
 
 /// Beyond this inclination the axis has stood upright before R strikes, degrees, however the cask turned.
