@@ -236,13 +236,7 @@ impl PanelAxis {
 
     /// The value as a place along the axis.
     pub(super) fn place(&self, value: f64) -> f64 {
-        /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too,
-        /// and throws it away.
-        #[inline(never)]
-        fn power(value: f64) -> f64 {
-            value.log10()
-        }
-        if self.scale == AxisScale::Logarithmic { power(value) } else { value }
+        if self.scale == AxisScale::Logarithmic { value.log10() } else { value }
     }
 
     /// Whether it has a place for the value.

@@ -104,17 +104,13 @@ const COLUMNS: [CsvColumn; 24] = [
     ("cog_vertical_at_slap_down_m_s", |row| number(row.prediction.cog.vertical_at_slap_down_m_s)),
 ];
 
-/// Rows that one core writes at a time: enough that handing them out costs nothing.
-const CHUNK: usize = 2048;
-
 /// The CSV of `predict`.
 ///
 /// # Errors
 /// [`ReportError::Csv`] where the writer fails.
 fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
-    let lines = |rows: &[PredictionRow]| records(rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row))));
-    let chunks: Result<Vec<Vec<u8>>, ReportError> = rows.par_chunks(CHUNK).map(lines).collect();
-    Ok([records([COLUMNS.map(|(head, _)| head)])?, chunks?.concat()].concat())
+    let head = COLUMNS.map(|(head, _)| head.to_owned());
+    records(std::iter::once(head).chain(rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)))))
 }
 
 #[cfg(test)]
@@ -206,9 +202,9 @@ mod tests {
     }
 
     #[test]
-    fn chunks_join_without_a_seam() {
+    fn each_row_is_a_line_in_its_order() {
         let row = sample_study::study().rows[0].clone();
-        let rows: Vec<PredictionRow> = (0..CHUNK + 3)
+        let rows: Vec<PredictionRow> = (0..2051)
             .map(|i| PredictionRow { length_m: f64::from(u32::try_from(i).unwrap()), ..row.clone() })
             .collect();
         let text = String::from_utf8(csv(&rows).unwrap()).unwrap();
