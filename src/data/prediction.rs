@@ -4,23 +4,15 @@ use super::cask::Contact;
 use serde::Serialize;
 
 /// Which body a prediction is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, thiserror::Error)]
 #[serde(rename_all = "lowercase")]
 pub enum BodyModel {
     /// The thin uniform rod of the paper.
+    #[error("rod")]
     Rod,
     /// The rigid body with section, centre of gravity and inertia.
+    #[error("body")]
     Body,
-}
-
-impl BodyModel {
-    /// "rod" or "body".
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Rod => "rod",
-            Self::Body => "body",
-        }
-    }
 }
 
 /// A rigid body in the plane of the drop.
