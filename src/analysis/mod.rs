@@ -78,7 +78,7 @@ const WAVE_PERIODS: f64 = 0.3;
 const SHOWN: f64 = 0.3;
 
 /// The findings, and the first impact if there is one.
-type Found = (Vec<Finding>, Option<AfterImpact>);
+type ImpactAndFlight = (Vec<Finding>, Option<AfterImpact>);
 
 /// A first impact with the events and the flight that follow it.
 struct AfterImpact {
@@ -88,16 +88,16 @@ struct AfterImpact {
 }
 
 /// The findings, and the first impact with the flight after it; `farther` as [`Seek`] has it.
-fn flown(recording: &Recording, file: &CaskFile, farther: bool, patience: Patience) -> Found {
+fn flown(recording: &Recording, file: &CaskFile, farther: bool, patience: Patience) -> ImpactAndFlight {
     let seek = Seek { farther, patience, wave_s: file.cask.length_m / BENDING_WAVE_M_S };
-    let found = flown_by(recording, file, seek);
+    let found = impact_and_flight(recording, file, seek);
     match slower_wave_s(&found) {
-        Some(wave_s) => flown_by(recording, file, Seek { wave_s, ..seek }),
+        Some(wave_s) => impact_and_flight(recording, file, Seek { wave_s, ..seek }),
         None => found,
     }
 }
 
-fn flown_by(recording: &Recording, file: &CaskFile, seek: Seek) -> Found {
+fn impact_and_flight(recording: &Recording, file: &CaskFile, seek: Seek) -> ImpactAndFlight {
     let mut findings = recording.issues.clone();
     let struck = Impact::find(recording, file, seek, &mut findings).map(|impact| {
         let (events, flown) = flight::flown(&impact, file, &mut findings);
@@ -108,7 +108,7 @@ fn flown_by(recording: &Recording, file: &CaskFile, seek: Seek) -> Found {
 
 /// What a bending wave takes along a cask that bends as the flight shows, s, where that explains an answer
 /// which was late for any cask.
-fn slower_wave_s((findings, found): &Found) -> Option<f64> {
+fn slower_wave_s((findings, found): &ImpactAndFlight) -> Option<f64> {
     let modes = &found.as_ref()?.flown.as_ref()?.flight.modes;
     let largest_m_s = modes.iter().map(|mode| mode.amplitude_m_s).fold(0.0, f64::max);
     let slowest = modes.iter().find(|mode| mode.amplitude_m_s > SHOWN * largest_m_s)?;

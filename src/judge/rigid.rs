@@ -62,15 +62,15 @@ pub fn judge_rigid<'a>(
     let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
     let axial_m_s = first_m_s * drop.angle_rad.tan();
     let turning_rad_s = turning_rad_s(&places, flight);
-    let span_m = span_m(&places).max(f64::MIN_POSITIVE);
+    // Bending grows in the contact as the rotation does.
+    let bending_rad2_s2 = TURNING_SHARE * bending_m2_s2 / span_m(&places).max(f64::MIN_POSITIVE).powi(2);
     let steps: Vec<Reading> = places
         .iter()
         .filter_map(|&SensorPlace { name, position_m, offset_m }| {
             let plateau = flight.plateau(name)?;
             let by_square_m = offset_m * turned_s;
             let step_m_s = plateau.velocity_step_m_s + TURNING_SHARE * turning_rad_s.powi(2) * by_square_m;
-            let u_offset_m_s =
-                by_square_m * (U_TURNING_SHARE * turning_rad_s.powi(2)).hypot(bending_m2_s2 / span_m.powi(2));
+            let u_offset_m_s = by_square_m * (U_TURNING_SHARE * turning_rad_s.powi(2)).hypot(bending_rad2_s2);
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s =
                 (tolerances.calibration * step_m_s).hypot(tolerances.cross_axis * axial_m_s) / 2.0;

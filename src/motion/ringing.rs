@@ -86,7 +86,8 @@ impl RingingRemoved {
 /// with their offset, rad/s: the root of the difference of both squares, negative where the cask turns more
 /// slowly than before.
 ///
-/// The steps of channels off the axis hold −ω² η from the contact on: L left at `left_s`   (14)
+/// `events_s` are first contact and separation: from there on the steps of channels off the axis hold −ω² η
+/// (14).
 pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64, events_s: [f64; 2]) -> f64 {
     let [contact_s, left_s] = events_s;
     let turned_s = (fit.from_s - left_s + TURNING_SHARE * (left_s - contact_s)).max(0.0);
