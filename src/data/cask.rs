@@ -111,7 +111,7 @@ pub enum Source {
     #[error("{0}")]
     Path(String),
     /// `{ topic = "/a.b", field = "x.y" }`.
-    #[error("{topic} · {field}{}", .channel.map(|channel| format!(" of channel {channel}")).unwrap_or_default())]
+    #[error("{topic} · {field}{}", .channel.map_or(String::new(), |number| format!(" of channel {number}")))]
     TopicField {
         /// The topic.
         topic: String,

@@ -198,7 +198,9 @@ impl<'a> Record<'a> {
         let u_falling = self.u_mean(&of_fall, TOUCH * self.weight_m_s2);
         let u_rest = u_falling.hypot(self.u_mean(&at_rest, robust::mean_and_rms(&of_fall).1));
         let u_step = u_rest.hypot(self.converter_step_m_s2() / 6.0_f64.sqrt());
-        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_step {
+        // Where single levels scatter as far as the step it may stand anywhere.
+        let scatter_m_s2 = robust::mean_and_rms(&of_fall).1;
+        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_step.max(scatter_m_s2) {
             return None;
         }
         let start = self.crossing(step, falling + 0.5 * rest);
