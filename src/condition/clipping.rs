@@ -86,8 +86,8 @@ pub(super) fn clipped(
     spans
 }
 
-/// The flanks towards 0 that fall in one straight line between two kinks, as no force does: the amplifier does
-/// not follow it. A limiter's rise is straight, too, and its fall as it lets go is rounded.
+/// The flanks towards 0 that fall in one straight line between two kinks: no force does so, and the amplifier
+/// does not follow it. A limiter's rise is straight, too, but its fall as it lets go is rounded.
 fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();

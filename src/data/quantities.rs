@@ -260,7 +260,8 @@ pub struct UntestedMoves {
 impl UntestedMoves {
     /// The larger of both, in half-widths of what it moves.
     pub fn in_half_widths(&self, quantities: &Quantities) -> f64 {
-        let of = |by: Option<f64>, moved: Option<Estimate>| by.zip(moved).map_or(0.0, |(by, of)| by / of.u95);
-        of(self.k, Some(quantities.k)).max(of(self.slap_down_speed_m_s, quantities.speed))
+        let share =
+            |by: Option<f64>, moved: Option<Estimate>| by.zip(moved).map_or(0.0, |(by, of)| by / of.u95);
+        share(self.k, Some(quantities.k)).max(share(self.slap_down_speed_m_s, quantities.speed))
     }
 }

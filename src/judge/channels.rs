@@ -58,7 +58,7 @@ pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
     signal.lost_to_clipping_m_s(from_s, to_s) > MOST_LOST_M_S
 }
 
-/// One finding a channel, kind of limit and part of the drop: what stands at a limit before, between and after
+/// One finding for each kind of limit and part of the drop: what stands at a limit before, between and after
 /// the impacts.
 fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
     let separation_s = events.separation_s().unwrap_or(f64::INFINITY);

@@ -70,8 +70,8 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
     ended(solved.unknowns.as_slice(), chi_square, slopes)
 }
 
-/// The same where unknowns are many: at the most probable ones q = −Jᵀ r, so that they lie in as many directions
-/// as there are observations.
+/// [`fit`] where unknowns are many: at the most probable ones q = −Jᵀ r, so that they lie in as many
+/// directions as there are observations.
 fn in_few_directions(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let mut unknowns = DVector::zeros(count);
     let mut chi_square = f64::INFINITY;

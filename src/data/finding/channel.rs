@@ -54,8 +54,8 @@ pub enum ChannelFinding {
     /// The signal falls in a straight line, as the chain's fastest; `takes_step` as of `Clipped`.
     Slewed { slope_m_s3: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
         => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
-        ("falls in one straight line of {:.0} g/ms for {samples} samples {}. Its amplifier does not follow: use \
-         one of a higher slew rate", slope_m_s3 / G / 1e3, cut_off(*during, *lost_m_s, *takes_step));
+        ("falls in one straight line of {:.0} g/ms for {samples} samples {}. Its amplifier does not follow: \
+         use one of a higher slew rate", slope_m_s3 / G / 1e3, cut_off(*during, *lost_m_s, *takes_step));
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.
     LostStep { shows_slap_down: bool } => (Code::Gap, Error, VelocityStep),
         ("lacks samples of the first impact (missing, or one value repeated), and with them its velocity \
