@@ -2,7 +2,7 @@
 
 use super::levels::Gauge;
 use super::runs::runs;
-use crate::data::{Axis, Channel, ChannelFinding, Finding, Span};
+use crate::data::{Axis, Channel, ChannelFinding, Finding, LEAST_FLANK, Span};
 use crate::numerics::{as_f64, reduce, robust};
 use std::cell::LazyCell;
 
@@ -29,8 +29,7 @@ const LEAST_STEP: f64 = 1e-9;
 /// taken to be less.
 const NOISE_LEFT: f64 = 0.6;
 
-/// Fewest samples of a limited flank, and the least that it falls by, as a share of the peak.
-const LEAST_FLANK: usize = 12;
+/// The least that a limited flank falls by, as a share of the peak.
 const FLANK_SHARE: f64 = 0.2;
 
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
@@ -185,6 +184,28 @@ mod tests {
         let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, 0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
+    }
+
+    #[test]
+    fn a_flank_that_the_amplifier_does_not_follow_is_limited() {
+        let quiet = vec![0.0; 200];
+        let limited = |force: &[f64], most: f64| {
+            let mut last = 0.0;
+            let follow = |f: &f64| {
+                last += (f - last).clamp(-most, most);
+                last
+            };
+            let behind: Vec<f64> = [&quiet[..], force, &quiet].concat().iter().map(follow).collect();
+            let noisy: Vec<f64> = behind.iter().zip(0..).map(|(f, i)| f + 0.5 * noise(i, 3)).collect();
+            limited_flanks(&noisy, roughness(&noisy[..200]), 4000.0)
+        };
+        // A half sine of 4000 over 200 samples rises by up to 63 a sample.
+        let [flank] = limited(&pulse(1e9), 30.0)[..] else { panic!("one flank") };
+        assert!(flank.from > 300 && flank.to - flank.from > 60, "{flank:?}");
+        assert_eq!(limited(&pulse(1e9), 1e9), []);
+        // A limiter rises in a straight line to its plateau, and lets go more and more.
+        let crush = |i: u32| (75.0 * f64::from(i)).min(3000.0) * (1.0 - (f64::from(i) / 200.0).powi(8));
+        assert_eq!(limited(&(0..200).map(crush).collect::<Vec<_>>(), 1e9), []);
     }
 
     #[test]

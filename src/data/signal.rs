@@ -11,8 +11,12 @@ pub const MOST_LOST_M_S: f64 = 0.27;
 /// known to a sixth then.
 const CLEAR_OF_NOISE: f64 = 6.0;
 
-/// A limited level changes by less than this share of it, a limited flank by more.
+/// Fewest samples of a flank that the chain limits.
+pub const LEAST_FLANK: usize = 12;
+/// A limited level changes by less than this share of it, a limited flank by more; noise lets a flank exceed
+/// its first sample by less than this factor.
 const LEVEL_SHARE: f64 = 0.2;
+const FIRST_SHARE: f64 = 1.05;
 
 /// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
 ///
@@ -105,11 +109,13 @@ impl Signal {
         }
     }
 
-    /// True if the chain limits the slope of the signal over a stretch, not its size.
+    /// True if the chain limits the slope of the signal over a stretch, not its size: it falls from its first
+    /// sample on.
     pub fn is_flank(&self, span: &Span) -> bool {
-        let at = |i: usize| self.force_m_s2.get(i).copied().unwrap_or(0.0);
-        let (first, last) = (at(span.from), at(span.to.saturating_sub(1)));
-        (first - last).abs() > LEVEL_SHARE * first.abs().max(last.abs())
+        let within = self.force_m_s2.get(span.from..span.to).unwrap_or_default();
+        let [first, last] = [within.first(), within.last()].map(|f| f.map_or(0.0, |f| f.abs()));
+        let largest = within.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        within.len() >= LEAST_FLANK && last < (1.0 - LEVEL_SHARE) * first && largest < FIRST_SHARE * first
     }
 
     /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top:

@@ -153,3 +153,35 @@ fn slope(points: &[(f64, f64)]) -> f64 {
         .fold((0.0, 0.0), |(s, q), p| (s + (p.0 - mean.0).powi(2), q + (p.0 - mean.0) * (p.1 - mean.1)));
     if square > 0.0 { product / square } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::example;
+
+    #[test]
+    fn channels_off_the_axis_read_the_rotation_less_its_pull() {
+        let omega_rad_s = 5.0;
+        let channel = |name: &str, position_m: f64, offset_m: f64| Signal {
+            name: name.into(),
+            position_m,
+            offset_m,
+            ..example::signal(1e4, vec![])
+        };
+        let signals = [channel("A1", 0.5, 0.4), channel("A2", 4.5, -0.4)];
+        // A contact from 10 to 18 ms, and 2 ms more to the flight's fit.
+        let turned_s = 0.002 + 0.375 * 0.008;
+        let plateau = |s: &Signal| Plateau {
+            channel: s.name.clone(),
+            velocity_step_m_s: 20.0 - omega_rad_s * (s.position_m + omega_rad_s * s.offset_m * turned_s),
+            ..Plateau::default()
+        };
+        let fit = FlightFit {
+            from_s: 0.020,
+            plateaus: signals.iter().map(plateau).collect(),
+            ..FlightFit::default()
+        };
+        let found_rad_s = turned_rad_s(&signals, &fit, 0.0, [0.010, 0.018]);
+        assert!((found_rad_s - omega_rad_s).abs() < 1e-6, "{found_rad_s}");
+    }
+}

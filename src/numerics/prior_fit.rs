@@ -79,8 +79,7 @@ fn in_few_directions(count: usize, residuals: Residuals, slopes: Slopes) -> Opti
     for _ in 0..2 {
         let directions = slopes(unknowns.as_slice())?.transpose().qr().q();
         let at = |along: &[f64]| &directions * DVector::from_column_slice(along);
-        let along = directions.tr_mul(&unknowns);
-        let solved = fit(along.len(), &|along| residuals(at(along).as_slice()), &|along| {
+        let solved = fit(directions.ncols(), &|along| residuals(at(along).as_slice()), &|along| {
             Some(slopes(at(along).as_slice())? * &directions)
         })?;
         unknowns = at(&solved.unknowns);

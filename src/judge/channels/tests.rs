@@ -1,7 +1,7 @@
 //! Made-up channels to what `worth` says of them.
 
 use super::*;
-use crate::data::{At, Contact, Drop, IssueCode, example};
+use crate::data::{At, Contact, Drop, IssueCode, Plateau, example};
 
 fn cask_file() -> CaskFile {
     let cask = example::cask(4000.0, 5.0, 0.0);
@@ -57,6 +57,12 @@ fn noise_that_moves_the_velocity_is_named() {
     assert_eq!(severity(&noisy), Some((IssueCode::Noise, Severity::Note)));
     noisy[0].noise_spectrum = vec![(10.0, 10.0), (5000.0, 10.0)];
     assert_eq!(severity(&noisy), Some((IssueCode::Noise, Severity::Warning)));
+    // A plateau known to 0.05 m/s by the flight leaves the noise of the 5 ms of contact: 0.16 m/s.
+    let plateau = Plateau { channel: noisy[0].name.clone(), u_m_s: 0.05, ..Plateau::default() };
+    let flight = FlightFit { plateaus: vec![plateau], ..FlightFit::default() };
+    let events = Events { separation: Some(At::exactly(0.025)), ..example::events(0.02, 0.09) };
+    let by_flight = judge_noise(&noisy[0], &events, Some(&flight), 13.29).map(|found| found.severity);
+    assert_eq!(by_flight, Some(Severity::Note));
 }
 
 #[test]
