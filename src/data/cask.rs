@@ -24,16 +24,23 @@ pub const MOST_CHANNELS: usize = 1000;
 pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
 
 /// An end of the cask.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, thiserror::Error)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
     /// L: low, touches first.
     #[default]
-    #[error("first")]
     First,
     /// R: high, slaps down.
-    #[error("second")]
     Second,
+}
+
+impl std::fmt::Display for End {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::First => "first",
+            Self::Second => "second",
+        })
+    }
 }
 
 /// A body axis.
@@ -48,21 +55,28 @@ pub enum Axis {
 }
 
 /// How the first end meets the target tangentially.
-#[derive(Debug, Clone, Copy, Default, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Contact {
     /// The contact point does not slide.
-    #[error("rough")]
     Rough,
     /// No tangential force.
-    #[error("smooth")]
     Smooth,
     /// Coulomb friction with this coefficient.
-    #[error("{0}")]
     Coulomb(f64),
     /// Nobody says: anything from smooth to rough.
     #[default]
-    #[error("unknown")]
     Unknown,
+}
+
+impl std::fmt::Display for Contact {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rough => f.write_str("rough"),
+            Self::Smooth => f.write_str("smooth"),
+            Self::Coulomb(coefficient) => write!(f, "{coefficient}"),
+            Self::Unknown => f.write_str("unknown"),
+        }
+    }
 }
 
 impl Serialize for Contact {
@@ -105,13 +119,11 @@ pub enum Unit {
 
 /// Where a channel's samples are: as written, and for MCAP the topic and field apart where the file gave them
 /// so.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     /// `"/topic.field.field"`, `"/group/dataset[2]"` or a CSV header.
-    #[error("{0}")]
     Path(String),
     /// `{ topic = "/a.b", field = "x.y" }`.
-    #[error("{topic} · {field}{}", .channel.map_or(String::new(), |number| format!(" of channel {number}")))]
     TopicField {
         /// The topic.
         topic: String,
@@ -123,8 +135,7 @@ pub enum Source {
 }
 
 /// Which rows of a table, or messages of a topic, are those of one sensor.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, thiserror::Error)]
-#[error("where = {{ column = {column:?}, is = {is:?} }}")]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct RowsOf {
     /// The column, field or dataset that names the sensor.
     pub column: String,
@@ -132,9 +143,27 @@ pub struct RowsOf {
     pub is: String,
 }
 
+impl std::fmt::Display for RowsOf {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "where = {{ column = {:?}, is = {:?} }}", self.column, self.is)
+    }
+}
+
 impl Default for Source {
     fn default() -> Self {
         Self::Path(String::new())
+    }
+}
+
+impl std::fmt::Display for Source {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Path(path) => f.write_str(path),
+            Self::TopicField { topic, field, channel: None } => write!(f, "{topic} · {field}"),
+            Self::TopicField { topic, field, channel: Some(channel) } => {
+                write!(f, "{topic} · {field} of channel {channel}")
+            }
+        }
     }
 }
 

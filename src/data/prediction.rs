@@ -4,15 +4,23 @@ use super::cask::Contact;
 use serde::Serialize;
 
 /// Which body a prediction is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BodyModel {
     /// The thin uniform rod of the paper.
-    #[error("rod")]
     Rod,
     /// The rigid body with section, centre of gravity and inertia.
-    #[error("body")]
     Body,
+}
+
+impl BodyModel {
+    /// "rod" or "body".
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Rod => "rod",
+            Self::Body => "body",
+        }
+    }
 }
 
 /// A rigid body in the plane of the drop.
@@ -33,18 +41,25 @@ pub struct Body {
 }
 
 /// What L does between the first impact and the slap-down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FlightRegime {
     /// L leaves the target with the first impact and does not come to rest on it.
-    #[error("free flight")]
     Free,
     /// k = 0 and the contact force stays a push: L pivots or slides on the target until R strikes.
-    #[error("contact kept")]
     Contact,
     /// L stays on the target for a part of the way.
-    #[error("contact kept in part")]
     Mixed,
+}
+
+impl std::fmt::Display for FlightRegime {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Free => "free flight",
+            Self::Contact => "contact kept",
+            Self::Mixed => "contact kept in part",
+        })
+    }
 }
 
 /// Beyond this inclination the axis has stood upright before R strikes, degrees, however the cask turned.

@@ -40,7 +40,7 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
             .and_then(|c| c.u95)
             .filter(|u| u.is_finite());
         let k = if own_k { format!("{} (measured)", fixed(p.k, 3)) } else { plain(p.k, 3) };
-        let left = format!("{}, {}, k = {k}", p.model, contact_words(p.contact));
+        let left = format!("{}, {}, k = {k}", p.model.as_str(), contact_words(p.contact));
         let value = |u95| pair(speed_m_s, u95, "m/s").replace(" m/s", "");
         let right = u95_m_s.map_or_else(|| format!("{speed_m_s:.2}"), value);
         let words = RowWords { left, right, is_heading: false };

@@ -78,7 +78,7 @@ fn words(case: &CriticalAngle) -> RowWords {
     } else {
         MISSING.to_owned()
     };
-    let left = format!("{}, {}", case.model, case_words(case.contact, case.k));
+    let left = format!("{}, {}", case.model.as_str(), case_words(case.contact, case.k));
     RowWords { left, right, is_heading: false }
 }
 

@@ -19,7 +19,7 @@ const NO_DRAWS: (&str, &str) =
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let found = &study.monte_carlo;
-    let title = format!("Slap-down speed under uncertain inputs, {}", found.model);
+    let title = format!("Slap-down speed under uncertain inputs, {}", found.model.as_str());
     let has_draws =
         |q: &&QuantileCurves| q.criterion == Criterion::Speed && q.critical_angle_deg[2].is_finite();
     let speed = found.quantiles.iter().find(has_draws);

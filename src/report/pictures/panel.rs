@@ -8,9 +8,14 @@ use std::ops::Range;
 pub(crate) const WIDTH: f64 = 1800.0;
 
 /// Red, green and blue, 0 to 255.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("#{0:02x}{1:02x}{2:02x}")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Colour(pub(crate) u8, pub(crate) u8, pub(crate) u8);
+
+impl std::fmt::Display for Colour {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
 
 pub(crate) const INK: Colour = Colour(38, 42, 48);
 pub(crate) const GREY: Colour = Colour(110, 116, 124);

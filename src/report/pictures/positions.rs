@@ -48,7 +48,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let caption = format!(
         "The {} at {}° from first contact (blue) to the slap-down (orange), as Figs. 2 and 3 of the paper; \
          dotted the way of S. {cases}.",
-        &first.body.model.to_string(),
+        first.body.model.as_str(),
         plain(study.request.angle_deg, 4)
     );
     plate(caption).drawn(svg, bottom, &cases)

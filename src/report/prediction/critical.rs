@@ -48,7 +48,7 @@ pub(super) fn critical(study: &Study) -> Chapter {
         .class("many")
         .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
-        .text(Words::or("Model", "model"), |c| c.model.to_string())
+        .text(Words::or("Model", "model"), |c| c.model.as_str())
         .soft(Words::or("Contact", "contact"), |c| contact_words(c.contact))
         .number("k", |c| plain(c.k, 3))
         .number(Words::or("Speed, m/s", "v m/s"), largest(Criterion::Speed))
@@ -79,7 +79,7 @@ fn larger_sentence(study: &Study) -> Option<String> {
     let most = |model: BodyModel| {
         let of_model = all.iter().filter(|found| found.0 == model).map(|found| found.1);
         let (angle_deg, speed) = of_model.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(format!("{} {} m/s at {}°", model, fixed(speed, 2), degrees(angle_deg)))
+        Some(format!("{} {} m/s at {}°", model.as_str(), fixed(speed, 2), degrees(angle_deg)))
     };
     let words: Vec<String> = [BodyModel::Rod, BodyModel::Body].into_iter().filter_map(most).collect();
     (!words.is_empty()).then(|| {
@@ -151,7 +151,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
         let picture = ChapterPart::picture("monte-carlo", "tall");
         return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
     }
-    let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model));
+    let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
     let drawn = ChapterPart::text(uncertain_words(u, found.contact));
     let chapter = if speeds(found).is_some() {
         let band = plain(found.band_percent, 3);

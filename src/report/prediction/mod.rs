@@ -34,10 +34,13 @@ pub fn study_table(study: &Study, width: usize) -> String {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = pictures::draw_study(study);
+    let (pictures, (json, csv)) = rayon::join(
+        || pictures::draw_study(study),
+        || rayon::join(|| study_json(study), || csv(&study.rows)),
+    );
     let page = as_html::page(&study::document(study), &pictures).into_bytes();
     let pictures = pictures.into_iter().map(|picture| picture.svg.into_bytes());
-    let bytes = [page, study_json(study)?, csv(&study.rows)?].into_iter().chain(pictures);
+    let bytes = [page, json?, csv?].into_iter().chain(pictures);
     Ok(study_file_names(&study.request).into_iter().zip(bytes).collect())
 }
 
@@ -76,7 +79,7 @@ type CsvColumn = (&'static str, fn(&PredictionRow) -> String);
 /// Its columns; scripts know the first fourteen, and what follows them may grow.
 const COLUMNS: [CsvColumn; 24] = [
     ("angle_deg", |row| row.angle_deg.to_string()),
-    ("model", |row| row.prediction.model.to_string()),
+    ("model", |row| row.prediction.model.as_str().to_owned()),
     ("contact", |row| row.prediction.contact.to_string()),
     ("k", |row| row.prediction.k.to_string()),
     ("slap_down_speed_m_s", |row| number(row.prediction.slap_down_speed_m_s)),

@@ -37,7 +37,7 @@ pub(in super::super) fn prediction_columns<'a, R>(
     let head = |full: &str, short: &str| {
         Words::or(full, if in_study { short.into() } else { short.replace('\n', " ") })
     };
-    rows.text(head("Model", "model"), cell(|p| p.model.to_string()))
+    rows.text(head("Model", "model"), cell(|p| p.model.as_str().to_owned()))
         .soft(head("Contact", "contact"), contact)
         .number(head("k", "k"), cell(|p| plain(p.k, 3)))
         .number(head("Speed, m/s", "v\nm/s"), cell(|p| optional_fixed(p.slap_down_speed_m_s, 2)))
@@ -175,7 +175,7 @@ fn friction_note(rows: &[PredictionRow]) -> Option<String> {
         let mut of_model = rows.iter().map(|row| &row.prediction).filter(|p| p.model == model);
         let first = of_model.next()?.friction_to_stick;
         let same = of_model.all(|p| (p.friction_to_stick - first).abs() < 5e-4);
-        (same && first.is_finite()).then(|| format!("{} ({})", plain(first, 3), model))
+        (same && first.is_finite()).then(|| format!("{} ({})", plain(first, 3), model.as_str()))
     };
     let models = [BodyModel::Rod, BodyModel::Body];
     let words: Vec<String> = models.into_iter().filter_map(needed).collect();
