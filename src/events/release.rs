@@ -215,8 +215,9 @@ impl<'a> Record<'a> {
     fn u_rounding_m_s2(&self) -> f64 {
         *self.u_rounding_m_s2.get_or_init(|| {
             let step = self.converter_step_m_s2();
-            let samples = self.force_m_s2(0..self.samples.len());
-            let pairs = samples.windows(2).step_by(robust::stride(samples.len()));
+            let count = self.samples.len();
+            let pairs = (0..count.saturating_sub(1)).step_by(robust::stride(count));
+            let pairs = pairs.map(|i| self.force_m_s2(i..i + 2));
             let apart: Vec<f64> = pairs.map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
             let square = (robust::spread(&apart).powi(2) / 2.0 / step.powi(2) - 1.0 / 12.0).max(0.0);
             let left = if square.is_finite() { (-2.0 * PI * PI * square).exp() } else { 1.0 };
