@@ -102,7 +102,7 @@ impl Impact {
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
-        let u_skew_s = align(file, &mut signals, (contact.time_s, seek.wave_s), findings);
+        let u_skew_s = align(file, &mut signals, contact.time_s, seek.wave_s, findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (own_rests, fall_s) = before(recording, drop, contact.time_s);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
@@ -184,11 +184,12 @@ fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) ->
 }
 
 /// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a
-/// bending wave explains as well leaves open of R's times, as a standard uncertainty, s.
+/// bending wave of up to `wave_s` explains as well leaves open of R's times, as a standard uncertainty, s.
 fn align(
     file: &CaskFile,
     signals: &mut [Signal],
-    (contact_s, wave_s): (f64, f64),
+    contact_s: f64,
+    wave_s: f64,
     findings: &mut Vec<Finding>,
 ) -> f64 {
     let onsets = events::answers(signals, contact_s);
