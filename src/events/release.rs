@@ -15,6 +15,8 @@ const STEP: std::ops::Range<f64> = 0.5..1.5;
 const BLOCK_S: f64 = 0.005;
 /// Blocks of a level, 40 ms: as long as a crane's hook rings.
 const LEVEL: usize = 8;
+/// Blocks on either side of a step that are in no level, 20 ms: hum of the mains moves a step by 13 ms.
+const BESIDE: usize = 4;
 /// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean
 /// over them.
 const SUSTAINED: usize = 4;
@@ -191,7 +193,7 @@ impl<'a> Record<'a> {
         let falling = self.level(step + 1, end.unwrap_or(self.blocks.len()));
         let departure = self.departure(step, falling);
         let end = departure.map_or(contact, |block| self.touch(step, block, falling));
-        let of_fall = self.levels(step + 2..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
+        let of_fall = self.levels(step + BESIDE..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
         let at_rest = self.calm_before(step, &of_fall);
         let fall = robust::mean_and_rms(&of_fall).0;
         let rest = robust::mean_and_rms(&at_rest).0 - if fall.is_finite() { fall } else { falling };
@@ -246,7 +248,7 @@ impl<'a> Record<'a> {
     fn calm_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
         let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step_m_s2());
         let most_m_s2 = (UNREST * self.weight_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
-        let levels = self.levels(0..step.saturating_sub(1));
+        let levels = self.levels(0..step.saturating_sub(BESIDE));
         let Some(&last) = levels.first() else { return vec![f64::NAN] };
         levels.into_iter().take_while(|level| (level - last).abs() <= most_m_s2).collect()
     }
