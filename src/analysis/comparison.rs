@@ -1,7 +1,7 @@
 //! A flight to what may be stated of the impacts: the quantities, unless something speaks against them, and
 //! their prediction.
 
-use super::flight::Flown;
+use super::flight::FlightResult;
 use super::impact::Impact;
 use super::impacts::Tabulated;
 use crate::data::{
@@ -25,13 +25,13 @@ pub(super) struct Measured {
 impl Measured {
     /// Judges the flight; `None` where a finding takes the motion away.
     pub fn of(
-        flown: &Flown,
+        flown: &FlightResult,
         impact: &Impact,
         events: &Events,
         file: &CaskFile,
         findings: &mut Vec<Finding>,
     ) -> Option<Self> {
-        let Flown { flight, reconstruction, quantities, .. } = flown;
+        let FlightResult { flight, reconstruction, quantities, .. } = flown;
         findings.extend(judge::judge_coupling(&impact.signals, flight, file));
         findings.extend(judge::judge_rigid(
             judge::places(&impact.signals),
@@ -79,8 +79,8 @@ impl Measured {
 }
 
 /// What the motion itself and its closures say.
-fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
-    let Flown { flight, motion, quantities, reconstruction, .. } = flown;
+fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
+    let FlightResult { flight, motion, quantities, reconstruction, .. } = flown;
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     // An end whose channel was made of the other's does not show where it goes.
     found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);

@@ -8,7 +8,7 @@ use super::second_impact::{Mirror, SecondImpact};
 use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
-    Events, Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal, Untested,
+    Events, Finding, FlightFit, Motion, Opening, Quantities, ReconstructionChoice, Setup, Signal, Untested,
     transverse,
 };
 use crate::motion::{self, CornerRinging, Integrated};
@@ -19,7 +19,7 @@ use crate::{fit, judge};
 const UNCERTAIN_PULSE: f64 = 0.1;
 
 /// The flight, and what it says of the motion.
-pub(super) struct Flown {
+pub(super) struct FlightResult {
     pub flight: FlightFit,
     pub setup: Setup,
     pub motion: Motion,
@@ -27,6 +27,8 @@ pub(super) struct Flown {
     pub budget: Vec<Contribution>,
     pub reconstruction: ReconstructionChoice,
     pub untested: Vec<Untested>,
+    /// Where a closure is missed, the inputs of which another number would explain it.
+    pub openings: Vec<Opening>,
     pub tabulated: Option<Tabulated>,
     /// The speed of R's corner, ringing and swinging included.
     pub local_speed: Option<Estimate>,
@@ -34,11 +36,11 @@ pub(super) struct Flown {
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes
 /// to the findings.
-pub(super) fn flown(
+pub(super) fn flight_result(
     impact: &Impact,
     file: &CaskFile,
     findings: &mut Vec<Finding>,
-) -> (Events, Option<Flown>) {
+) -> (Events, Option<FlightResult>) {
     let mut events = impact.events();
     let is_missing = |end: &End| transverse(&impact.signals, *end).is_none();
     let missing = [End::First, End::Second].into_iter().find(is_missing);
@@ -115,7 +117,7 @@ fn moved(
     integrated: &Integrated,
     flight: FlightFit,
     events: &Events,
-) -> Option<Flown> {
+) -> Option<FlightResult> {
     let signals = &impact.signals;
     let (setup, friction) = contact(file, integrated, &flight, events);
     let contact_s = impact.contact.time_s;
@@ -161,8 +163,8 @@ fn moved(
         .filter(|_| is_whole)
         .and_then(|at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
-    let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
-    Some(Flown {
+    let fit::RungTaken { quantities, budget, choice: reconstruction, openings, .. } = taken;
+    Some(FlightResult {
         flight,
         setup,
         motion,
@@ -170,6 +172,7 @@ fn moved(
         budget,
         reconstruction,
         untested,
+        openings,
         tabulated,
         local_speed,
     })
@@ -224,7 +227,7 @@ pub(super) fn contact(
 fn judge_open_contact(
     file: &CaskFile,
     integrated: &Integrated,
-    flown: &Flown,
+    flown: &FlightResult,
     events: &Events,
 ) -> Option<Finding> {
     if file.contact != Contact::Unknown || flown.setup.axial == AxialClosure::Measured {

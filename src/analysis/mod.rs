@@ -1,5 +1,16 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
+//!
+//! A sound recording is gone through once. What else is gone through again, and why:
+//!
+//! - an answer later than any cask gives, and a flight with a slower mode: as before, with the wave of that
+//!   mode (`flight_result`);
+//! - no slap-down where the record goes on: with a longer search (`analyse_once`);
+//! - an angular-rate sensor, and no rotation stated: once before, for the rotation (`with_rotation`);
+//! - a contradiction and three transverse channels: without each of them (`second_look`);
+//! - a contradiction that stays: with each usual slip put right, and else with each number that would explain
+//!   it, up to twice (`causes`).
 
+mod causes;
 mod check;
 mod comparison;
 mod first_look;
@@ -16,7 +27,6 @@ mod rotation;
 mod second_impact;
 mod second_look;
 mod setup;
-mod slips;
 
 pub use check::check;
 pub use first_look::look_at_each;
@@ -29,7 +39,7 @@ use crate::data::{
 };
 use crate::{ingest, judge};
 use comparison::Measured;
-use flight::Flown;
+use flight::FlightResult;
 use flight_search::Patience;
 use impact::{Impact, Seek};
 use std::borrow::Cow;
@@ -44,7 +54,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // two threads share.
     let mut found = measure(recording, cask_file);
     let cask_file = &found.cask_file.clone();
-    rayon::scope(|_| slips::name_slip(recording, cask_file, &mut found));
+    rayon::scope(|_| causes::name_causes(recording, cask_file, &mut found));
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
     result.prototype = cask_file.scale.map(|scale| result.of_prototype(scale));
@@ -63,7 +73,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     rayon::scope(|_| {
         let cask_file = &with_rotation(recording, cask_file);
-        let whole = analyzed(recording, cask_file, Patience::EachBeginning);
+        let whole = analyse_once(recording, cask_file, Patience::EachBeginning);
         second_look::leave_one_out(recording, cask_file, whole)
     })
 }
@@ -84,11 +94,16 @@ type ImpactAndFlight = (Vec<Finding>, Option<AfterImpact>);
 struct AfterImpact {
     impact: Impact,
     events: Events,
-    flown: Option<Flown>,
+    flown: Option<FlightResult>,
 }
 
 /// The findings, and the first impact with the flight after it; `farther` as [`Seek`] has it.
-fn flown(recording: &Recording, file: &CaskFile, farther: bool, patience: Patience) -> ImpactAndFlight {
+fn flight_result(
+    recording: &Recording,
+    file: &CaskFile,
+    farther: bool,
+    patience: Patience,
+) -> ImpactAndFlight {
     let seek = Seek { farther, patience, wave_s: file.cask.length_m / BENDING_WAVE_M_S };
     let found = impact_and_flight(recording, file, seek);
     match slower_wave_s(&found) {
@@ -100,7 +115,7 @@ fn flown(recording: &Recording, file: &CaskFile, farther: bool, patience: Patien
 fn impact_and_flight(recording: &Recording, file: &CaskFile, seek: Seek) -> ImpactAndFlight {
     let mut findings = recording.issues.clone();
     let struck = Impact::find(recording, file, seek, &mut findings).map(|impact| {
-        let (events, flown) = flight::flown(&impact, file, &mut findings);
+        let (events, flown) = flight::flight_result(&impact, file, &mut findings);
         AfterImpact { impact, events, flown }
     });
     (findings, struck)
@@ -127,7 +142,7 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     let is_left_out = OF_ROTATION.iter().all(|key| file.defaults.iter().any(|default| default == key));
     let has_sensor = file.others.iter().any(|spec| spec.rate.is_some());
     let before = (is_left_out && has_sensor).then(|| {
-        let (_, found) = flown(recording, file, false, Patience::EachBeginning);
+        let (_, found) = flight_result(recording, file, false, Patience::EachBeginning);
         let AfterImpact { impact, events, flown } = found?;
         let read = rotation::measured(&impact, file, &flown?.flight, &events);
         let known = read.iter().filter_map(|rotation| rotation.before);
@@ -144,11 +159,11 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     Cow::Owned(file)
 }
 
-fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {
-    let (mut findings, mut found) = flown(recording, file, false, patience);
+fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {
+    let (mut findings, mut found) = flight_result(recording, file, false, patience);
     // From steep angles a cask may strike later than its angle has it.
     if found.as_ref().is_some_and(|f| f.events.slap_down.is_none() && f.impact.goes_on) {
-        let farther = flown(recording, file, true, patience);
+        let farther = flight_result(recording, file, true, patience);
         if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
             (findings, found) = farther;
         }
@@ -164,7 +179,7 @@ fn analyzed(recording: &Recording, file: &CaskFile, patience: Patience) -> Analy
         || result::ShownSignals::of(&impact.signals, events, file),
     );
     findings.extend(on_channels);
-    let judged = |flown: &Flown| Measured::of(flown, impact, events, file, &mut findings);
+    let judged = |flown: &FlightResult| Measured::of(flown, impact, events, file, &mut findings);
     let measured = flown.as_ref().and_then(judged);
     if measured.is_none() {
         findings.extend(judge::judge_fall_time(&findings, &file.drop, events, &file.tolerances));

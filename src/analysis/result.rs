@@ -1,7 +1,7 @@
 //! What the stages found to one [`Analysis`].
 
 use super::comparison::Measured;
-use super::flight::Flown;
+use super::flight::FlightResult;
 use super::setup::sticking;
 use super::{AfterImpact, impacts};
 use crate::data::{
@@ -56,6 +56,7 @@ pub(super) fn of(
         summary.clipped.clone_from(&signal.clipped);
     }
     let mut motion = None;
+    let openings = flown.as_ref().map_or_else(Vec::new, |flown| flown.openings.clone());
     let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     result.amplification = impacts::amplification(&result);
@@ -87,11 +88,12 @@ pub(super) fn of(
     signals.truncate(recorded);
     let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
-    analysis(recording, file, result, move || Curves { channels: channels(), motion, others: vec![] })
+    let curves = move || Curves { channels: channels(), motion, others: vec![] };
+    Analysis { openings, ..analysis(recording, file, result, curves) }
 }
 
 /// Lets the intervals of the speeds reach as far as a landing of L that may come before R strikes.
-fn doubt_landing(flown: &mut Flown, findings: &[Finding]) {
+fn doubt_landing(flown: &mut FlightResult, findings: &[Finding]) {
     let effect_m_s = |f: &Finding| match f.what {
         FindingKind::Drop(DropFinding::MayLand { effect_m_s, .. }) => Some(effect_m_s),
         _ => None,
@@ -113,7 +115,8 @@ fn analysis(
     let curve = move |other: &Channel| motion::other_curve(other, &events);
     let of_others = move || others.channels.iter().filter_map(curve).collect();
     let curves = LazyCurves::new(Box::new(move || Curves { others: of_others(), ..curves() }));
-    Analysis { result, cask_file: file.clone(), curves, start_unix_ns: recording.start_unix_ns }
+    let start_unix_ns = recording.start_unix_ns;
+    Analysis { result, cask_file: file.clone(), curves, start_unix_ns, openings: Vec::new() }
 }
 
 /// The result with the times of the events and, where they are measured, the quantities.
@@ -199,7 +202,7 @@ fn cutoff(file: &CaskFile) -> (f64, &'static str) {
 fn filter_effect(
     smooth: &[Signal],
     events: &Events,
-    Flown { setup, quantities, flight, .. }: &Flown,
+    FlightResult { setup, quantities, flight, .. }: &FlightResult,
 ) -> Option<String> {
     let speed = quantities.speed?;
     let integrated = motion::Integrated::over(smooth, events.first_contact?.time_s);

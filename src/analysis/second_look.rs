@@ -1,10 +1,11 @@
 //! An analysis whose result contradicts itself to the repetition, without one of its channels, that is
 //! consistent.
 
-use super::analyzed;
+use super::analyse_once;
 use super::flight_search::Patience;
 use crate::data::{
-    Analysis, Axis, CaskFile, ChannelFinding, Effect, Finding, IssueCode, MISSED_U, Recording, Severity,
+    Analysis, Axis, CLEARLY, CaskFile, ChannelFinding, Effect, Finding, IssueCode, MISSED_U, Opening,
+    Recording, Severity,
 };
 use crate::judge;
 
@@ -13,9 +14,6 @@ use crate::judge;
 const MOST_SAMPLES: usize = 5_000_000;
 /// Nor are those of more channels: each is left out once, and exchanged with each of the other end.
 const MOST_CHANNELS_TRIED: usize = 8;
-/// χ² of the closures by which another channel must close worse: chance gives three standard deviations to
-/// one in 400.
-pub(super) const CLEARLY: f64 = 9.0;
 
 /// How much speaks against an analysis.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
@@ -67,7 +65,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         let mut others = recording.clone();
         others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
-        let analysis = analyzed(&others, file, Patience::OneBeginning);
+        let analysis = analyse_once(&others, file, Patience::OneBeginning);
         (Doubt::of(&analysis), (*name).to_owned(), analysis)
     };
     let mut tried: Vec<_> = spare.iter().map(without).collect();
@@ -82,10 +80,19 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
             && (doubt.errors, doubt.warnings) < (before.errors, before.warnings)
             && others.iter().all(|(other, ..)| is_alone(doubt, other))
     });
-    if !is_told {
+    // Where another channel's scale or place explains all by far, that one disagrees.
+    let is_other = |name: &str| {
+        let least = |is_own: bool| {
+            let counts = |o: &&Opening| o.channel.as_deref().is_some_and(|own| (own == name) == is_own);
+            found.openings.iter().filter(counts).map(|o| o.chi_square).fold(f64::INFINITY, f64::min)
+        };
+        least(false) + CLEARLY < least(true)
+    };
+    if !is_told || is_other(&tried[0].1) {
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
+    better.openings.clone_from(&found.openings);
     // A limit or a broken cable of the channel that is left out is why it disagrees.
     let is_cause = |f: &&Finding| matches!(f.effect, Effect::VelocityStep | Effect::Disturbance);
     let causes = found.result.quality.iter().filter(|f| f.channel.as_ref() == Some(&name)).filter(is_cause);

@@ -1,6 +1,7 @@
 //! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
 
 use super::cask_file::CaskFile;
+use super::cause::{Opening, StatedCause};
 use super::channel::Span;
 use super::curves::LazyCurves;
 use super::estimate::{At, Estimate};
@@ -274,6 +275,8 @@ pub struct DropResult {
     pub quality: Vec<Finding>,
     /// Every quantity that is null, with the finding that took it.
     pub missing: Vec<MissingQuantity>,
+    /// What would explain an analysis that contradicts itself, best first; empty where several would.
+    pub causes: Vec<StatedCause>,
     /// The overall word.
     pub verdict: Verdict,
     /// Times of the events.
@@ -335,4 +338,6 @@ pub struct Analysis {
     pub curves: LazyCurves,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
+    /// Where the motion misses what it must meet, the numbers of which another one would meet it.
+    pub openings: Vec<Opening>,
 }

@@ -3,6 +3,7 @@
 mod analysis;
 mod cask;
 mod cask_file;
+mod cause;
 mod channel;
 mod check;
 mod curves;
@@ -36,6 +37,7 @@ mod unit;
 pub use analysis::*;
 pub use cask::*;
 pub use cask_file::*;
+pub use cause::*;
 pub use channel::*;
 pub use check::*;
 pub use curves::*;

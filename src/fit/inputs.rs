@@ -76,7 +76,7 @@ pub struct UncertainInput {
     /// The key that states it; `None` where the recording itself gives it.
     pub(super) stated: Option<StatedKey>,
     /// More than one where channels share it.
-    shifts: Vec<Shift>,
+    pub(super) shifts: Vec<Shift>,
 }
 
 impl UncertainInput {
@@ -100,6 +100,9 @@ pub(super) struct StatedKey {
     pub by_u: f64,
     /// What would test it.
     pub remedy: &'static str,
+    /// The number stated, of a scale 1, and what a standard uncertainty adds to it; none where another number
+    /// could not be told from other mistakes.
+    pub number: Option<[f64; 2]>,
 }
 
 fn stated(
@@ -109,18 +112,23 @@ fn stated(
     by_u: f64,
     remedy: &'static str,
 ) -> StatedKey {
-    StatedKey { tolerance, key, channel: None, by, by_u, remedy }
+    StatedKey { tolerance, key, channel: None, by, by_u, remedy, number: None }
 }
 
 /// The key of a channel's scale.
 fn calibration(channel: &str, share: f64, remedy: &'static str) -> StatedKey {
-    stated("calibration_percent", "calibration_percent", "1 %", 0.01 / share, remedy).of(channel)
+    let key = stated("calibration_percent", "calibration_percent", "1 %", 0.01 / share, remedy);
+    key.of(channel).with_number(1.0, share)
 }
 
 impl StatedKey {
     /// The same in the table of a channel.
     fn of(self, channel: &str) -> Self {
         Self { channel: Some(channel.to_owned()), ..self }
+    }
+
+    fn with_number(self, stated: f64, by_u: f64) -> Self {
+        Self { number: Some([stated, by_u]), ..self }
     }
 }
 
@@ -225,6 +233,7 @@ impl InputList {
         let by_rad = measured.tolerances.angle_rad / 2.0;
         let remedy = "an inclinometer on the rigged cask";
         let key = stated("angle_deg", "drop.angle_deg", "1°", DEGREE / by_rad, remedy);
+        let key = key.with_number(measured.setup.angle_rad, by_rad);
         let size = format!("{:.2}°", by_rad.to_degrees());
         self.add("drop angle", size, Some(key), move |inputs, by| inputs.setup.angle_rad += by * by_rad);
         let share = measured.tolerances.impact_velocity / 2.0;
@@ -234,6 +243,8 @@ impl InputList {
         } else {
             stated("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01 / share, REST)
         };
+        let v0_m_s = measured.setup.impact_velocity_m_s;
+        let key = key.with_number(v0_m_s, share * v0_m_s);
         self.add("impact velocity", percent(share), Some(key), move |inputs, by| {
             inputs.setup.impact_velocity_m_s *= 1.0 + by * share;
         });
@@ -258,11 +269,13 @@ impl InputList {
         let (known, setup) = (&measured.tolerances, measured.setup);
         let by_m = known.cog_m / 2.0;
         let key = stated("cog_m", "cask.cog_m", "10 mm", 0.01 / by_m, "weigh the cask on two supports");
+        let key = key.with_number(setup.cog_m, by_m);
         self.add("centre of gravity", mm(by_m), Some(key), move |inputs, by| inputs.setup.cog_m += by * by_m);
         if measured.inertia_m2.is_some() {
             let share = known.inertia / 2.0;
             let remedy = "high-speed video of both ends";
             let key = stated("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1 / share, remedy);
+            let key = key.with_number(1.0, share);
             self.add("inertia", percent(share), Some(key), move |inputs, by| {
                 inputs.inertia_m2 = inputs.inertia_m2.map(|i| i * (1.0 + by * share));
             });
@@ -279,9 +292,11 @@ impl InputList {
         self.add_footprint(measured, motion);
         let by_m = known.length * setup.length_m / 2.0;
         let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
+        let key = key.with_number(setup.length_m, by_m);
         self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);
         let by_m = known.height * setup.height_m / 2.0;
         let key = stated("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
+        let key = key.with_number(setup.height_m, by_m);
         self.add("section", mm(by_m), Some(key), move |inputs, by| inputs.setup.height_m += by * by_m);
     }
 
@@ -309,6 +324,7 @@ impl InputList {
         let remedy = "an angular-rate sensor and the rest before the release";
         let (tolerance, by_u) = ("angular_velocity_deg_s", DEGREE / by_rad_s);
         let key = stated(tolerance, "drop.angular_velocity_deg_s", "1°/s", by_u, remedy);
+        let key = key.with_number(measured.setup.angular_velocity_rad_s, by_rad_s);
         let size = format!("{:.2}°/s", by_rad_s.to_degrees());
         let shift = move |inputs: &mut Inputs, by: f64| inputs.turn_faster(by * by_rad_s);
         self.add("rotation at first contact", size, Some(key), shift);
@@ -321,6 +337,7 @@ impl InputList {
         });
         let share = known.clock / 2.0;
         let key = stated("clock_percent", "tolerance.clock_percent", "1 %", 0.01 / share, REST);
+        let key = key.with_number(1.0, share);
         let size = format!("{:.3} %", 100.0 * share);
         self.add("recorder's clock", size, Some(key), move |inputs, by| inputs.setup.second_s += by * share);
         for (input, [name, size]) in measured.second.iter().flat_map(|second| second.inputs).enumerate() {
@@ -418,6 +435,7 @@ impl InputList {
         if is_transverse {
             let by_m = known.position_m / 2.0;
             let place = stated("position_m", "position_m", "10 mm", 0.01 / by_m, SECOND_SENSOR);
+            let place = place.with_number(signal.position_m, by_m);
             self.add(name("position"), mm(by_m), Some(place.of(&signal.name)), move |inputs, by| {
                 // A sensor farther from L by δ reads Ω δ = −ω δ more.
                 inputs.step(channel, by * omega * by_m);

@@ -6,8 +6,8 @@ use super::steps::has_lost_step;
 use super::untested::{self, SilentMistake};
 use super::{FitData, Reconstruct};
 use crate::data::{
-    Closure, ClosureKind, Contribution, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
-    ReconstructionChoice, ReconstructionRung, Tolerances, Untested,
+    Closure, ClosureKind, Contribution, Estimate, FlightFit, MET_U, Opening, Quantities,
+    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung, Tolerances, Untested,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -45,6 +45,8 @@ pub struct RungTaken {
     pub choice: ReconstructionChoice,
     /// The inputs as the rung has them.
     pub taken: Inputs,
+    /// Where a closure is missed, the inputs of which another number would explain it.
+    pub openings: Vec<Opening>,
     base: Inputs,
     inputs: Vec<UncertainInput>,
     fit: PriorFit,
@@ -87,6 +89,7 @@ pub fn ladder(measured: &FitData, reconstruct: Reconstruct) -> Option<RungTaken>
     let flight = model.by_stated_inputs()?;
     let joint = model.joint();
     let closures = model.closures();
+    let openings = model.openings(&closures).unwrap_or_default();
     let mut steps = vec![by_flight(measured, flight, &closures)];
     let (mut widened, mut why) = widened(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
@@ -122,6 +125,7 @@ pub fn ladder(measured: &FitData, reconstruct: Reconstruct) -> Option<RungTaken>
         budget,
         choice,
         taken: base.moved(&inputs, &fit.unknowns),
+        openings,
         base,
         inputs,
         fit,

@@ -5,9 +5,9 @@ use super::closures::{Observable, observables};
 use super::inputs::{Inputs, UncertainInput, inputs};
 use super::untested::Influence;
 use super::{COVERAGE, FitData, Reconstruct};
-use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
+use crate::data::{Adjustment, Axis, Closure, Contribution, Estimate, MISSED_U, Motion, Opening, Quantities};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, Matrix};
 use std::sync::{Mutex, PoisonError};
 
 /// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so
@@ -17,6 +17,12 @@ const NEAR_U: f64 = 0.1;
 /// Steps over the contact that slopes are taken with: with four times as many no half-width of a fixture's
 /// quantities moves by more than 1e-3 of itself.
 const SLOPE_STEPS: usize = 50;
+
+/// What bending leaves of the step of a transverse channel, m/s: a third of what the check of them allows.
+const U_LINE_M_S: f64 = 0.03;
+
+/// Rounds of Gauss and Newton by which an input that is opened is sought.
+const OPENING_ROUNDS: usize = 5;
 
 /// Moves below this many standard uncertainties are not worth a line.
 const NOTABLE_MOVE: f64 = 0.05;
@@ -35,6 +41,7 @@ pub(super) struct Model<'a> {
     motion: Motion,
     pub(super) inputs: Vec<UncertainInput>,
     observables: Vec<Observable<'a>>,
+    line: StepLine,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
 }
@@ -45,7 +52,8 @@ impl<'a> Model<'a> {
         let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);
         let observables = observables(measured, &motion);
-        Some(Self { reconstruct, base, motion, inputs, observables, known_slopes: Mutex::default() })
+        let (line, known_slopes) = (StepLine::of(measured), Mutex::default());
+        Some(Self { reconstruct, base, motion, inputs, observables, line, known_slopes })
     }
 
     fn follow(&self, inputs: &Inputs) -> Option<Motion> {
@@ -187,6 +195,59 @@ impl<'a> Model<'a> {
         Some((0..count).map(influence).collect())
     }
 
+    /// Each input of which another number, alone, comes nearest to the observables and the line of the
+    /// transverse steps, the best first; none where nothing is missed.
+    ///
+    /// That number has the least χ² = mᵀ (JJᵀ + 1)⁻¹ m of the misses m, by Gauss and Newton   (31)
+    pub fn openings(&self, closures: &[Closure]) -> Option<Vec<Opening>> {
+        // By less than its own uncertainty no step is told from the line.
+        let is_on_line = self.line.misses(&self.base).iter().all(|miss| miss.abs() < MISSED_U);
+        if is_on_line && closures.iter().all(|closure| closure.most_in_u() < MISSED_U) {
+            return None;
+        }
+        let start = vec![0.0; self.inputs.len()];
+        let missed_by = |by_u: &[f64]| {
+            let inputs = self.base.moved(&self.inputs, by_u);
+            let mut misses = self.read(&inputs)?.1;
+            misses.extend(self.line.misses(&inputs));
+            Some(DVector::from_vec(misses))
+        };
+        let misses = missed_by(&start).filter(|misses| !misses.is_empty())?;
+        let of_line = |by_u: &[f64]| Some(self.line.misses(&self.base.moved(&self.inputs, by_u)));
+        let slopes = self.slopes_of_residuals(&start)?;
+        let line_slopes = derivatives(&of_line(&start)?, &of_line, &start, &|_| false)?;
+        let rows: Vec<_> = slopes.row_iter().chain(line_slopes.row_iter()).map(Matrix::into_owned).collect();
+        let in_u = MissesInU::of(&DMatrix::from_rows(&rows));
+        let own = misses.iter().zip(&in_u.u).map(|(miss, u)| miss / u);
+        if own.chain(in_u.beside_others(misses.as_slice())).all(|miss_in_u| miss_in_u.abs() < MISSED_U) {
+            return None;
+        }
+        let opened = |(input, own): (usize, &UncertainInput)| {
+            let stated = own.stated.as_ref().filter(|_| own.shifts.len() == 1)?;
+            let [number, by_u] = stated.number?;
+            let (mut at_u, mut missed) = (start.clone(), misses.clone());
+            for _ in 0..OPENING_ROUNDS {
+                let slope = missed_by(&beside(&at_u, input))? - &missed;
+                let weighed = &in_u.weights * &slope;
+                at_u[input] -= weighed.dot(&missed) / weighed.dot(&slope);
+                missed = missed_by(&at_u)?;
+            }
+            let explains = number + at_u[input] * by_u;
+            let chi_square = (&in_u.weights * &missed).dot(&missed);
+            let channel = stated.channel.clone();
+            let key = match stated.key {
+                "calibration_percent" => "scale",
+                "tolerance.clock_percent" => "sample_rate_hz",
+                key => key,
+            };
+            let opening = Opening { key, channel, stated: number, explains, chi_square };
+            (explains.is_finite() && chi_square.is_finite()).then_some(opening)
+        };
+        let mut all: Vec<Opening> = self.inputs.iter().enumerate().filter_map(opened).collect();
+        all.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));
+        Some(all)
+    }
+
     /// What a fit moved, largest first.
     pub fn adjustments(&self, fit: &PriorFit) -> Vec<Adjustment> {
         let mut moved: Vec<Adjustment> = self
@@ -204,6 +265,50 @@ impl<'a> Model<'a> {
         moved.sort_by(|a, b| b.moved_in_u.abs().total_cmp(&a.moved_in_u.abs()));
         moved
     }
+}
+
+/// What the velocity steps of three and more transverse channels leave of the line over their positions that
+/// one rigid body gives   (16)
+struct StepLine {
+    /// The channels.
+    channels: Vec<usize>,
+    /// Takes the line off what each has.
+    projection: DMatrix<f64>,
+}
+
+impl StepLine {
+    fn of(measured: &FitData) -> Self {
+        let own = measured.signals.iter().enumerate().take(measured.flight.plateaus.len());
+        let channels: Vec<usize> = own.filter(|(_, s)| s.axis == Axis::Transverse).map(|(i, _)| i).collect();
+        let place = |row: usize, column: usize| match column {
+            0 => 1.0,
+            _ => measured.signals[channels[row]].position_m,
+        };
+        let along = DMatrix::from_fn(channels.len(), 2, place);
+        let inverse = (along.transpose() * &along).try_inverse();
+        let projection = inverse.map_or_else(
+            || DMatrix::zeros(channels.len(), channels.len()),
+            |inverse| {
+                DMatrix::identity(channels.len(), channels.len()) - &along * inverse * along.transpose()
+            },
+        );
+        Self { channels, projection }
+    }
+
+    /// Over [`U_LINE_M_S`]; empty where two channels determine the line.
+    fn misses(&self, inputs: &Inputs) -> Vec<f64> {
+        if self.channels.len() < 3 {
+            return Vec::new();
+        }
+        let step = |row: usize, _| inputs.flight.plateaus[self.channels[row]].velocity_step_m_s / U_LINE_M_S;
+        let steps = DVector::from_fn(self.channels.len(), step);
+        (&self.projection * steps).iter().copied().collect()
+    }
+}
+
+/// These moves with one of them larger by a standard uncertainty.
+fn beside(by_u: &[f64], input: usize) -> Vec<f64> {
+    by_u.iter().enumerate().map(|(i, by)| if i == input { by + 1.0 } else { *by }).collect()
 }
 
 /// How far the closures may miss by chance: their covariance by all inputs is JJᵀ + 1   (31)
@@ -226,7 +331,7 @@ impl MissesInU {
     /// Each miss less what the others let expect of it, over the standard uncertainty that they leave it
     /// (W m)_i / √W_ii.
     fn beside_others(&self, misses: &[f64]) -> Vec<f64> {
-        let all = &self.weights * nalgebra::DVector::from_column_slice(misses);
+        let all = &self.weights * DVector::from_column_slice(misses);
         all.iter().zip(self.weights.diagonal().iter()).map(|(miss, weight)| miss / weight.sqrt()).collect()
     }
 }

@@ -23,6 +23,7 @@ pub(super) fn analysis() -> Analysis {
         cask_file: cask_file(),
         curves: LazyCurves::new(Box::new(curves)),
         start_unix_ns: Some(1_700_000_000_000_000_000),
+        openings: vec![],
     }
 }
 
@@ -149,6 +150,7 @@ fn result() -> DropResult {
             difference_percent: 0.34,
             agrees: true,
         }),
+        causes: vec![],
         quality: quality(),
         missing: Vec::new(),
         verdict: Verdict::Review,

@@ -3,7 +3,7 @@
 use super::{Finding, IssueCode as Code, Severity};
 use crate::data::keys::quantity_words;
 use crate::data::shown::digits;
-use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate, ObservedBeside};
+use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Cure, Drop, End, Estimate, ObservedBeside};
 
 findings! {
 /// A finding about the drop, its motion or its prediction.
@@ -115,10 +115,10 @@ pub enum DropFinding of Drop {
          than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down \
          speed are not determined", step_m_s.abs(), 1e3 * after_s);
     /// A mode that is no bending.
-    Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning, Nothing),
+    Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning, Contradiction),
         ("an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is slower than the cask bends: \
-         contents or mounts move in it; speed and k are those of cask and contents together, the speed of \
-         the corner is that of what strikes");
+         contents or mounts move in it, or a sensor sits elsewhere than stated; k and the slap-down speed \
+         are not determined");
     /// L is still pressed as R strikes; an error, to stand before what follows from it.
     Pressed { frequency_hz: f64, periods: f64 } => (Code::SecondContact, Error, Motion),
         ("between first contact and the strike of the second end the velocities curve as in no free flight \
@@ -190,10 +190,13 @@ pub enum DropFinding of Drop {
          joined(closures, |c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.most_in_u()), ", "));
     /// With a usual slip put right everything is consistent; with either of two where nothing tells which.
     UsualSlip { cures: Vec<Cure>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
-        ("{}: check this first; it has not been applied", joined(cures, Cure::words, "; "));
-    /// A closure is missed that this angle would meet with all others.
-    AngleCloses { angle_deg: f64, severity: Severity } => (Code::Geometry, *severity, Hint),
-        ("if all else is as stated, a drop angle of {angle_deg:.1}° would close it");
+        ("{}: check this first; it has not been applied", joined(cures, cured, "; "));
+    /// With one of these numbers in place of the one stated everything is consistent.
+    OneNumber { cures: Vec<Cure>, severity: Severity } => (Code::Geometry, *severity, Hint),
+        ("if all else is as stated, {}: check this first; it has not been applied", joined(cures, cured, "; "));
+    /// More than two causes explain it as well.
+    SeveralCauses { cures: Vec<Cure>, severity: Severity } => (Code::Geometry, *severity, Hint),
+        ("several mistakes would explain it, each alone: {}: check these", joined(cures, Cure::keys, "; "));
 }
 }
 
@@ -203,6 +206,12 @@ fn code_of(closure: ClosureKind) -> Code {
         ClosureKind::Rest | ClosureKind::RateGained => Code::Scale,
         _ => Code::Geometry,
     }
+}
+
+/// "with `drop.height_m` in ft everything is consistent, at 20.49 ± 0.11 m/s and k = 0.56 ± 0.01".
+fn cured(cure: &Cure) -> String {
+    let (speed, k) = cure.causes.first().map_or((None, None), |cause| (cause.speed, cause.k));
+    format!("with {} everything is consistent, at {}", cure.keys(), numbers(speed, k))
 }
 
 fn joined<T>(all: &[T], words: impl Fn(&T) -> String, between: &str) -> String {
@@ -260,47 +269,6 @@ fn without_end(end: End, is_stood_in_for: bool) -> &'static str {
 /// "20.62 ± 0.40 m/s".
 fn plus_minus(Estimate { value, u95, unit }: &Estimate) -> String {
     format!("{} ± {} {}", digits(*value, 4), digits(*u95, 2), unit.trim_matches('1')).trim_end().to_owned()
-}
-
-/// What a key of the cask file says amiss: a number x where `from` + `by` x is meant, or the sources of two
-/// channels.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Slip {
-    /// The key, with its table where that is no channel's; `[cask]` for all lengths there.
-    pub key: &'static str,
-    /// The channels, where the key is theirs.
-    pub names: Vec<String>,
-    /// What mends it, as "in ft".
-    pub right: &'static str,
-    /// In the unit that the key's number has here.
-    pub from: f64,
-    /// The factor.
-    pub by: f64,
-}
-
-/// Slips with which, put right at once, everything is consistent, and what the result then is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cure {
-    /// One slip, or two.
-    pub slips: Vec<Slip>,
-    /// Slap-down speed, m/s.
-    pub speed: Option<Estimate>,
-    /// Effective coefficient of restitution.
-    pub k: Option<Estimate>,
-}
-
-impl Cure {
-    /// What would be put right, where, and what that makes of the result.
-    fn words(&self) -> String {
-        let words = |Slip { key, names, right, .. }: &Slip| match &names[..] {
-            [] => format!("`{key}` {right}"),
-            names => {
-                format!("`{key}` of {} {right}", names.join(if names.len() > 2 { ", " } else { " and " }))
-            }
-        };
-        let all = self.slips.iter().map(words).collect::<Vec<_>>().join(" and ");
-        format!("with {all} everything is consistent, at {}", numbers(self.speed, self.k))
-    }
 }
 
 /// "20.49 ± 0.11 m/s and k = 0.56 ± 0.01", as far as they are there.

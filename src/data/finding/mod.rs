@@ -66,7 +66,7 @@ pub use attribute::AttributeFinding;
 pub use channel::{ChannelFinding, During, RotationCause};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
-pub use drop::{Cure, DropFinding, Slip};
+pub use drop::DropFinding;
 pub use effect::{Effect, ResultPart};
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};

@@ -1,13 +1,14 @@
-//! An analysis that something speaks against to the usual slip in the cask file, or the angle, with which
-//! everything closes.
+//! An analysis that something speaks against to the one mistake in the cask file with which everything
+//! closes.
 
-use super::analyzed;
+use super::analyse_once;
 use super::flight_search::Patience;
-use super::second_look::{CLEARLY, Doubt, closes, is_too_large};
+use super::second_look::{Doubt, closes, is_too_large};
+use crate::data::shown::digits;
 use crate::data::{
-    Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, DropResult, Finding,
-    FindingKind, FlightFit, IssueCode, MISSED_U, Recording, RecordingFormat, ResultPart,
-    STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip,
+    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Finding,
+    FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
+    STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
 };
 use crate::judge;
 use rayon::prelude::*;
@@ -21,6 +22,9 @@ const LIKELY_K: RangeInclusive<f64> = 0.02..=0.98;
 /// all but one 0.05 (docs/validation.md), two slips of which one is put right up to 0.3 and more.
 const MOST_U95_K: f64 = 0.08;
 const MOST_U95_SPEED: f64 = 0.06;
+/// The same of a cure by another number, which all closures and steps meet: beyond them it says nothing.
+const OPEN_U95_K: f64 = 0.25;
+const OPEN_U95_SPEED: f64 = 0.15;
 /// Units of length that a number in metres may be in.
 const LENGTHS_M: [(&str, f64); 3] = [("in cm", 0.01), ("in mm", 1e-3), ("in ft", 0.3048)];
 /// The least drop height and length of a cask that a unit of length is tried for, m.
@@ -28,56 +32,204 @@ const LEAST_M: f64 = 0.1;
 /// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
 /// the unit is wrong.
 const MOST_LOST: f64 = 3.0;
-/// The first step of the search for an angle, rad, how many there are, and when its closure is met, in u.
-const STEP_RAD: f64 = 0.01;
-const STEPS: usize = 4;
-const MET: f64 = 0.3;
+/// Openings that are tried: no more than so many, of a χ² up to this many times the least and three times
+/// [`CLEARLY`] more; and how often: a place 0.7 m off is found by the second time.
+const MOST_OPENED: usize = 5;
+const NEARLY: f64 = 2.0;
+const ROUNDS: usize = 2;
+/// More causes that do as well are listed, and none is named.
+const MOST_NAMED: usize = 2;
+/// A scale or a clock is wrong by no more than this factor where it is no unit.
+const LIKELY_FACTOR: RangeInclusive<f64> = 0.1..=10.0;
 
-/// Adds the usual slip with which everything closes, where an error stands, or else the angle with which it
-/// does.
-pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
+/// Adds what explains the analysis where something speaks against it: the usual slips with which everything
+/// closes, or else the stated numbers of which another one does it.
+pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
     let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
     let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
-    let steps = of_steps(recording, &found.result);
-    let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
-    let cured = |slips: Vec<Slip>| {
-        let (mut other, mut stated) = (recording.clone(), file.clone());
-        for slip in &slips {
-            put_right(slip, &mut other, &mut stated);
-        }
-        let analysis = analyzed(&other, &stated, Patience::OneBeginning);
-        let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
-        is_cured(&analysis).then(|| (Doubt::of(&analysis), Cure { slips, speed, k }))
-    };
+    let stated = Contradicted { recording, file };
     // Where all closes without one channel, nothing else is wrong.
     let left_out = found.result.quality.iter().find(|f| is_left_out(f)).and_then(|f| f.channel.as_ref());
-    let is_of_it =
-        |slips: &Vec<Slip>| left_out.is_none_or(|name| slips.iter().any(|slip| slip.names.contains(name)));
-    let may_be = hypotheses(recording, file).into_par_iter().filter(is_of_it).filter(may_cure);
-    let tried: Vec<(Doubt, Cure)> = may_be.filter_map(cured).collect();
-    let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
-    let least = tried.iter().map(|(doubt, _)| clearly(doubt)).reduce(|a, b| if b < a { b } else { a });
-    let as_good = tried.into_iter().filter(|(doubt, _)| least.is_some_and(|least| *doubt < least));
-    let cures: Vec<Cure> = as_good.map(|(_, cure)| cure).collect();
-    // Where more than two do as well the recording tells none.
-    let told = match cures.len() {
-        0 => closing_angle_deg(recording, file, found)
-            .map(|angle_deg| DropFinding::AngleCloses { angle_deg, severity }),
-        1 | 2 => Some(DropFinding::UsualSlip { cures, severity }),
-        _ => None,
+    let is_of_it = |slips: &[Slip]| left_out.is_none_or(|name| slips.iter().any(|s| s.names.contains(name)));
+    let steps = of_steps(recording, &found.result);
+    let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
+    let usual = hypotheses(recording, file).into_par_iter().filter(|slips| is_of_it(slips)).filter(may_cure);
+    let by_slips = best(usual.filter_map(|slips| stated.cured_by_slips(slips)).collect());
+    let is_usual = !by_slips.is_empty();
+    let by_number = || {
+        let numbers = stated.numbers_to_try(&found.openings).into_par_iter();
+        let own = numbers.filter(|slip| is_of_it(std::slice::from_ref(slip)));
+        best(own.filter_map(|slip| stated.cured_by_number(slip)).collect())
     };
-    found.result.quality.extend(told.map(Finding::from));
+    let cures = if is_usual { by_slips } else { by_number() };
+    if cures.len() <= MOST_NAMED {
+        found.result.causes = cures.iter().flat_map(|cure| cure.causes.clone()).collect();
+    }
+    let cause = match (cures.len(), is_usual) {
+        (0, _) => return,
+        (..=MOST_NAMED, true) => DropFinding::UsualSlip { cures, severity },
+        (..=MOST_NAMED, false) => DropFinding::OneNumber { cures, severity },
+        _ => DropFinding::SeveralCauses { cures, severity },
+    };
+    found.result.quality.push(cause.into());
+}
+
+/// What an analysis was made of that contradicts itself.
+struct Contradicted<'a> {
+    recording: &'a Recording,
+    file: &'a CaskFile,
+}
+
+impl Contradicted<'_> {
+    /// The analysis with slips put right.
+    fn with(&self, slips: &[Slip], patience: Patience) -> Analysis {
+        let (mut recording, mut file) = (self.recording.clone(), self.file.clone());
+        for slip in slips {
+            put_right(slip, &mut recording, &mut file);
+        }
+        analyse_once(&recording, &file, patience)
+    }
+
+    fn cured_by_slips(&self, slips: Vec<Slip>) -> Option<(Doubt, Cure)> {
+        let analysis = self.with(&slips, Patience::OneBeginning);
+        is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.cure(slips, &analysis))
+    }
+
+    /// By another number, which is opened again where a large mistake leaves it open.
+    fn cured_by_number(&self, mut slip: Slip) -> Option<(Doubt, Cure)> {
+        let is_opened = slip.key != "offset_m";
+        let patience = if is_opened { Patience::EachBeginning } else { Patience::OneBeginning };
+        for _ in 0..ROUNDS {
+            let analysis = self.with(std::slice::from_ref(&slip), patience);
+            if is_cured(&analysis, [OPEN_U95_K, OPEN_U95_SPEED]) {
+                return Some(self.cure(vec![slip], &analysis));
+            }
+            let is_own =
+                |o: &&Opening| o.key == slip.key && o.channel.as_ref().is_none_or(|n| slip.names.contains(n));
+            slip = self.opened(&slip, analysis.openings.iter().find(is_own)?);
+            if !is_possible(&slip, self.file) {
+                return None;
+            }
+        }
+        None
+    }
+
+    fn cure(&self, slips: Vec<Slip>, analysis: &Analysis) -> (Doubt, Cure) {
+        let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
+        let cause = |slip: &Slip| {
+            let [stated, explains] = self.numbers(slip).map_or([None; 2], |both| both.map(Some));
+            StatedCause { key: slip.key, names: slip.names.clone(), stated, explains, speed, k }
+        };
+        let causes = slips.iter().map(cause).collect();
+        (Doubt::of(analysis), Cure { slips, causes })
+    }
+
+    /// Other numbers of a drop that come near to explaining it, and offsets to the other side, which move
+    /// little.
+    fn numbers_to_try(&self, openings: &[Opening]) -> Vec<Slip> {
+        let first = |opening: &Opening| {
+            let names = match opening.key {
+                "sample_rate_hz" => self.recording.channels.iter().map(|c| c.name.clone()).collect(),
+                _ => opening.channel.iter().cloned().collect(),
+            };
+            let as_stated = Slip { key: opening.key, names, right: "".into(), from: 0.0, by: 1.0 };
+            (opening.chi_square, self.opened(&as_stated, opening))
+        };
+        let possible = openings.iter().map(first).filter(|(_, slip)| is_possible(slip, self.file));
+        let mut most = f64::INFINITY;
+        let near = possible.take_while(|(chi_square, _)| {
+            most = most.min(NEARLY * chi_square + 3.0 * CLEARLY);
+            *chi_square < most
+        });
+        let mut all: Vec<Slip> = near.take(MOST_OPENED).map(|(_, slip)| slip).collect();
+        let channels = &self.recording.channels;
+        all.extend(of_skin(channels, self.file.cask.height_m));
+        let off_axis = channels.iter().filter(|c| c.offset_m != 0.0);
+        all.extend(off_axis.map(|c| slip("offset_m", vec![c.name.clone()], "reversed", [0.0, -1.0])));
+        all
+    }
+
+    /// The slip with the number that an opening has, found where it was put right as `slip` has it.
+    fn opened(&self, slip: &Slip, opening: &Opening) -> Slip {
+        let factor = opening.explains / opening.stated;
+        let [from, by] = match slip.key {
+            "scale" | "cask.inertia_kg_m2" | "drop.impact_velocity_m_s" => [0.0, slip.by * factor],
+            // A longer second puts fewer samples into it.
+            "sample_rate_hz" => [0.0, slip.by / factor],
+            // v0 is that of the root of the height.
+            "drop.height_m" => [0.0, slip.by * factor * factor],
+            _ => [opening.explains, 0.0],
+        };
+        let slip = Slip { from, by, ..slip.clone() };
+        let words = |[stated, explains]: [f64; 2]| {
+            format!("{} in place of {}", digits(explains, 4), digits(stated, 4))
+        };
+        let right = self.numbers(&slip).map_or_else(String::new, words).into();
+        Slip { right, ..slip }
+    }
+
+    /// The number that a slip's key states and the one that is right, in the key's unit; of a polarity or
+    /// scale the factor. `None` where it is no number, or one for each of several channels.
+    fn numbers(&self, slip: &Slip) -> Option<[f64; 2]> {
+        let CaskFile { cask, drop, .. } = self.file;
+        let channel = self.recording.channels.iter().find(|c| slip.names.first() == Some(&c.name));
+        let alone = channel.filter(|_| slip.names.len() == 1);
+        let degree = 1_f64.to_degrees();
+        let (stated, unit) = match slip.key {
+            "drop.angle_deg" => (drop.angle_rad, degree),
+            "drop.angular_velocity_deg_s" => (drop.angular_velocity_rad_s, degree),
+            "drop.height_m" => (drop.height_m, 1.0),
+            "drop.impact_velocity_m_s" => (drop.impact_velocity_m_s, 1.0),
+            "cask.length_m" => (cask.length_m, 1.0),
+            "cask.height_m" => (cask.height_m, 1.0),
+            "cask.cog_m" => (cask.cog_m, 1.0),
+            "cask.inertia_kg_m2" => (cask.inertia_kg_m2, 1.0),
+            "sample_rate_hz" => (channel?.sample_rate_hz, 1.0),
+            "position_m" => (alone?.position_m, 1.0),
+            "offset_m" => (alone?.offset_m, 1.0),
+            "scale" => {
+                let spec = self.file.channels.iter().find(|spec| slip.names.first() == Some(&spec.name))?;
+                (spec.scale.unwrap_or(1.0), 1.0)
+            }
+            "polarity" => (1.0, 1.0),
+            _ => return None,
+        };
+        Some([stated * unit, (slip.from + slip.by * stated) * unit])
+    }
+}
+
+/// Those that do as well as the best, in their order.
+fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
+    tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+    let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
+    let least = tried.first().map(|(doubt, _)| clearly(doubt));
+    tried.retain(|(doubt, _)| least.is_some_and(|least| *doubt < least));
+    tried.into_iter().map(|(_, cure)| cure).collect()
+}
+
+/// Whether a drop can have the number that a slip is put right to.
+fn is_possible(slip: &Slip, file: &CaskFile) -> bool {
+    let (length_m, is_factor) = (file.cask.length_m, slip.by != 0.0);
+    match slip.key {
+        // Times that a recording has bear its rate out.
+        "sample_rate_hz" if file.channels.iter().any(|c| c.sample_rate_hz.is_none()) => false,
+        _ if is_factor => LIKELY_FACTOR.contains(&slip.by),
+        "position_m" | "cask.cog_m" => (0.0..=length_m).contains(&slip.from),
+        "drop.angle_deg" => (0.0..FRAC_PI_2).contains(&slip.from),
+        "cask.length_m" | "cask.height_m" => slip.from > LEAST_M,
+        _ => true,
+    }
 }
 
 /// Whether all closes, at a k and with intervals that a sound drop has, and nothing is left that speaks of
 /// more than this slip.
-fn is_cured(analysis: &Analysis) -> bool {
+fn is_cured(analysis: &Analysis, [most_u95_k, most_u95_speed]: [f64; 2]) -> bool {
     let result = &analysis.result;
     let (Some(k), Some(speed)) = (result.k, result.slap_down.speed) else { return false };
     let is_doubted =
         |f: &Finding| f.takes(ResultPart::Motion) || f.effect.doubts_cask_file() || f.code == IssueCode::Skew;
     let mut left = result.quality.iter().filter(|f| f.severity > Severity::Note);
-    let is_usual = k.u95 < MOST_U95_K && speed.u95 < MOST_U95_SPEED * speed.value;
+    let is_usual = k.u95 < most_u95_k && speed.u95 < most_u95_speed * speed.value;
     is_usual && LIKELY_K.contains(&k.value) && closes(analysis) && !left.any(is_doubted)
 }
 
@@ -88,6 +240,10 @@ fn is_left_out(finding: &Finding) -> bool {
 /// How severe the findings are that a slip may explain: errors of which none takes a channel, or a warning on
 /// what the cask file says of the channels.
 fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
+    // The end that a channel was left out of may lack one now.
+    if findings.iter().any(is_left_out) {
+        return Some(Severity::Warning);
+    }
     // No slip gives back what a clipped or dead channel lost.
     let is_lost = |f: &Finding| match f.what {
         FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
@@ -97,8 +253,7 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     if errors.peek().is_some() {
         return (!errors.any(is_lost)).then_some(Severity::Error);
     }
-    let warns =
-        |f: &Finding| f.severity == Severity::Warning && (f.effect.doubts_cask_file() || is_left_out(f));
+    let warns = |f: &Finding| f.severity == Severity::Warning && f.effect.doubts_cask_file();
     findings.iter().any(warns).then_some(Severity::Warning)
 }
 
@@ -121,7 +276,8 @@ fn hypotheses(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
             all.push(vec![exchanged]);
         }
     }
-    all.extend(of_skin(channels, file.cask.height_m));
+    let along = channels.iter().filter(|c| c.axis == Axis::Axial);
+    all.extend(along.map(|axial| vec![reversed(&[axial])]));
     for group in across.chunks(1).chain(all_of) {
         // Message types imply m/s², which fewer samples are in than carry it.
         let may_be_implied = |c: &Channel| c.unit != "g" && recording.format == RecordingFormat::Mcap;
@@ -138,20 +294,20 @@ fn hypotheses(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
 }
 
 /// Sensors on the skin, above or below, that are stated on the axis: the axial ones tell.
-fn of_skin(channels: &[Channel], section_m: f64) -> Vec<Vec<Slip>> {
+fn of_skin(channels: &[Channel], section_m: f64) -> Vec<Slip> {
     let is_stated = channels.iter().any(|c| c.offset_m != 0.0);
     if is_stated || section_m <= 0.0 || channels.iter().all(|c| c.axis == Axis::Transverse) {
         return Vec::new();
     }
     let names: Vec<String> = channels.iter().map(|c| c.name.clone()).collect();
-    let on_skin = |right, offset_m| vec![slip("offset_m", names.clone(), right, [offset_m, 0.0])];
+    let on_skin = |right, offset_m| slip("offset_m", names.clone(), right, [offset_m, 0.0]);
     let half_m = section_m / 2.0;
     let above = on_skin("as half the section (upper skin)", half_m);
     vec![above, on_skin("as minus half the section (lower skin)", -half_m)]
 }
 
 fn slip(key: &'static str, names: Vec<String>, right: &'static str, [from, by]: [f64; 2]) -> Slip {
-    Slip { key, names, right, from, by }
+    Slip { key, names, right: right.into(), from, by }
 }
 
 /// An angle, heights, lengths and rates that may be in another unit, or counted otherwise.
@@ -203,8 +359,15 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
             cask.inertia_kg_m2 *= if is_default { by * by } else { 1.0 };
         }
         "source" => exchange(own),
+        "cask.length_m" => mend(&mut cask.length_m),
+        "cask.height_m" => mend(&mut cask.height_m),
+        "cask.cog_m" => mend(&mut cask.cog_m),
+        "cask.inertia_kg_m2" => mend(&mut cask.inertia_kg_m2),
+        "drop.impact_velocity_m_s" => mend(&mut drop.impact_velocity_m_s),
+        "drop.angular_velocity_deg_s" => *drop = drop.turned(cask, from - drop.angular_velocity_rad_s),
         "offset_m" => own.for_each(|c| mend(&mut c.offset_m)),
         "position_m" => own.for_each(|c| mend(&mut c.position_m)),
+        "scale" => own.for_each(|c| mend(&mut c.scale_m_s2)),
         "sample_rate_hz" => own.for_each(|c| mend(&mut c.sample_rate_hz)),
         // What the sensor can read stays what it is.
         _ => own.for_each(|c| {
@@ -270,28 +433,4 @@ fn exchange<'a>(mut both: impl Iterator<Item = &'a mut Channel>) {
         one.scale_m_s2 *= -1.0;
         other.scale_m_s2 *= -1.0;
     }
-}
-
-/// The angle with which R meets the target as it strikes and everything else closes, by the secant, where
-/// that closure is missed, degrees.
-fn closing_angle_deg(recording: &Recording, file: &CaskFile, found: &Analysis) -> Option<f64> {
-    let miss = |analysis: &Analysis| {
-        let closures = &analysis.result.reconstruction.as_ref()?.closures;
-        closures.iter().find(|c| c.kind == ClosureKind::Height).map(|c| c.miss_in_u)
-    };
-    let (mut last_rad, mut last) = (file.drop.angle_rad, miss(found).filter(|u| u.abs() > MISSED_U)?);
-    // R too high as it strikes: the stated angle is too large.
-    let mut step_rad = -last.signum() * STEP_RAD;
-    for _ in 0..STEPS {
-        let mut stated = file.clone();
-        stated.drop.angle_rad = (last_rad + step_rad).clamp(0.0, FRAC_PI_2);
-        let analysis = analyzed(recording, &stated, Patience::OneBeginning);
-        let now = miss(&analysis)?;
-        if now.abs() < MET {
-            return is_cured(&analysis).then_some(stated.drop.angle_rad.to_degrees());
-        }
-        step_rad *= -now / (now - last);
-        (last_rad, last) = (stated.drop.angle_rad, now);
-    }
-    None
 }
