@@ -20,6 +20,10 @@ const LEAST_A_DAY: f64 = 1e6;
 /// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
 const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
 
+/// The unit of Windows' file times, which count from 1601-01-01, and how long before 1970 that is, s.
+const WINDOWS_TICK_S: f64 = 1e-7;
+const WINDOWS_EPOCH_S: f64 = 11_644_473_600.0;
+
 /// Rates at which impacts are recorded, Hz: from pulses of 10 ms at ten samples each to the fastest transient
 /// recorders.
 const USUAL_HZ: (f64, f64) = (1e3, 5e6);
@@ -294,6 +298,11 @@ impl Counted {
                 && self.last * unit_s < EPOCH_S.1
                 && (least_hz..=USUAL_HZ.1).contains(&(self.rate / unit_s))
         };
-        UNITS.iter().find(is_it).map(|unit| unit.1)
+        let by_windows = [self.first, self.last].map(|number| WINDOWS_TICK_S * number - WINDOWS_EPOCH_S);
+        let is_windows = by_windows[0] > EPOCH_S.0
+            && by_windows[1] < EPOCH_S.1
+            && (LEAST_EPOCH_HZ..=USUAL_HZ.1).contains(&(self.rate / WINDOWS_TICK_S));
+        let found = UNITS.iter().find(is_it).map(|unit| unit.1);
+        found.or_else(|| is_windows.then_some(WINDOWS_TICK_S))
     }
 }

@@ -10,6 +10,10 @@ pub enum TimesFinding of Times {
     Backward { count: usize, from_s: f64, to_s: f64 } => (Code::DisorderedBlocks, Note, Nothing),
         ("times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by \
          time");
+    /// Rows at the end that hold one time and one value.
+    Unfilled { samples: usize } => (Code::DisorderedBlocks, Note, Nothing),
+        ("{samples} rows at the end hold one value, and a time before the row above them: laid out and never \
+         filled, they are no samples");
     /// Samples of equal times, some with different values.
     CameTwice { samples: usize, different: usize }
         => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }, Local),

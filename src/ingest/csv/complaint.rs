@@ -31,6 +31,13 @@ pub(super) fn row_error(
         RowError::TooLong { line } => {
             return limits.refusal(path, &format!("line {line} takes"), limits.line_bytes());
         }
+        RowError::Word { line, slot, cell }
+            if wanted.is_time.get(slot) == Some(&true) && !cell.contains(|c: char| c.is_ascii_digit()) =>
+        (
+            line,
+            format!("{} holds {cell:?}, which is no time: another table begins there", headed(slot)),
+            "delete that line and those below it in a copy; a remark between two rows alone".to_owned(),
+        ),
         RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
             line,
             format!("{} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),

@@ -119,12 +119,26 @@ fn entry(line: &str, delimiter: Delimiter) -> Option<(String, String)> {
     let values: Vec<String> =
         values.filter(|value| !value.is_empty()).map(|value| value.replace(',', ".")).collect();
     let (first, rest) = values.split_first()?;
+    if value.split_whitespace().next().is_some_and(may_have_thousands) {
+        return None;
+    }
     let is_number = |value: &String| value.parse::<f64>().is_ok();
     let unit = unit.or_else(|| rest.first().filter(|next| !is_number(next)).map(String::as_str));
     let is_one = rest.iter().all(|other| other == first || !is_number(other));
     let value =
         if is_number(first) { format!("{first} {}", unit.unwrap_or_default()) } else { first.clone() };
     is_one.then(|| (name.to_owned(), value.trim().to_owned()))
+}
+
+/// Whether a number is ten thousand, or ten with three decimals: `10,000`.
+fn may_have_thousands(number: &str) -> bool {
+    let mut groups = number.split(',');
+    let is_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let leads = groups
+        .next()
+        .is_some_and(|first| (1..=3).contains(&first.len()) && !first.starts_with('0') && is_digits(first));
+    let mut groups = groups.peekable();
+    leads && groups.peek().is_some() && groups.all(|group| group.len() == 3 && is_digits(group))
 }
 
 /// The numbers of a line that may be factors of the samples: `Scale factor;0,9;0,8`, `1 LSB = 0.9 g`, `# gain

@@ -144,6 +144,11 @@ impl<'a> Table<'a> {
             column.scale(unit_s.map_err(refused)?);
         }
         // Each of several sensors may have a clock of its own.
+        if column.each.len() > LEAST_FALLING && column.each.windows(2).all(|pair| pair[1] < pair[0]) {
+            let problem =
+                format!("the times in column {header:?} fall from row to row: the last one stands first");
+            return Err(refused(Refusal::new(problem, "sort the rows of a copy by their times")));
+        }
         let fall = begins_anew(&column.each).filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
         fall.map_or(Ok(()), |row| {
             let problem = format!(
@@ -344,6 +349,9 @@ fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
     values.iter().enumerate().filter(|(_, value)| !value.is_nan()).for_each(|(row, _)| filled.take(row));
     filled.lie_between()
 }
+
+/// Times that fall in fewer rows than this tell no order.
+const LEAST_FALLING: usize = 4;
 
 /// Where times, within the first four rows, fall back to the first of them.
 fn begins_anew(times: &[f64]) -> Option<usize> {

@@ -359,6 +359,41 @@ fn remarks_and_sums_are_no_rows() {
 }
 
 #[test]
+fn rows_that_were_never_filled_are_no_samples() {
+    let mut text = table("time,A1\n", 60, |i| format!("{},{i}\n", f64::from(i) / 8000.0));
+    text.extend_from_slice("0.0000,0.00\n".repeat(20).as_bytes());
+    let read = read_bytes(&text, &cask_file(&["A1"])).map_err(|error| told(&error)).unwrap();
+    assert_eq!(values(&read, 0).len(), 60);
+    assert!(read.channels[0].uniform.issues[0].message.contains("20 rows at the end"));
+}
+
+#[test]
+fn windows_counts_100_ns_from_1601() {
+    let text =
+        table("Time,A1\n", 600, |i| format!("{},{i}\n", 133_494_000_000_000_000 + 1000 * u64::from(i)));
+    let read = read_bytes(&text, &cask_file(&["A1"])).map_err(|error| told(&error)).unwrap();
+    assert!((read.channels[0].uniform.sample_rate_hz - 1e4).abs() < 1.0);
+}
+
+#[test]
+fn a_second_table_a_rate_with_thousands_and_times_that_fall_are_named() {
+    let mut two = table("Time,A1\n", 60, |i| format!("{},{i}\n", f64::from(i) / 8000.0));
+    two.extend_from_slice(b"Frequency,Amplitude\n0,1\n100,2\n200,1\n");
+    let rate = table("Sample rate: 10,000 Hz\n\nA1;A2\n", 60, |i| format!("{i}.5;1\n"));
+    let falling = table("Time,A1\n", 60, |i| format!("{},{i}\n", f64::from(60 - i) / 8000.0));
+    let mut named = cask_file(&["A1"]);
+    named.time = Some("Time".into());
+    for (text, file, part) in [
+        (two, &cask_file(&["A1"]), "another table"),
+        (rate, &cask_file(&["A1"]), "sample_rate_hz"),
+        (falling, &named, "fall from row to row"),
+    ] {
+        let message = told(&read_bytes(&text, file).unwrap_err());
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
 fn tables_that_cannot_be_read_say_why() {
     for (text, parts) in [
         ("\"t;A1\"\n\"0;1,5\"\n\"1;2,5\"\n", &["no quotes around a whole row"][..]),

@@ -46,10 +46,16 @@ pub(super) fn ordered<'a>(
     if times_s.len() < 2 {
         return Err(error::too_few(times_s.len()));
     }
-    let taken = Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false };
     if rise {
-        return Ok(taken);
+        return Ok(Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false });
     }
+    let filled = filled(times_s, &samples);
+    if filled < times_s.len() {
+        issues.push(TimesFinding::Unfilled { samples: times_s.len() - filled }.into());
+        let (times_s, rows) = (&times_s[..filled], (0..filled).collect::<Vec<_>>());
+        return ordered(times_s, self::rise(times_s), samples.picked(&rows), issues);
+    }
+    let taken = Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false };
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(error::not_finite(index + 1, times_s[index]));
     }
@@ -57,6 +63,17 @@ pub(super) fn ordered<'a>(
         return Err(refusal);
     }
     Ok(taken.sorted(issues)?.without_doubles(issues))
+}
+
+/// How many rows come before those at the end that were laid out and never filled: one time and one value in
+/// all of them, and the time falls back.
+fn filled(times_s: &[f64], samples: &Samples) -> usize {
+    let last = times_s.len() - 1;
+    let is_as_last =
+        |row: &usize| is_same(times_s[*row], times_s[last]) && is_same(samples.get(*row), samples.get(last));
+    let filled = times_s.len() - (0..=last).rev().take_while(is_as_last).count();
+    let is_behind = filled >= 2 && filled < last && times_s[last] < times_s[filled - 1];
+    if is_behind { filled } else { times_s.len() }
 }
 
 /// Times that count within each second, minute, hour or day, and fall back by one of it less an interval:
