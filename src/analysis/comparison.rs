@@ -86,7 +86,7 @@ fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &Cask
     found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);
     let left_s = events.separation_s().unwrap_or(flight.from_s);
     found.extend(judge::judge_separation(flight, left_s));
-    found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s));
+    found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
         let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);

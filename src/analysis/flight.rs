@@ -32,6 +32,8 @@ pub(super) struct FlightResult {
     pub tabulated: Option<Tabulated>,
     /// The speed of R's corner, ringing and swinging included.
     pub local_speed: Option<Estimate>,
+    /// Standard uncertainties of the times of L and R by the way from the corner to the sensor, s   (50)
+    pub u_late_s: [f64; 2],
 }
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes
@@ -151,8 +153,13 @@ fn moved(
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let up_to_crush = if second.is_none() { find(true) } else { None };
-    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref().or(up_to_crush.as_ref()))
-        .or_else(|| impacts::tabulated(file, integrated, &taken, None))
+    let u_late_s = [End::First, End::Second].map(|end| {
+        let late_s = |s| motion::u_late_s(&flight, s, cask.length_m, taken.quantities.duration.value);
+        transverse(signals, end).map_or(0.0, late_s)
+    });
+    let tabulated = |second| impacts::tabulated(file, integrated, &taken, second, u_late_s);
+    let tabulated = tabulated(second.as_ref().or(up_to_crush.as_ref()))
+        .or_else(|| tabulated(None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.untested(&|flight| {
         let places = judge::places(&impact.signals);
@@ -161,6 +168,7 @@ fn moved(
     let ringing = events
         .slap_down
         .filter(|_| is_whole)
+        .map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at })
         .and_then(|at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
     let fit::RungTaken { quantities, budget, choice: reconstruction, openings, .. } = taken;
@@ -175,6 +183,7 @@ fn moved(
         openings,
         tabulated,
         local_speed,
+        u_late_s,
     })
 }
 

@@ -21,8 +21,9 @@ pub(super) struct Seek {
     pub farther: bool,
     /// How long the flight is sought.
     pub patience: Patience,
-    /// The longest that a bending wave takes along the cask, s.
-    pub wave_s: f64,
+    /// How much later than the corner the struck end's sensor may answer, and the longest that a bending wave
+    /// takes along the cask, s.
+    pub waves_s: [f64; 2],
 }
 
 /// The first impact, and what the analysis of it goes by.
@@ -102,7 +103,7 @@ impl Impact {
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
-        let u_skew_s = align(file, &mut signals, contact.time_s, seek.wave_s, findings);
+        let u_skew_s = align(file, &mut signals, contact.time_s, seek.waves_s, findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (own_rests, fall_s) = before(recording, drop, contact.time_s);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
@@ -184,18 +185,18 @@ fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) ->
 }
 
 /// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a
-/// bending wave of up to `wave_s` explains as well leaves open of R's times, as a standard uncertainty, s.
+/// bending wave of up to `waves_s` explains as well leaves open of R's times, as a standard uncertainty, s.
 fn align(
     file: &CaskFile,
     signals: &mut [Signal],
     contact_s: f64,
-    wave_s: f64,
+    waves_s: [f64; 2],
     findings: &mut Vec<Finding>,
 ) -> f64 {
     let onsets = events::answers(signals, contact_s);
     let mut u_skew_s = 0.0_f64;
     for onset in &onsets {
-        let Some(finding) = judge::judge_skew(onset, signals, wave_s, file.corrections.skew) else {
+        let Some(finding) = judge::judge_skew(onset, signals, waves_s, file.corrections.skew) else {
             continue;
         };
         let is_shifted = finding.severity == Severity::Warning && file.corrections.skew;

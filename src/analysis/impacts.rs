@@ -4,11 +4,12 @@ use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
-    Events, Finding, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Quantities, RigidBodyDeceleration,
-    Signal,
+    Events, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Mode, Quantities,
+    RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
+use std::f64::consts::TAU;
 
 /// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses
 /// make of them, and of themselves for ringing as large as the velocity gained. With it the intervals of 200
@@ -16,6 +17,11 @@ use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, la
 const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
+/// Standard uncertainty of the crush from the corner that bends with the cask, as a share of how far it
+/// swings behind the contact, and at most as a share of itself: so the crush of both ends is held in nine of
+/// ten simulated drops of elastic bodies, and without it in four of five.
+const BENDS_SHARE: f64 = 0.7;
+const MOST_BENDS: f64 = 0.1;
 
 /// No end is thrown back faster than it came, nor drawn in.
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
@@ -51,7 +57,8 @@ impl Tabulated {
 
     /// The finding where the force of the first contact falls between two maxima as if L touched twice.
     pub fn two_maxima(&self) -> Option<Finding> {
-        Some(DropFinding::TwoMaxima { dip: self.touch.as_ref()?.dip }.into())
+        let FirstTouch { dip, k, .. } = *self.touch.as_ref()?;
+        Some(DropFinding::TwoMaxima { dip, k }.into())
     }
 
     /// Lets the intervals of what the contact's end defines reach back to the end of its first touch.
@@ -131,10 +138,16 @@ pub(super) fn tabulated(
     integrated: &Integrated,
     taken: &RungTaken,
     second: Option<&SecondImpact>,
+    u_late_s: [f64; 2],
 ) -> Option<Tabulated> {
     let both = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
-    let known = both.known(taken)?;
+    let mut known = both.known(taken)?;
     let (first, after) = both.courses(&taken.taken, ForceCourse::Rotation)?;
+    for ((own, course), u_s) in known.iter_mut().zip([Some(&first), after.as_ref()]).zip(u_late_s) {
+        let struck_m_s = course.map_or(0.0, |course| course.contact.struck_m_s);
+        own.crush.1 = own.crush.1.hypot(struck_m_s * u_s);
+        own.duration.1 = own.duration.1.hypot(u_s);
+    }
     // What turned the cask was one contact at R that a passive end can give.
     let mut turning = taken.choice.closures.iter().filter(|c| c.kind == ClosureKind::SecondTurning);
     let is_one = turning.all(|closure| closure.miss_in_u.abs() <= MISSED_U);
@@ -151,7 +164,7 @@ pub(super) fn tabulated(
     });
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
-        touch: first.contact.first_touch(taken.quantities.k.value, both.cutoff_hz),
+        touch: first.contact.first_touch(taken.quantities.k.value, both.cutoff_hz, integrated),
         tables: [Some(both.table(End::First, &first, known.first()?)), of_second],
     })
 }
@@ -218,13 +231,21 @@ impl BothImpacts<'_> {
         let spread = taken.spread(&flat)?;
         let by_name = |contact: &[(f64, f64)]| ImpactNumbers::from_fn(|i| contact[i]);
         let mut known: Vec<_> = spread.chunks_exact(ImpactNumbers::COUNT).map(by_name).collect();
-        let flights = [Some(&taken.taken.flight), self.second.map(|second| &second.flight)];
-        for (flight, own) in flights.into_iter().flatten().zip(&mut known) {
-            let rings_m_s: f64 = flight.modes.iter().map(|m| m.amplitude_m_s).sum();
-            let share = RINGING_SHARE * rings_m_s / own.velocity_change.0;
+        let left_ringing = |flight: &FlightFit, own: &ImpactNumbers<(f64, f64)>| {
+            let share =
+                |size: fn(&Mode) -> f64| flight.modes.iter().map(size).sum::<f64>() / own.velocity_change.0;
+            (share(|m| m.amplitude_m_s), share(|m| m.amplitude_m_s / (TAU * m.frequency_hz)))
+        };
+        let by_first = left_ringing(&taken.taken.flight, known.first()?);
+        for (i, own) in known.iter_mut().enumerate() {
+            // Where no flight follows R's impact, that leaves of its own what the first one does.
+            let told = self.second.filter(|second| i == 1 && !second.is_open);
+            let (share, bends_s) = told.map_or(by_first, |second| left_ringing(&second.flight, own));
             for (value, u) in own.of_course() {
-                *u = u.hypot(share * *value);
+                *u = u.hypot(RINGING_SHARE * share * *value);
             }
+            let bends_m = BENDS_SHARE * bends_s * own.velocity_change.0;
+            own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_BENDS * own.crush.0));
         }
         for (by, share) in OTHER_COURSES {
             let others = self.numbers(&taken.taken, by)?;

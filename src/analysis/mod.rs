@@ -2,8 +2,8 @@
 //!
 //! A sound recording is gone through once. What else is gone through again, and why:
 //!
-//! - an answer later than any cask gives, and a flight with a slower mode: as before, with the wave of that
-//!   mode (`flight_result`);
+//! - an answer later or earlier than any cask gives, and a flight with a slower mode: as before, with the
+//!   wave of that mode (`flight_result`);
 //! - no slap-down where the record goes on: with a longer search (`analyse_once`);
 //! - an angular-rate sensor, and no rotation stated: once before, for the rotation (`with_rotation`);
 //! - a contradiction and three transverse channels: without each of them (`second_look`);
@@ -35,9 +35,10 @@ pub use rest::{read, read_within, take_rest};
 pub use setup::sticking;
 
 use crate::data::{
-    Analysis, BENDING_WAVE_M_S, CaskFile, ChannelFinding, Drop, Events, Finding, FindingKind, Recording,
+    Analysis, BENDING_WAVE_M_S, CaskFile, ChannelFinding, Drop, End, Events, Finding, FindingKind, Recording,
+    transverse,
 };
-use crate::{ingest, judge};
+use crate::{ingest, judge, motion};
 use comparison::Measured;
 use flight::FlightResult;
 use flight_search::Patience;
@@ -84,8 +85,6 @@ const OF_ROTATION: [&str; 2] = ["drop.angular_velocity_deg_s", "tolerance.angula
 /// The far end of a cask answers a blow on the other within this share of a period of its first bending mode:
 /// 0.12 to 0.28 in a hundred answers of free beams of two to eight heights.
 const WAVE_PERIODS: f64 = 0.3;
-/// That is the slowest with more than this share of the largest.
-const SHOWN: f64 = 0.3;
 
 /// The findings, and the first impact if there is one.
 type ImpactAndFlight = (Vec<Finding>, Option<AfterImpact>);
@@ -104,10 +103,10 @@ fn flight_result(
     farther: bool,
     patience: Patience,
 ) -> ImpactAndFlight {
-    let seek = Seek { farther, patience, wave_s: file.cask.length_m / BENDING_WAVE_M_S };
+    let seek = Seek { farther, patience, waves_s: [0.0, file.cask.length_m / BENDING_WAVE_M_S] };
     let found = impact_and_flight(recording, file, seek);
-    match slower_wave_s(&found) {
-        Some(wave_s) => impact_and_flight(recording, file, Seek { wave_s, ..seek }),
+    match slower_waves_s(&found, file.cask.length_m) {
+        Some(waves_s) => impact_and_flight(recording, file, Seek { waves_s, ..seek }),
         None => found,
     }
 }
@@ -121,20 +120,25 @@ fn impact_and_flight(recording: &Recording, file: &CaskFile, seek: Seek) -> Impa
     (findings, struck)
 }
 
-/// What a bending wave takes along a cask that bends as the flight shows, s, where that explains an answer
-/// which was late for any cask.
-fn slower_wave_s((findings, found): &ImpactAndFlight) -> Option<f64> {
-    let modes = &found.as_ref()?.flown.as_ref()?.flight.modes;
-    let largest_m_s = modes.iter().map(|mode| mode.amplitude_m_s).fold(0.0, f64::max);
-    let slowest = modes.iter().find(|mode| mode.amplitude_m_s > SHOWN * largest_m_s)?;
-    let wave_s = WAVE_PERIODS / slowest.frequency_hz;
+/// How late the struck end's sensor may answer, and what a bending wave takes along a cask that bends as the
+/// flight shows, s, where that explains an answer which was early or late for any cask.
+fn slower_waves_s((findings, found): &ImpactAndFlight, length_m: f64) -> Option<[f64; 2]> {
+    let AfterImpact { impact, events, flown } = found.as_ref()?;
+    let contact_s = events.separation_s()? - events.first_contact_s()?;
+    let flight = &flown.as_ref()?.flight;
+    let struck = transverse(&impact.signals, End::First)?;
+    let lag_s = 3.0_f64.sqrt() * motion::u_late_s(flight, struck, length_m, contact_s);
+    let wave_s = WAVE_PERIODS / flight.first_bending_hz(contact_s);
     let is_explained = |f: &Finding| match f.what {
         FindingKind::Channel(ChannelFinding::AnswersLate { delay_s, u_s, .. }) => {
             delay_s - 2.0 * u_s < wave_s
         }
+        FindingKind::Channel(ChannelFinding::AnswersEarly { delay_s, u_s, .. }) => {
+            -delay_s - 2.0 * u_s < lag_s
+        }
         _ => false,
     };
-    findings.iter().any(is_explained).then_some(wave_s)
+    findings.iter().any(is_explained).then_some([lag_s, wave_s])
 }
 
 /// The file with the rotation before the contact that a sensor measured, where it says nothing of it.

@@ -28,7 +28,7 @@ pub(super) fn of(
     recording: &Recording,
     file: &CaskFile,
     findings: Vec<Finding>,
-    AfterImpact { impact, events, mut flown }: AfterImpact,
+    AfterImpact { impact, mut events, mut flown }: AfterImpact,
     shown: ShownSignals,
     measured: Option<Measured>,
 ) -> Analysis {
@@ -39,7 +39,8 @@ pub(super) fn of(
         tabulated.doubt_end(&mut flown.quantities);
     }
     if let Some(flown) = &mut flown {
-        doubt_landing(flown, &findings);
+        doubt_unfollowed(flown, &findings);
+        doubt_times(flown, &mut events);
     }
     let stated = flown.as_ref().filter(|_| measured.is_some());
     let quantities = stated.map(|flown| &flown.quantities);
@@ -92,16 +93,38 @@ pub(super) fn of(
     Analysis { openings, ..analysis(recording, file, result, curves) }
 }
 
-/// Lets the intervals of the speeds reach as far as a landing of L that may come before R strikes.
-fn doubt_landing(flown: &mut FlightResult, findings: &[Finding]) {
-    let effect_m_s = |f: &Finding| match f.what {
-        FindingKind::Drop(DropFinding::MayLand { effect_m_s, .. }) => Some(effect_m_s),
-        _ => None,
-    };
-    let Some(effect_m_s) = findings.iter().find_map(effect_m_s) else { return };
-    let Quantities { speed, vertical_velocity, .. } = &mut flown.quantities;
-    for speed in [speed, vertical_velocity, &mut flown.local_speed].into_iter().flatten() {
-        speed.u95 += effect_m_s;
+/// Lets the intervals reach as far as what is not followed: a landing of L that may come before R strikes, a
+/// step in the flight.
+fn doubt_unfollowed(flown: &mut FlightResult, findings: &[Finding]) {
+    let v0_m_s = flown.quantities.impact_velocity.value;
+    for finding in findings {
+        let (effect_m_s, of_k) = match finding.what {
+            FindingKind::Drop(DropFinding::MayLand { effect_m_s, .. }) => (effect_m_s, 0.0),
+            FindingKind::Drop(DropFinding::SmallBlow { step_m_s, .. }) => (step_m_s, step_m_s / v0_m_s),
+            _ => continue,
+        };
+        let Quantities { speed, vertical_velocity, k, .. } = &mut flown.quantities;
+        k.u95 += of_k;
+        for speed in [speed, vertical_velocity, &mut flown.local_speed].into_iter().flatten() {
+            speed.u95 += effect_m_s;
+        }
+    }
+}
+
+/// Lets the intervals of times and lengths reach as far as the way from the corner to the sensor takes; what
+/// they make of the closures, too little in a rigid body, is not theirs.
+fn doubt_times(flown: &mut FlightResult, events: &mut Events) {
+    let [first_s, second_s] = flown.u_late_s;
+    let of_events = [&mut events.first_contact, &mut events.separation, &mut events.slap_down];
+    for (at, u_s) in of_events.into_iter().zip([first_s, first_s, second_s]) {
+        if let Some(at) = at {
+            at.u_s = at.u_s.hypot(u_s);
+        }
+    }
+    let Quantities { duration, flight_time, .. } = &mut flown.quantities;
+    duration.u95 = duration.u95.hypot(fit::COVERAGE * first_s);
+    if let Some(flight_time) = flight_time {
+        flight_time.u95 = flight_time.u95.hypot(fit::COVERAGE * first_s.hypot(second_s));
     }
 }
 

@@ -1,6 +1,8 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
-use crate::data::{ChannelFinding, DropFinding, End, Events, Finding, FlightFit, Signal, transverse};
+use crate::data::{
+    ChannelFinding, DropFinding, End, Estimate, Events, Finding, FlightFit, Signal, transverse,
+};
 use crate::numerics::as_f64;
 use crate::numerics::reduce::{block_means, block_of, peak};
 
@@ -27,10 +29,17 @@ pub fn moves_the_cask(step_m_s: f64, v0_m_s: f64) -> bool {
     step_m_s.abs() > LEAST_STEP * v0_m_s
 }
 
-/// A blow within the flight, which modes and drift bent around.
-pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
+/// A blow within the flight, which modes and drift bent around; `speed` at slap-down, which a small one moves
+/// by less than its half-width.
+pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64, speed: Option<Estimate>) -> Option<Finding> {
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && moves_the_cask(s.step_m_s, v0_m_s))?;
-    let found = DropFinding::Blow { step_m_s: strike.step_m_s, after_s: strike.time_s - flight.from_s };
+    let (step_m_s, after_s) = (strike.step_m_s.abs(), strike.time_s - flight.from_s);
+    let is_small = speed.is_some_and(|speed| step_m_s < speed.u95);
+    let found = if is_small {
+        DropFinding::SmallBlow { step_m_s, after_s }
+    } else {
+        DropFinding::Blow { step_m_s, after_s }
+    };
     Some(Finding::from(found).between(strike.time_s, strike.time_s))
 }
 
@@ -76,13 +85,16 @@ mod tests {
 
     #[test]
     fn a_step_counts_that_is_large_and_beyond_doubt() {
-        let said = judge_late_blow(&flight(-0.5, 40.0), 13.3).expect("a blow");
+        let said = judge_late_blow(&flight(-0.5, 40.0), 13.3, None).expect("a blow");
         let is_as_given = |after_s: f64| (after_s - 0.03).abs() < 1e-9;
         assert!(
             matches!(said.what, FindingKind::Drop(DropFinding::Blow { after_s, .. }) if is_as_given(after_s))
         );
-        assert!(judge_late_blow(&flight(-0.5, 8.0), 13.3).is_none());
-        assert!(judge_late_blow(&flight(0.1, 40.0), 13.3).is_none());
+        assert!(judge_late_blow(&flight(-0.5, 8.0), 13.3, None).is_none());
+        assert!(judge_late_blow(&flight(0.1, 40.0), 13.3, None).is_none());
+        let speed = Some(Estimate::new(20.0, 0.6, "m/s"));
+        let small = judge_late_blow(&flight(-0.5, 40.0), 13.3, speed).expect("a blow");
+        assert!(!small.takes(crate::data::ResultPart::Motion), "{small:?}");
     }
 
     /// Half sines of 4 ms at these times, s, with these peaks.

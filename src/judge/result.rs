@@ -11,9 +11,10 @@ use crate::numerics::noise::integral_uncertainty_by;
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
-/// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a
-/// slap-down.
+/// Zero shifts whose effect on the velocity over the contact is below this, m/s, 0.5 % of a slap-down, or
+/// below a share of the speed's half-width and of v0 are a note.
 const SMALL_SHIFT_M_S: f64 = 0.1;
+const SMALL_SHIFT_SHARES: [f64; 2] = [0.5, 0.03];
 /// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well
 /// as of the sensor, m/s.
 const SMALL_BEND_M_S: f64 = 0.5;
@@ -168,7 +169,7 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, ca
     for plateau in &flight.plateaus {
         let signal = signals.iter().find(|s| s.name == plateau.channel);
         let turned_m_s2 = signal.map_or(0.0, |s| turned_m_s2(s, signals, flight, cask));
-        findings.extend(shifted(flight, plateau, turned_m_s2, quantities.duration.value));
+        findings.extend(shifted(flight, plateau, turned_m_s2, quantities));
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
         let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
@@ -183,15 +184,24 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, ca
     findings
 }
 
-/// A zero shift that was taken off, beyond what bending makes, with what it does to the velocity over so many
-/// seconds.
-fn shifted(flight: &FlightFit, plateau: &Plateau, turned_m_s2: f64, over_s: f64) -> Option<Finding> {
+/// A zero shift that was taken off, beyond what bending makes, with what it does to the velocity over the
+/// contact.
+fn shifted(
+    flight: &FlightFit,
+    plateau: &Plateau,
+    turned_m_s2: f64,
+    quantities: &Quantities,
+) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
     // A sensor on a stiff block turns by less than its place.
     let by_bending_m_s2 = shift_m_s2.clamp(turned_m_s2.min(0.0), turned_m_s2.max(0.0));
     let beyond_m_s2 = (shift_m_s2 - by_bending_m_s2).abs();
-    let effect_m_s = beyond_m_s2 * over_s;
-    let small_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
+    let effect_m_s = beyond_m_s2 * quantities.duration.value;
+    let least_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
+    let [of_speed, of_v0] = SMALL_SHIFT_SHARES;
+    let most_m_s = of_v0 * quantities.impact_velocity.value;
+    let held_m_s = quantities.speed.map_or(0.0, |speed| (of_speed * speed.u95).min(most_m_s));
+    let small_m_s = held_m_s.max(least_m_s);
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, severity };
     (flight.drift && beyond_m_s2 > 3.0 * u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2))

@@ -9,12 +9,17 @@ const SAMPLES: f64 = 1.5;
 const NOTABLE_S: f64 = 3e-4;
 
 /// Holds a delay against what a body can do: answer at once, or as late as a bending wave, which takes up to
-/// `wave_s`, never before it is struck.
-pub fn judge_skew(onset: &Onset, signals: &[Signal], wave_s: f64, is_shifted: bool) -> Option<Finding> {
+/// `wave_s`, never before it is struck; but the struck end's own sensor may be late by `lag_s`.
+pub fn judge_skew(
+    onset: &Onset,
+    signals: &[Signal],
+    [lag_s, wave_s]: [f64; 2],
+    is_shifted: bool,
+) -> Option<Finding> {
     let &Onset { delay_s, u_s, .. } = onset;
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);
     let slack_s = 2.0 * u_s + SAMPLES / rate_hz;
-    let found = if delay_s < -slack_s {
+    let found = if delay_s < -slack_s - lag_s {
         ChannelFinding::AnswersEarly { delay_s, u_s, is_shifted }
     } else if delay_s > wave_s + slack_s {
         ChannelFinding::AnswersLate { delay_s, u_s, wave_s, is_shifted }
@@ -33,7 +38,7 @@ mod tests {
 
     fn severity(delay_s: f64, u_s: f64) -> Option<Severity> {
         let onset = Onset { channel: "A2".into(), delay_s, u_s };
-        judge_skew(&onset, &[], 5e-3, false).map(|f| f.severity)
+        judge_skew(&onset, &[], [0.0, 5e-3], false).map(|f| f.severity)
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The bending of an axial channel's place to what it reads because that turns it.
+//! The bending of a channel's place to what it reads because that turns it.
 
 use crate::data::{Axis, Cask, FlightFit, Mode, Signal};
 use crate::numerics::free_beam::shape;
@@ -7,11 +7,11 @@ use std::f64::consts::TAU;
 /// The slope of a shape is taken over this share of the length.
 const STEP: f64 = 1e-4;
 
-/// What a channel along the axis reads in the flight, in the mean, m/s²: the bending by w turns it by w′
-/// towards a force of ẅ across the axis; 0 of one across   (49)
+/// What a channel reads in the flight because bending by w turns its place, in the mean, m/s²: along the axis
+/// by w′ towards a force of ẅ across it, across the axis at η the centrifugal force of ẇ′   (49)
 pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFit, cask: &Cask) -> f64 {
     let length_m = cask.length_m;
-    let across = signals.iter().filter(|s| signal.axis == Axis::Axial && s.axis == Axis::Transverse);
+    let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
     let far_m = |s: &Signal| (s.position_m - signal.position_m).abs();
     let nearest = across.min_by(|a, b| far_m(a).total_cmp(&far_m(b)));
     let Some((near, plateau)) = nearest.and_then(|s| Some((s, flight.plateau(&s.name)?))) else { return 0.0 };
@@ -23,7 +23,8 @@ pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFi
         let mean = if faded > 0.0 { -(-faded).exp_m1() / faded } else { 1.0 };
         // Near a node of the shape the channel beside tells nothing of this place.
         let is_told = order > 0 && there.abs() > 0.5;
-        if is_told { -0.5 * slope * here / (there * there) * (a * a + b * b) * mean } else { 0.0 }
+        let towards = if signal.axis == Axis::Axial { here } else { signal.offset_m * slope };
+        if is_told { -0.5 * slope * towards / (there * there) * (a * a + b * b) * mean } else { 0.0 }
     };
     flight
         .modes
@@ -40,7 +41,7 @@ mod tests {
     use crate::data::{End, Plateau, example};
 
     #[test]
-    fn an_axial_channel_reads_the_square_of_the_bending_with_a_sign_for_each_end() {
+    fn a_channel_reads_the_square_of_the_bending_with_a_sign_for_each_end_or_side() {
         let signal = |name: &str, end, axis, position_m| Signal {
             name: name.into(),
             end,
@@ -48,7 +49,7 @@ mod tests {
             position_m,
             ..example::signal(1e4, vec![])
         };
-        let signals = [
+        let mut signals = [
             signal("A1", End::First, Axis::Transverse, 0.25),
             signal("A2", End::Second, Axis::Transverse, 4.75),
             signal("X1", End::First, Axis::Axial, 0.25),
@@ -63,5 +64,9 @@ mod tests {
         let wanted = 0.5 * 9.25 / 5.0 / 1.536 * 25.0;
         assert!((reads(2) / wanted - 1.0).abs() < 0.01, "{} {wanted}", reads(2));
         assert!((reads(2) + reads(3)).abs() < 1e-9 && reads(0).abs() < f64::EPSILON);
+        // −η (φ′ ω q)²/2.
+        signals[0].offset_m = 0.5;
+        let read = turned_m_s2(&signals[0], &signals, &flight, &example::cask(1.0, 5.0, 0.0));
+        assert!((read / (-0.5 * 9.25 / 5.0 / 1.536 * wanted) - 1.0).abs() < 0.01, "{read}");
     }
 }

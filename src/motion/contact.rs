@@ -1,9 +1,10 @@
 //! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of
 //! ringing, crush.
 
+use super::Integrated;
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
-use crate::data::{MotionState, Setup, Signal};
+use crate::data::{End, MotionState, Setup, Signal, transverse};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use std::f64::consts::PI;
@@ -13,8 +14,11 @@ use std::f64::consts::PI;
 /// of 230 sound drops with modes as fast as the contact.
 const SECOND_MAXIMUM: f64 = 0.3;
 const TWO_TOUCHES: f64 = 0.35;
-/// Where it falls to less than this share, the cask may have left the target.
+/// Where it falls to less than this share, the cask may have left the target; so the force on the sensor did,
+/// in means over an eighth of the contact, in 12 of 13 simulated drops of elastic bodies that touched twice,
+/// and in 23 of 132 others.
 const LEFT: f64 = 0.1;
+const MEAN_SHARE: f64 = 0.125;
 /// A corner that comes down faster than this share of the impact velocity has not left.
 const COMES_DOWN: f64 = -0.1;
 
@@ -113,6 +117,8 @@ impl ContactCourse {
 pub struct FirstTouch {
     /// The lowest that the force falls to, as a share of the lower of the two maxima about it.
     pub dip: f64,
+    /// k of what is given by then.
+    pub k: f64,
     /// How long before the contact's end the corner may have left for the first time, s; 0 where it had not.
     pub earlier_s: f64,
     /// How far k moves from then on, as root mean square.
@@ -120,39 +126,71 @@ pub struct FirstTouch {
 }
 
 impl ContactCourse {
-    /// The first of two touches, where the force through a low-pass of this −3 dB cut-off, Hz, falls between
-    /// two maxima; k is that of the whole contact.
-    pub fn first_touch(&self, k: f64, cutoff_hz: f64) -> Option<FirstTouch> {
-        let [force] = self.low_passed([&self.up_m_s2], cutoff_hz);
-        let (least, whole) = (SECOND_MAXIMUM * largest(&force), force.iter().sum::<f64>());
-        let highest = |most: &mut f64, f: &f64| {
-            *most = most.max(*f);
-            Some(*most)
-        };
-        let before: Vec<f64> = force.iter().scan(0.0, highest).collect();
-        let mut after: Vec<f64> = force.iter().rev().scan(0.0, highest).collect();
-        after.reverse();
-        let dip = |i: usize| {
-            let lower = before[i].min(after[i]);
-            if lower > least { force[i] / lower } else { 1.0 }
-        };
-        let dips: Vec<f64> = (0..force.len()).map(dip).collect();
-        let given = force.iter().scan(0.0, |sum, f| {
+    /// The first of two touches, where the force through a low-pass of this −3 dB cut-off, Hz, or that on the
+    /// first end's sensor falls between two maxima; k is that of the whole contact.
+    pub fn first_touch(&self, k: f64, cutoff_hz: f64, integrated: &Integrated) -> Option<FirstTouch> {
+        let [up] = self.low_passed([&self.up_m_s2], cutoff_hz);
+        let by_rotation = dips(&up);
+        let at_sensor = dips(&self.at_struck_sensor(integrated)?);
+        let whole = self.up_m_s2.iter().sum::<f64>();
+        let given = self.up_m_s2.iter().scan(0.0, |sum, f| {
             *sum += f;
             Some(*sum)
         });
         let ks: Vec<f64> = given.map(|given| (1.0 + k) * given / whole - 1.0).collect();
-        let left = dips.iter().zip(&ks).position(|(dip, k)| *dip < LEFT && *k > COMES_DOWN);
+        let left = by_rotation.iter().zip(&ks).position(|(dip, k)| *dip < LEFT && *k > COMES_DOWN);
         let rest = &ks[left.unwrap_or(ks.len())..];
         let square: f64 = rest.iter().map(|later| (later - k).powi(2)).sum();
+        let lowest = |dips: &[f64]| (0..dips.len()).min_by(|&a, &b| dips[a].total_cmp(&dips[b]));
+        let (rotation_at, sensor_at) = (lowest(&by_rotation)?, lowest(&at_sensor)?);
+        let is_by_rotation = by_rotation[rotation_at] < TWO_TOUCHES;
+        let (dip, k) = if is_by_rotation {
+            (by_rotation[rotation_at], ks[rotation_at])
+        } else {
+            (at_sensor[sensor_at], ks[sensor_at])
+        };
         let [begin, end] = &self.ends;
-        let dip = dips.into_iter().fold(1.0, f64::min);
-        (dip < TWO_TOUCHES).then(|| FirstTouch {
+        (is_by_rotation || dip < LEFT).then(|| FirstTouch {
             dip,
+            k,
             earlier_s: (end.time_s - begin.time_s) * as_f64(rest.len()) / as_f64(ks.len()),
             k_moves: (square / as_f64(rest.len().max(1))).sqrt(),
         })
     }
+
+    /// The force on the first end's transverse sensor, in means of [`MEAN_SHARE`] about the middle of each
+    /// step, in any unit.
+    fn at_struck_sensor(&self, integrated: &Integrated) -> Option<Vec<f64>> {
+        let struck = transverse(&integrated.signals, End::First)?;
+        let at = integrated.signals.iter().position(|s| s.name == struck.name)?;
+        let [begin, end] = &self.ends;
+        let half_s = MEAN_SHARE * (end.time_s - begin.time_s) / 2.0;
+        let gained_m_s = |i: usize| {
+            let [from_m_s, to_m_s] = [-half_s, half_s].map(|by_s| {
+                integrated.velocities[at].at(begin.time_s + (as_f64(i) + 0.5) * self.step_s + by_s)
+            });
+            to_m_s - from_m_s
+        };
+        Some((0..self.up_m_s2.len()).map(gained_m_s).collect())
+    }
+}
+
+/// What a force falls to, as a share of the lower of the two maxima about each point; 1 where one of them is
+/// none.
+fn dips(force: &[f64]) -> Vec<f64> {
+    let least = SECOND_MAXIMUM * largest(force);
+    let highest = |most: &mut f64, f: &f64| {
+        *most = most.max(*f);
+        Some(*most)
+    };
+    let before: Vec<f64> = force.iter().scan(0.0, highest).collect();
+    let mut after: Vec<f64> = force.iter().rev().scan(0.0, highest).collect();
+    after.reverse();
+    let dip = |i: usize| {
+        let lower = before[i].min(after[i]);
+        if lower > least { force[i] / lower } else { 1.0 }
+    };
+    (0..force.len()).map(dip).collect()
 }
 
 /// What tells the course of the one force of a contact: how the share grows of what it gives in all   (42)
@@ -271,6 +309,7 @@ fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<Cha
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::example;
 
     /// A contact of two half sines of 3 ms, the second of this share, with a pause of 4 ms.
     fn contact(second: f64) -> ContactCourse {
@@ -301,12 +340,18 @@ mod tests {
 
     #[test]
     fn a_pause_that_the_corner_leaves_in_leaves_its_end_open() {
-        assert_eq!(contact(0.0).first_touch(0.4, 1e3), None);
-        let touch = contact(0.4).first_touch(0.4, 1e3).unwrap();
+        let first_touch = |second: f64| {
+            let contact = contact(second);
+            let force_m_s2 = [vec![0.0; 20], contact.up_m_s2.clone(), vec![0.0; 20]].concat();
+            let signal = Signal { start_s: -2e-3, ..example::signal(1e4, force_m_s2) };
+            contact.first_touch(0.4, 1e3, &Integrated::over(&[signal], 0.0))
+        };
+        assert_eq!(first_touch(0.0), None);
+        let touch = first_touch(0.4).unwrap();
         assert!(touch.dip < 0.01 && (6e-3..8e-3).contains(&touch.earlier_s), "{touch:?}");
         // After the first touch k is 1.4/1.4 − 1 = 0.
         assert!((0.25..0.4).contains(&touch.k_moves), "{touch:?}");
-        let comes_down = contact(2.0).first_touch(0.4, 1e3).unwrap();
+        let comes_down = first_touch(2.0).unwrap();
         assert_eq!((comes_down.earlier_s, comes_down.k_moves), (0.0, 0.0));
     }
 }

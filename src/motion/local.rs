@@ -10,6 +10,10 @@ use crate::numerics::free_beam;
 /// of a uniform beam against a straight line, a quarter of their difference.
 const SHAPE_SHARE: f64 = 0.25;
 
+/// A velocity that departs from the fitted modes by more than so many times what they leave is no longer of
+/// the flight.
+const BEGUN: f64 = 3.0;
+
 /// A velocity across the axis with its standard uncertainty, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CornerRinging {
@@ -41,12 +45,13 @@ pub fn ringing_of_second_end(
     let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, turning_rad_s, setup.cog_m);
     let gained_m_s = integrated.velocities[channel].at(before_s);
     let own_m_s = gained_m_s - plateau.velocity_step_m_s - shift_m_s2 * since_s;
-    let (mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0_f64);
+    let (mut fitted_m_s, mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0, 0.0_f64);
     let orders = flight.bending_orders(&integrated.signals, setup.length_m, setup.height_m);
     for (i, (mode, order)) in flight.modes.iter().zip(orders).enumerate() {
         let Some(size) = plateau.ringing_m_s.get(i) else { continue };
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };
         let own_m_s = size.0 * z.re + size.1 * z.im;
+        fitted_m_s += own_m_s;
         let (square, ratio) = (size.0 * size.0 + size.1 * size.1, flight.goes_along(i, &integrated.signals));
         let shares = [first, last].map(|s| s.position_m / setup.length_m);
         let straight = 1.0 + (1.0 - ratio) * (1.0 - shares[1]) / (shares[1] - shares[0]).max(0.1);
@@ -58,7 +63,11 @@ pub fn ringing_of_second_end(
         let bent_m_s2 = 0.5 * omega * omega * slap_down.u_s * square.sqrt() * z.norm();
         rate_m_s2 += (omega * (size.1 * z.re - size.0 * z.im)).hypot(bent_m_s2);
     }
-    let u_m_s = plateau.u_m_s.hypot(plateau.residual_m_s).hypot(u_shape_m_s);
+    // What no mode makes is the contact that has begun.
+    let beyond_m_s = own_m_s - fitted_m_s;
+    let has_begun = beyond_m_s.abs() > BEGUN * plateau.residual_m_s;
+    let (own_m_s, u_begun_m_s) = if has_begun { (fitted_m_s, beyond_m_s / 2.0) } else { (own_m_s, 0.0) };
+    let u_m_s = plateau.u_m_s.hypot(plateau.residual_m_s).hypot(u_shape_m_s).hypot(u_begun_m_s);
     Some(CornerRinging {
         velocity_m_s: own_m_s + carried_m_s,
         u_m_s: u_m_s.hypot(rate_m_s2 * slap_down.u_s).hypot(last.u_offset_m_s2 * since_s),

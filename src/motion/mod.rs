@@ -1,6 +1,7 @@
 //! Signals to the motion of the cask: velocity curves, flight plateaus free of ringing, the planar rigid
 //! body.
 
+mod answer;
 mod contact;
 mod curves;
 mod decimate;
@@ -15,6 +16,7 @@ mod refit;
 mod ringing;
 mod window;
 
+pub use answer::u_late_s;
 pub use contact::{ChannelPulse, ContactCourse, FirstTouch, ForceCourse, PulseLength, largest, pulses};
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_early, compare_late, fit_flights};

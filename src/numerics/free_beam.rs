@@ -4,7 +4,7 @@
 pub const MOST_MODES: usize = 3;
 
 /// Roots β of cosh β cos β = 1, one for each order: wave number times length of the free-free uniform beam.
-pub(super) const WAVE_NUMBERS: [f64; MOST_MODES] =
+pub const WAVE_NUMBERS: [f64; MOST_MODES] =
     [4.730_040_744_862_704, 7.853_204_624_095_838, 10.995_607_838_001_671];
 
 /// Deflection of the mode of this order, from 1 on, at `share` of the length; ±2 at the ends, mean square 1,

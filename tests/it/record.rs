@@ -207,7 +207,7 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
     std::fs::write(folder.path().join("words.png"), "no picture").expect("room");
     let test = "[test]\nid = \"SD-14\"\ndate = 2026-11-22T09:40:00+01:00\n\
                 photos = [\"before.png\"]\n[test.more]\nHook = 4\n";
-    // Corner 18.18 ± 0.43 m/s: (18.18 − 18.0)/√(0.43² + 0.30²) = 0.34; k 0.556 ± 0.035: (0.556 −
+    // Corner 18.18 ± 0.45 m/s: (18.18 − 18.0)/√(0.45² + 0.30²) = 0.33; k 0.556 ± 0.035: (0.556 −
     // 0.7)/√(0.035² + 0.030²) = −3.1.
     let seen = "[observed]\nlocal_speed_m_s = { value = 18.0, u95 = 0.3, by = \"video\" }\n\
                 k = { value = 0.7, u95 = 0.03 }\n";

@@ -91,9 +91,10 @@ pub enum DropFinding of Drop {
          {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state \
          `friction`", taken.value, taken.u95);
     /// The force of the first contact falls to this share of the lower of two maxima around it.
-    TwoMaxima { dip: f64 } => (Code::SecondContact, Note, Nothing),
+    TwoMaxima { dip: f64, k: f64 } => (Code::SecondContact, Note, Nothing),
         ("the force of the first impact falls to {:.0} % between two maxima: the first end touched twice, or \
-         a mode rings as fast as the contact lasts; it was taken as one contact, and k is that of the whole",
+         a mode rings as fast as the contact lasts; it was taken as one contact, and k is that of the whole \
+         ({k:.2} by then)",
          100.0 * dip.max(0.0));
     /// L would sink so far below where it left the target.
     Sinks { depth_m: f64 } => (Code::SecondContact, Warning, Motion),
@@ -113,7 +114,12 @@ pub enum DropFinding of Drop {
     Blow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better \
          than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down \
-         speed are not determined", step_m_s.abs(), 1e3 * after_s);
+         speed are not determined", step_m_s, 1e3 * after_s);
+    /// The velocities step in the flight by less than the speed's half-width.
+    SmallBlow { step_m_s: f64, after_s: f64 } => (Code::SecondContact, Warning, Nothing),
+        ("the velocities step by up to {step_m_s:.2} m/s about {:.1} ms into the flight, which explains it better \
+         than ringing does: contents that strike the cask, a cable or a second touch; the intervals of k and \
+         the slap-down speed hold as much", 1e3 * after_s);
     /// A mode that is no bending.
     Swings { frequency_hz: f64, size_m_s: f64 } => (Code::Swings, Warning, Contradiction),
         ("an oscillation of {size_m_s:.2} m/s at {frequency_hz:.0} Hz is slower than the cask bends: \
