@@ -22,9 +22,6 @@ const LIKELY_K: RangeInclusive<f64> = 0.02..=0.98;
 /// all but one 0.05 (docs/validation.md), two slips of which one is put right up to 0.3 and more.
 const MOST_U95_K: f64 = 0.08;
 const MOST_U95_SPEED: f64 = 0.06;
-/// The same of a cure by another number, which all closures and steps meet: beyond them it says nothing.
-const OPEN_U95_K: f64 = 0.25;
-const OPEN_U95_SPEED: f64 = 0.15;
 /// Units of length that a number in metres may be in.
 const LENGTHS_M: [(&str, f64); 3] = [("in cm", 0.01), ("in mm", 1e-3), ("in ft", 0.3048)];
 /// The least drop height and length of a cask that a unit of length is tried for, m.
@@ -101,7 +98,8 @@ impl Contradicted<'_> {
         let patience = if is_opened { Patience::EachBeginning } else { Patience::OneBeginning };
         for _ in 0..ROUNDS {
             let analysis = self.with(std::slice::from_ref(&slip), patience);
-            if is_cured(&analysis, [OPEN_U95_K, OPEN_U95_SPEED]) {
+            // All closures and steps are met: only intervals that say nothing are too wide.
+            if is_cured(&analysis, [judge::MOST_U95_K, judge::MOST_U95_SPEED]) {
                 return Some(self.cure(vec![slip], &analysis));
             }
             let is_own =

@@ -154,8 +154,8 @@ fn moved(
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let up_to_crush = if second.is_none() { find(true) } else { None };
     let u_late_s = [End::First, End::Second].map(|end| {
-        let late_s = |s| motion::u_late_s(&flight, s, cask.length_m, taken.quantities.duration.value);
-        transverse(signals, end).map_or(0.0, late_s)
+        let most_s = |s| motion::most_late_s(&flight, s, cask.length_m, taken.quantities.duration.value);
+        transverse(signals, end).map_or(0.0, most_s) / 3.0_f64.sqrt()
     });
     let tabulated = |second| impacts::tabulated(file, integrated, &taken, second, u_late_s);
     let tabulated = tabulated(second.as_ref().or(up_to_crush.as_ref()))

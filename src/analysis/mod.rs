@@ -127,7 +127,7 @@ fn slower_waves_s((findings, found): &ImpactAndFlight, length_m: f64) -> Option<
     let contact_s = events.separation_s()? - events.first_contact_s()?;
     let flight = &flown.as_ref()?.flight;
     let struck = transverse(&impact.signals, End::First)?;
-    let lag_s = 3.0_f64.sqrt() * motion::u_late_s(flight, struck, length_m, contact_s);
+    let lag_s = motion::most_late_s(flight, struck, length_m, contact_s);
     let wave_s = WAVE_PERIODS / flight.first_bending_hz(contact_s);
     let is_explained = |f: &Finding| match f.what {
         FindingKind::Channel(ChannelFinding::AnswersLate { delay_s, u_s, .. }) => {

@@ -27,8 +27,8 @@ const OPEN_U95_K: f64 = 0.075;
 const CONTACT_S: f64 = 1e-3;
 /// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a
 /// share, 20 ± 3 m/s.
-const MOST_U95_K: f64 = 0.25;
-const MOST_U95_SPEED: f64 = 0.15;
+pub const MOST_U95_K: f64 = 0.25;
+pub const MOST_U95_SPEED: f64 = 0.15;
 
 /// One finding a closure that is missed by more than noise and tolerances explain.
 pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Finding> {

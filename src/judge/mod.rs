@@ -25,7 +25,7 @@ pub use at_rest::{
 };
 pub use blows::judge_blows;
 pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places};
-pub use closures::{judge_closures, judge_strained, tells_lost_steps};
+pub use closures::{MOST_U95_K, MOST_U95_SPEED, judge_closures, judge_strained, tells_lost_steps};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};

@@ -16,7 +16,7 @@ mod refit;
 mod ringing;
 mod window;
 
-pub use answer::u_late_s;
+pub use answer::most_late_s;
 pub use contact::{ChannelPulse, ContactCourse, FirstTouch, ForceCourse, PulseLength, largest, pulses};
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_early, compare_late, fit_flights};
