@@ -18,6 +18,8 @@ const HIGHEST_NOISE: f64 = 0.1;
 pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
 const EARLIER_STAGE: f64 = 0.02;
+/// Of the second impact, before which a flight rings and drifts, so much does.
+const SECOND_STAGE: f64 = 0.2;
 /// An offset that no free fall has shown is the level of the record's first millisecond, s …
 const LEVEL_S: f64 = 1e-3;
 /// … where that is no more of its peak than accelerometers have.
@@ -71,25 +73,32 @@ fn levelled(signal: &Signal) -> Cow<'_, Signal> {
 /// it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
     let sign = step_m_s.signum();
-    let mut found = onset(signal, stretch.clone(), sign, Rise::First, 0.0)?.at;
+    let found = onset(signal, stretch.clone(), sign, Rise::First, 0.0)?.at;
+    Some(first_stage(signal, stretch.start, found, EARLIER_STAGE * step_m_s, 0.0))
+}
+
+/// The rise that was found, or the earliest one from `from` on before which the velocity has not changed by
+/// `least_m_s`, in its direction. Before it no more rings than `ringing_m_s2`.
+fn first_stage(signal: &Signal, from: usize, mut found: At, least_m_s: f64, ringing_m_s2: f64) -> At {
+    let sign = least_m_s.signum();
     loop {
-        let before = stretch.start..signal.index_from(found.time_s);
+        let before = from..signal.index_from(found.time_s);
         let mut gained = 0.0;
-        let running = signal.force_m_s2.get(before.clone())?.iter().map(|force| {
+        let Some(force) = signal.force_m_s2.get(before.clone()) else { return found };
+        let running = force.iter().map(|force| {
             gained += sign * force / signal.sample_rate_hz;
             gained
         });
         let gained_m_s: Vec<f64> = running.collect();
-        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s.abs());
-        let Some(all_m_s) = all_m_s else { return Some(found) };
-        let from = before.start;
-        let earlier = onset(signal, before, sign, Rise::First, 0.0).map(|earlier| earlier.at);
+        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > least_m_s.abs());
+        let Some(all_m_s) = all_m_s else { return found };
+        let earlier = onset(signal, before, sign, Rise::First, ringing_m_s2).map(|earlier| earlier.at);
         let earlier = earlier.filter(|e| e.time_s < found.time_s);
         let Some(earlier) = earlier else {
             // The noise hides where that began.
-            let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s)?;
+            let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s).unwrap_or(0);
             let open_s = found.time_s - signal.time_s(from + begun);
-            return Some(At { u_s: found.u_s.hypot(open_s / 3.0_f64.sqrt()), ..found });
+            return At { u_s: found.u_s.hypot(open_s / 3.0_f64.sqrt()), ..found };
         };
         found = earlier;
     }
@@ -148,8 +157,13 @@ pub fn slap_down(
     let mut from = middle.saturating_sub(reach).max(earliest);
     loop {
         let OnsetFound { at, border } = onset(signal, from..to, 1.0, rise, left_m_s2)?;
+        if border == Border::Clear && calm_m_s2.is_some() {
+            // A sensor may ring higher behind the pulse than in it.
+            let from = from.saturating_sub(reach).max(earliest);
+            return Some(first_stage(signal, from, at, SECOND_STAGE * largest, left_m_s2));
+        }
         // Ringing that is still there has a foot anywhere.
-        if border == Border::Clear || (calm_m_s2.is_none() && border == Border::Foot) {
+        if calm_m_s2.is_none() && border != Border::Shoulder {
             return Some(at);
         }
         if from == earliest {
@@ -416,6 +430,19 @@ mod tests {
         // Where R cannot have struck before, no rise is seen: the time is as uncertain as the means are long.
         let hidden = slap_down(&long, 5.0, 0.09..0.19, 2.0, Some(0.0)).expect("an onset");
         assert!(hidden.u_s > 0.02, "{hidden:?}");
+    }
+
+    #[test]
+    fn a_sensor_that_rings_higher_behind_the_pulse_does_not_hide_it() {
+        let plain = signal(End::Second, 1e5, 0.08, 4000.0);
+        let force = |i: usize| {
+            let rings = (0.0885..0.089).contains(&plain.time_s(i));
+            plain.force_m_s2[i] + if rings { 30_000.0 } else { 0.0 }
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        let ringing = Signal { force_m_s2, ..plain.clone() };
+        let found = slap_down(&ringing, 5.0, 0.03..0.19, 2.0, Some(0.0)).expect("an onset");
+        assert!((found.time_s - 0.08).abs() < 1e-4, "{found:?}");
     }
 
     #[test]
