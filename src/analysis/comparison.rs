@@ -66,6 +66,7 @@ impl Measured {
             return None;
         }
         findings.iter_mut().filter(|f| is_step(f)).for_each(|f| f.effect = Effect::Channel);
+        judge::note_what_is_held(findings, quantities.k, quantities.speed);
         let compared = compare::compare(&predict::bodies(&file.cask), file, quantities, &predict::predict_by);
         let (model, comparison) = compared.unzip();
         let comparison = comparison.flatten();
@@ -86,7 +87,9 @@ fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &Cask
     found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);
     let left_s = events.separation_s().unwrap_or(flight.from_s);
     found.extend(judge::judge_separation(flight, left_s));
-    found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed));
+    let step = judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed);
+    let is_sharp = |at_s| judge::is_sharp(impact.recorded(), flight, events, &file.cask, at_s);
+    found.extend(step.filter(|step| step.from_s.is_none_or(is_sharp)));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
         let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);

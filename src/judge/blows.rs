@@ -16,6 +16,14 @@ const PIECE_S: f64 = 0.1;
 /// A mean this many times as far off its prediction as those before it is a shock. Modes that the prediction
 /// has no room for leave a residual too, but one that decays.
 const LIMIT: f64 = 6.0;
+/// All channels together are struck where a window of theirs is this far above noise, behind the stretch that
+/// the flight was fitted over: there 302 sound drops of elastic beams reach 4.6 …
+const TOGETHER: f64 = 7.0;
+/// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, 2.8.
+const SHARP: f64 = 3.0;
+/// Windows in which all channels are looked at together, s, and the fewest means of one.
+const WINDOW_S: f64 = 1e-3;
+const FEWEST_MEANS: f64 = 4.0;
 /// So many means before it are those: 3 ms, longer than most shocks. A third of them will do at first.
 const BEFORE: usize = 24;
 const FEWEST_BEFORE: usize = 8;
@@ -41,18 +49,71 @@ pub fn judge_blows(
     cask: &Cask,
 ) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
-    let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
-    let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
-    let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
-    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, cask).abs();
-    let struck = whole.map(|s| (s, blows(s, &span_s, least_m_s2(s))));
-    let (signal, blows) = struck.max_by(|a, b| hardest(&a.1).total_cmp(&hardest(&b.1)))?;
-    let mut times_s: Vec<f64> = blows.iter().filter(|b| b.far > LIMIT).map(|b| b.time_s).collect();
+    let looked = looked_at(signals, flight, events, found, cask);
+    let by_hardest = |a: &&Looked<'_>, b: &&Looked<'_>| hardest(&a.means).total_cmp(&hardest(&b.means));
+    let struck = looked.iter().max_by(by_hardest)?;
+    let alone_s = struck.means.iter().filter(|mean| mean.far > LIMIT).map(|mean| mean.time_s);
+    // Before that a step is sought (21b), and modes that were not fitted ring.
+    let is_shaken = |window: &Unforetold| window.far > TOGETHER && window.time_s > flight.to_s;
+    let shaken_s = together(&looked).into_iter().filter(is_shaken);
+    let mut times_s: Vec<f64> = alone_s.chain(shaken_s.map(|window| window.time_s)).collect();
+    times_s.sort_by(f64::total_cmp);
     let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
     let mut before_s = f64::NEG_INFINITY;
     times_s.retain(|&t| t - std::mem::replace(&mut before_s, t) > APART_S);
     let after_s = times_s.iter().map(|t| t - contact_s).collect();
-    Some(ChannelFinding::Struck { after_s, far: hardest(&blows) }.on(&signal.name).between(first_s, last_s))
+    let found = ChannelFinding::Struck { after_s, far: hardest(&struck.means) };
+    Some(found.on(&struck.signal.name).between(first_s, last_s))
+}
+
+/// Whether a shock of the flight is as sharp as what strikes a cask; true where no prediction covers it. A
+/// step that makes up for modes that were not fitted has no shock.
+pub fn is_sharp(signals: &[Signal], flight: &FlightFit, events: &Events, cask: &Cask, at_s: f64) -> bool {
+    let windows = together(&looked_at(signals, flight, events, &[], cask));
+    let near = windows.iter().filter(|window| (window.time_s - at_s).abs() < APART_S);
+    near.map(|window| window.far).reduce(f64::max).is_none_or(|far| far > SHARP)
+}
+
+/// A channel, and what its flight does not foretell.
+struct Looked<'a> {
+    signal: &'a Signal,
+    means: Vec<Unforetold>,
+}
+
+fn looked_at<'a>(
+    signals: &'a [Signal],
+    flight: &FlightFit,
+    events: &Events,
+    found: &[Finding],
+    cask: &Cask,
+) -> Vec<Looked<'a>> {
+    let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
+    let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
+    let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
+    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, cask).abs();
+    whole.map(|signal| Looked { signal, means: unforetold(signal, &span_s, least_m_s2(signal)) }).collect()
+}
+
+/// All channels together, window by window: by how many of its standard deviations Σ far² is above the number
+/// of means, for which noise makes it χ².
+fn together(looked: &[Looked<'_>]) -> Vec<Unforetold> {
+    let means = || looked.iter().flat_map(|l| &l.means);
+    let [first_s, last_s] = [f64::min, f64::max].map(|end| means().map(|m| m.time_s).reduce(end));
+    let (Some(first_s), Some(last_s)) = (first_s, last_s) else { return Vec::new() };
+    let half = |time_s: f64| as_count((time_s - first_s) / (WINDOW_S / 2.0));
+    let mut halves = vec![(0.0, 0.0); half(last_s) + 1];
+    for mean in means() {
+        let (squares, count) = &mut halves[half(mean.time_s)];
+        *squares += mean.far.powi(2);
+        *count += 1.0;
+    }
+    let of_window = |(i, w): (usize, &[(f64, f64)])| {
+        let (squares, count) = (w[0].0 + w[1].0, w[0].1 + w[1].1);
+        let far = (squares - count) / (2.0_f64 * count).sqrt();
+        let time_s = first_s + as_f64(i + 1) * WINDOW_S / 2.0;
+        (count >= FEWEST_MEANS).then_some(Unforetold { time_s, far })
+    };
+    halves.windows(2).enumerate().filter_map(of_window).collect()
 }
 
 /// Whether samples are lost, clipped or spiked between two times.
@@ -79,7 +140,7 @@ fn hardest(all: &[Unforetold]) -> f64 {
 }
 
 /// How far each mean of a stretch is off; none where it is too short to say.
-fn blows(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetold> {
+fn unforetold(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetold> {
     let from = signal.index_from(span_s.start);
     let samples = signal.force_m_s2.get(from..signal.index_from(span_s.end)).unwrap_or_default();
     let block = block_of(RATE_HZ, signal.sample_rate_hz);
@@ -99,12 +160,12 @@ fn blows(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetol
         let spread_m_s2 = foretold.spread.hypot(foretold.gain * rounding_m_s2).max(least_m_s2);
         let time_s = |j: usize| signal.time_s(from + (first + foretold.before + j) * block);
         let judged = foretold.left.iter().enumerate().skip(if i == 0 { FEWEST_BEFORE } else { BEFORE });
-        let unforetold = |(j, left): (usize, &f64)| {
+        let of_mean = |(j, left): (usize, &f64)| {
             let before = &foretold.left[j.saturating_sub(BEFORE)..j];
             let before_m_s2 = (reduce::dot(before, before) / as_f64(before.len())).sqrt();
             Unforetold { time_s: time_s(j), far: left.abs() / spread_m_s2.max(before_m_s2) }
         };
-        judged.map(unforetold).collect()
+        judged.map(of_mean).collect()
     };
     (0..pieces).flat_map(of_piece).collect()
 }
@@ -170,6 +231,31 @@ mod tests {
         assert!(found(&signal(&[], 0.0), 0.1).is_none());
         assert!(found(&signal(&[], 0.0), 0.29).is_none());
         assert!(found(&signal(&[0.096], 60.0), 0.1).is_none());
+    }
+
+    #[test]
+    fn what_four_channels_show_a_little_at_one_time_stands_out_together() {
+        let signal = signal(&[0.06], 60.0);
+        let means = |struck: Range<u32>| {
+            let far = |i: u32| if struck.contains(&i) { 2.5 } else { 1.0 };
+            let mean = |i: u32| Unforetold { time_s: 0.2 + f64::from(i) / 8e3, far: far(i) };
+            (0..400).map(mean).collect()
+        };
+        let largest = |struck: Range<u32>, channels: usize| {
+            let looked: Vec<Looked<'_>> =
+                (0..channels).map(|_| Looked { signal: &signal, means: means(struck.clone()) }).collect();
+            together(&looked).into_iter().max_by(|a, b| a.far.total_cmp(&b.far)).expect("windows")
+        };
+        // Some 32 means of (2.5² − 1) over √64, and 8 over √16.
+        let four = largest(200..212, 4);
+        assert!((18.0..25.0).contains(&four.far) && (0.225..0.227).contains(&four.time_s), "{}", four.far);
+        assert!((9.0..12.5).contains(&largest(200..212, 1).far));
+        assert!(largest(0..0, 4).far.abs() < 1e-9);
+        let (cask, flight) = (example::cask(1.0, 5.0, 0.0), example::flight(0.025, 0.1, vec![]));
+        let events = example::events(0.02, 0.29);
+        let sharp = |at_s| is_sharp(std::slice::from_ref(&signal), &flight, &events, &cask, at_s);
+        // Before the first prediction nothing speaks against a shock.
+        assert!(sharp(0.061) && sharp(0.022));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use super::sampling;
 use crate::data::{
-    Axis, CaskFile, ChannelFinding, During, Effect, End, Events, Finding, FlightFit, MOST_LOST_M_S,
-    STANDARD_GRAVITY_M_S2, Severity, Signal,
+    Axis, CaskFile, ChannelFinding, During, Effect, End, Estimate, Events, Finding, FindingKind, FlightFit,
+    MOST_LOST_M_S, STANDARD_GRAVITY_M_S2, Severity, Signal,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::reduce;
@@ -14,6 +14,8 @@ use std::ops::Range;
 const MOST_NOISE: f64 = 0.05;
 /// Noise that deserves a note: as much as everything else that the interval carries.
 const NOTABLE_NOISE: f64 = 0.005;
+/// An error of a velocity step below this share of what the half-widths allow changes no number.
+const HELD: f64 = 0.5;
 /// Longest integration that noise is held against, s: contact and the window of the flight's fit.
 const LONGEST_S: f64 = 0.1;
 /// A sensor sits on the cask within this, m: its bolt and the tape's hook.
@@ -118,6 +120,21 @@ fn judge_by_themselves(
     }
     findings.extend(units(signals));
     findings
+}
+
+/// Makes a note of noise that leaves the numbers narrow all the same, and of a step that was sampled too
+/// coarsely by less than they are known to.
+pub fn note_what_is_held(findings: &mut [Finding], k: Estimate, speed: Option<Estimate>) {
+    let open = speed.map_or(0.0, |speed| speed.u95 / speed.value);
+    let is_held = |found: &Finding| match found.what {
+        FindingKind::Channel(ChannelFinding::Noise { .. }) => k.u95.max(open) < 2.0 * MOST_NOISE,
+        FindingKind::Channel(ChannelFinding::LowRate { off_percent, .. }) => {
+            let off = off_percent / 100.0;
+            off * (1.0 + k.value) < HELD * k.u95 && (speed.is_none() || off < HELD * open)
+        }
+        _ => false,
+    };
+    findings.iter_mut().filter(|found| is_held(found)).for_each(|found| found.severity = Severity::Note);
 }
 
 /// The uncertainty of the velocity that the noise before first contact causes: no more than the noise of the

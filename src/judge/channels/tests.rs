@@ -66,6 +66,25 @@ fn noise_that_moves_the_velocity_is_named() {
 }
 
 #[test]
+fn what_the_numbers_are_known_to_holds_noise_and_a_coarse_step() {
+    let noise =
+        ChannelFinding::Noise { noise_m_s2: 30.0, u_m_s: 0.8, length_s: 0.1, severity: Severity::Warning };
+    let coarse = ChannelFinding::LowRate { samples: 7.0, pulse_s: 4e-4, off_percent: 1.0, least_hz: 5e4 };
+    let severities = |k_u95: f64, speed_u95: f64| {
+        let mut found = [noise.clone().on("A1"), coarse.clone().on("A1")];
+        let (k, speed) = (Estimate::new(0.5, k_u95, "1"), Estimate::new(20.0, speed_u95, "m/s"));
+        note_what_is_held(&mut found, k, Some(speed));
+        found.map(|found| found.severity)
+    };
+    assert_eq!(severities(0.05, 0.5), [Severity::Note, Severity::Note]);
+    // 1 % of the step is 0.015 of k, and 0.2 m/s.
+    assert_eq!(severities(0.02, 0.5), [Severity::Note, Severity::Warning]);
+    assert_eq!(severities(0.05, 0.3), [Severity::Note, Severity::Warning]);
+    assert_eq!(severities(0.2, 0.5), [Severity::Warning, Severity::Note]);
+    assert_eq!(severities(0.05, 2.5), [Severity::Warning, Severity::Note]);
+}
+
+#[test]
 fn a_place_that_cannot_be_is_named() {
     let place = |first_m: f64, second_m: f64| {
         let mut signals = pair();
