@@ -5,8 +5,8 @@ use super::flight_search::{self, Patience};
 use super::{missing_end, rest};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop,
-    DropFinding, End, Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity, Signal,
-    transverse,
+    DropFinding, Effect, End, Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity,
+    Signal, transverse,
 };
 use crate::events::Hiding;
 use crate::{condition, events, judge};
@@ -65,7 +65,7 @@ impl Impact {
             || judge::judge_silent(&recording.channels.iter().collect::<Vec<_>>()),
             || events::Changes::of(&recording.channels),
         );
-        findings.extend(silent);
+        findings.extend(silent.clone());
         let copied = judge::judge_copies(&recording.channels);
         let least_step_m_s = missing_end::least_step_m_s(file, recording);
         if let Some(Hiding { channel, noise_m_s }) = changes.hiding(least_step_m_s) {
@@ -91,7 +91,8 @@ impl Impact {
         let goes_on = last_within_s(farthest.longest()) > last_s;
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
         let (mut signals, found) = conditioned(recording, file, &event, &reach);
-        signals.retain(|signal| copied.iter().all(|copy| copy.channel.as_ref() != Some(&signal.name)));
+        let left_out = silent.iter().filter(|f| f.effect == Effect::Channel).chain(&copied);
+        signals.retain(|signal| left_out.clone().all(|f| f.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
         let Some(contact) = first_contact(&file.cask, &signals, &event) else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), Some(&event)));

@@ -1,6 +1,6 @@
 //! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
 
-use crate::data::{Channel, ChannelFinding, Finding, of_either};
+use crate::data::{Axis, Channel, ChannelFinding, Finding, of_either};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
@@ -29,12 +29,17 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
     let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
     let is_silent = |r: &Excursion| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
-    channels
-        .iter()
-        .zip(&reaches)
-        .filter(|(_, r)| loudest > 0.0 && is_silent(r))
-        .map(|(channel, r)| ChannelFinding::Dead { farthest_m_s2: r.farthest }.on(&channel.name))
-        .collect()
+    let all: Vec<_> = channels.iter().zip(&reaches).collect();
+    let (silent, heard): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, r)| loudest > 0.0 && is_silent(r));
+    let is_beside = |channel: &Channel| {
+        let is_as_it = |other: &Channel| other.end == channel.end && other.axis == channel.axis;
+        channel.axis == Axis::Axial || heard.iter().any(|(other, _)| is_as_it(other))
+    };
+    let dead = |(channel, r): &(&&Channel, &Excursion)| {
+        let found = ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
+        found.on(&channel.name)
+    };
+    silent.iter().map(dead).collect()
 }
 
 fn reach<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
@@ -60,7 +65,7 @@ fn reach<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, example};
+    use crate::data::{ResultPart, example};
 
     fn channel(name: &str, sample: impl Fn(u32) -> f64) -> Channel {
         Channel {
@@ -93,6 +98,18 @@ mod tests {
         assert_eq!(silent(&channel("A2", |_| 0.0)), dead);
         assert_eq!(silent(&channel("A2", |_| f64::NAN)), dead);
         assert_eq!(silent(&channel("A2", |i| 4.0 * (f64::from(i) * 0.0314).sin() + noise(i))), dead);
+    }
+
+    #[test]
+    fn a_dead_channel_beside_others_of_its_end_is_left_out() {
+        let takes_motion = |first_axis: Axis, second_axis: Axis| {
+            let struck = Channel { axis: first_axis, ..channel("A1", pulse(300.0)) };
+            let dead = Channel { axis: second_axis, ..channel("A2", noise) };
+            judge_silent(&[&struck, &dead]).iter().any(|found| found.takes(ResultPart::Motion))
+        };
+        assert!(!takes_motion(Axis::Transverse, Axis::Transverse));
+        assert!(!takes_motion(Axis::Transverse, Axis::Axial));
+        assert!(takes_motion(Axis::Axial, Axis::Transverse));
     }
 
     #[test]

@@ -124,12 +124,15 @@ pub enum ChannelFinding {
             "and is left out: one sensor counts once; correct its `source`, or delete its table"
         });
     /// Nothing but noise while other channels show the impacts.
-    Dead { farthest_m_s2: f64 } => (Code::DeadChannel, Error, ChannelAndMotion),
-        ("{} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one or \
-         take the channel out of the cask file",
+    Dead { farthest_m_s2: f64, is_beside_others: bool }
+        => if *is_beside_others { (Code::DeadChannel, Warning, Channel) }
+           else { (Code::DeadChannel, Error, ChannelAndMotion) },
+        ("{} while others show the impacts{}: unplugged, broken, or the wrong `source`; name the right one \
+         or take the channel out of the cask file",
          if *farthest_m_s2 > 0.0 {
              format!("stays within {:.2} g of its mean, all of it noise or hum,", farthest_m_s2 / G)
-         } else { "holds one value".into() });
+         } else { "holds one value".into() },
+         if *is_beside_others { ", and is left out" } else { "" });
     /// Mains hum with so many harmonics beside the fundamental; `left_m_s` of velocity is not taken off.
     Hum { amplitude_m_s2: f64, frequency_hz: f64, harmonics: usize, is_taken_off: bool, left_m_s: f64,
           severity: Severity } => (Code::Hum, *severity, Nothing),
