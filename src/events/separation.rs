@@ -6,6 +6,8 @@ use crate::numerics::{as_count, as_f64, reduce};
 
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
+/// Nor has it ended in noise that is more than this.
+const MOST_NOISE: f64 = 0.2;
 /// The flight shows what the impulse comes to in the last part of the time from first contact to the
 /// slap-down …
 const LAST_PART: f64 = 0.3;
@@ -28,7 +30,7 @@ pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Optio
     let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
     let peak = smooth.iter().fold(0.0_f64, |m, &f| m.max(f));
     let at_peak = smooth.iter().position(|&f| f >= peak)?;
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
+    let tail = (TAIL * peak).max(noise_m_s2(signal, peak));
     let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
     Some(signal.time_s(from + end))
 }
@@ -130,7 +132,7 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     let (contact, flight) = smooth.split_at(to - from);
     let peak = contact.iter().fold(0.0_f64, |m, &f| m.max(f));
     let left = flight.iter().fold(0.0_f64, |m, &f| m.max(f.abs()));
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
+    let tail = (TAIL * peak).max(noise_m_s2(signal, peak)).max(1.5 * left).min(0.5 * peak);
     let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
     let time_s = signal.time_s(from + end);
     let u_s = ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz);
@@ -143,7 +145,7 @@ pub fn seat_s(signal: &Signal, contact_s: f64, left_s: f64) -> f64 {
     let after_s = left_s - contact_s;
     let (contact, (after, turns)) =
         (turns(signal, contact_s, left_s).0, turns(signal, left_s, left_s + after_s));
-    if turns < LEAST_TURNS || after < (TAIL * contact).max(NOISE_FACTOR * signal.noise_m_s2) {
+    if turns < LEAST_TURNS || after < (TAIL * contact).max(noise_m_s2(signal, contact)) {
         return 0.0;
     }
     after_s / as_f64(turns) / std::f64::consts::PI
@@ -161,9 +163,22 @@ fn cumulative(values: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
+/// Half the width of the moving mean, samples: the high modes of the sensor's mount do not end a pulse.
+fn half_width(sample_rate_hz: f64) -> usize {
+    as_count(1e-4 * sample_rate_hz)
+}
+
+/// What passes the noise of a signal, m/s²: where that is much of a pulse's `peak`, what the moving mean
+/// leaves of it.
+fn noise_m_s2(signal: &Signal, peak: f64) -> f64 {
+    let raw = NOISE_FACTOR * signal.noise_m_s2;
+    let of_mean = raw / as_f64(2 * half_width(signal.sample_rate_hz) + 1).sqrt();
+    raw.min(of_mean.max(MOST_NOISE * peak))
+}
+
+/// Moving mean over 0.2 ms.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
-    let half = as_count(1e-4 * sample_rate_hz);
+    let half = half_width(sample_rate_hz);
     let sums = cumulative(force);
     (0..force.len())
         .map(|i| {
@@ -209,6 +224,22 @@ mod tests {
         let held = by_impulse(&quiet, 0.020_03, by_force, &(0.04..0.1));
         assert!((held.time_s - by_force.time_s).abs() < 1e-9 && held.u_s < 1.2 * by_force.u_s, "{held:?}");
         assert!(seat_s(&quiet, 0.020_03, 0.026_03).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_pulse_in_the_noise_ends_where_means_show_it() {
+        let quiet = signal(0.0);
+        // White noise, by a hash of the sample's number, of a standard deviation of 400 m/s².
+        let noise = |i: u32| {
+            let hash = |salt: u32| (i ^ salt).wrapping_mul(2_654_435_761) >> 16;
+            let uniform = |salt: u32| f64::from(hash(salt)) / 65_536.0 - 0.5;
+            400.0 * (uniform(0x5bd1) + uniform(0xe995) + uniform(0x1b87)) * 2.0
+        };
+        let force_m_s2 = (0_u32..).zip(&quiet.force_m_s2).map(|(i, force)| force + noise(i)).collect();
+        let noisy = Signal { noise_m_s2: 400.0, force_m_s2, ..quiet };
+        let found = separation(&noisy, 0.020_03, 0.04).expect("a separation");
+        // By single samples the force would have to pass half its peak, 1 ms before its end.
+        assert!((found.time_s - 0.026_03).abs() < 6e-4, "{found:?}");
     }
 
     #[test]
