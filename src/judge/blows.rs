@@ -17,9 +17,9 @@ const PIECE_S: f64 = 0.1;
 /// has no room for leave a residual too, but one that decays.
 const LIMIT: f64 = 6.0;
 /// All channels together are struck where a window of theirs is this far above noise, behind the stretch that
-/// the flight was fitted over: there 302 sound drops of elastic beams reach 4.6 …
+/// the flight was fitted over: of 310 sound drops of elastic beams none is named …
 const TOGETHER: f64 = 7.0;
-/// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, 2.8.
+/// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, at most 2.8.
 const SHARP: f64 = 3.0;
 /// Windows in which all channels are looked at together, s, and the fewest means of one.
 const WINDOW_S: f64 = 1e-3;
@@ -50,19 +50,23 @@ pub fn judge_blows(
 ) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let looked = looked_at(signals, flight, events, found, cask);
-    let by_hardest = |a: &&Looked<'_>, b: &&Looked<'_>| hardest(&a.means).total_cmp(&hardest(&b.means));
-    let struck = looked.iter().max_by(by_hardest)?;
-    let alone_s = struck.means.iter().filter(|mean| mean.far > LIMIT).map(|mean| mean.time_s);
     // Before that a step is sought (21b), and modes that were not fitted ring.
     let is_shaken = |window: &Unforetold| window.far > TOGETHER && window.time_s > flight.to_s;
-    let shaken_s = together(&looked).into_iter().filter(is_shaken);
-    let mut times_s: Vec<f64> = alone_s.chain(shaken_s.map(|window| window.time_s)).collect();
+    let shaken: Vec<Unforetold> = together(&looked).into_iter().filter(is_shaken).collect();
+    let is_in_one = |mean: &Unforetold| shaken.iter().any(|w| (w.time_s - mean.time_s).abs() < WINDOW_S);
+    let hardest = |channel: &Looked<'_>| {
+        let struck = channel.means.iter().filter(|mean| mean.far > LIMIT || is_in_one(mean));
+        struck.map(|mean| mean.far).fold(0.0, f64::max)
+    };
+    let struck = looked.iter().max_by(|a, b| hardest(a).total_cmp(&hardest(b)))?;
+    let alone_s = struck.means.iter().filter(|mean| mean.far > LIMIT).map(|mean| mean.time_s);
+    let mut times_s: Vec<f64> = alone_s.chain(shaken.iter().map(|window| window.time_s)).collect();
     times_s.sort_by(f64::total_cmp);
     let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
     let mut before_s = f64::NEG_INFINITY;
     times_s.retain(|&t| t - std::mem::replace(&mut before_s, t) > APART_S);
     let after_s = times_s.iter().map(|t| t - contact_s).collect();
-    let found = ChannelFinding::Struck { after_s, far: hardest(&struck.means) };
+    let found = ChannelFinding::Struck { after_s, far: hardest(struck) };
     Some(found.on(&struck.signal.name).between(first_s, last_s))
 }
 
@@ -133,10 +137,6 @@ struct Unforetold {
     time_s: f64,
     /// How far it is off, over the means before it.
     far: f64,
-}
-
-fn hardest(all: &[Unforetold]) -> f64 {
-    all.iter().map(|u| u.far).fold(0.0, f64::max)
 }
 
 /// How far each mean of a stretch is off; none where it is too short to say.
