@@ -387,7 +387,7 @@ impl Search<'_> {
         let found_s = attempt.separation.time_s;
         let from_s = window.from_s.max(found_s);
         let given_s = events::impulse_given(ends.0.signal(), self.integrated.contact_s, attempt.end_s);
-        let time_s = given_s.unwrap_or((found_s + from_s) / 2.0).clamp(found_s, from_s);
+        let time_s = given_s.unwrap_or(found_s.midpoint(from_s)).clamp(found_s, from_s);
         let separation = At { time_s, u_s: (from_s - found_s) / 12.0_f64.sqrt() };
         self.conclude(ends, Attempt { separation, ..attempt })
     }
