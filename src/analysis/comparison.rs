@@ -89,7 +89,7 @@ fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &Cask
     found.extend(judge::judge_separation(flight, left_s));
     let step = judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed);
     let is_sharp = |at_s| judge::is_sharp(impact.recorded(), flight, events, &file.cask, at_s);
-    found.extend(step.filter(|step| step.from_s.is_none_or(is_sharp)));
+    found.extend(step.filter(|step| step.takes(ResultPart::Motion) || step.from_s.is_none_or(is_sharp)));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
         let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);

@@ -122,7 +122,6 @@ struct Beginning {
 }
 
 /// What one round of the search hands to the next.
-#[derive(Clone)]
 struct Attempt {
     separation: At,
     slap_down: Option<At>,
@@ -188,8 +187,7 @@ fn searched(
     let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
     let mut ends = (first?, second?);
     let struck = search.slap_down(&ends.1, search.earliest_s, None);
-    let mut tried: Vec<(f64, FoundFlight)> = Vec::new();
-    let mut later: Vec<(f64, FoundFlight)> = Vec::new();
+    let mut best: Option<(f64, FoundFlight)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
@@ -199,21 +197,18 @@ fn searched(
     let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { beginnings });
     let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
     for (share, given_s) in given.into_iter().chain(shares.map(|share| (share, None))) {
-        let most_modes = if tried.is_empty() { FEW_MODES } else { MANY_MODES };
+        let most_modes = if best.is_none() { FEW_MODES } else { MANY_MODES };
         let beginning = Beginning { share, given_s, most_modes };
-        let (attempt, shown) = search.attempt(&mut ends, struck, beginning);
+        let attempt = search.attempt(&mut ends, struck, beginning);
         let cost = search.cost(&attempt);
         let is_settled = cost < 1.0 || attempt.flight.as_ref().is_some_and(is_clearly_explained);
-        tried.push((cost, attempt));
-        later.extend(shown.map(|shown| (search.cost(&shown), shown)));
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, attempt));
+        }
         if is_settled {
             break;
         }
     }
-    if !tried.iter().any(|(_, found)| found.flight.as_ref().is_some_and(|flight| search.shows(flight))) {
-        tried.append(&mut later);
-    }
-    let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, found)| search.beyond_last_stage(found))
 }
 
@@ -257,17 +252,11 @@ impl FoundFlight {
 }
 
 impl Search<'_> {
-    /// Rounds from a first guess of the slap-down, and what the last flight that shows leads to, where the
-    /// last round has none; the signals of both ends are without the first bending mode.
-    fn attempt(
-        &self,
-        ends: &mut Ends,
-        struck: Option<At>,
-        beginning: Beginning,
-    ) -> (FoundFlight, Option<FoundFlight>) {
+    /// Rounds from a first guess of the slap-down; the signals of both ends are without the first bending
+    /// mode.
+    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: Beginning) -> FoundFlight {
         ends.0.restore();
         let mut attempt = self.begin(ends, struck, beginning);
-        let mut shown = None;
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let (window, fits) = self.fit(&attempt);
             let mut fits = fits.into_iter();
@@ -275,9 +264,7 @@ impl Search<'_> {
             self.take_ringing_off(ends, &attempt, &flight);
             let (left_s, end_s) = (attempt.separation.time_s, attempt.end_s);
             self.seek_anew(ends, &mut attempt, &flight);
-            let shows = self.shows(&flight);
             attempt = Attempt { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
-            shown = if shows { Some(attempt.clone()) } else { shown };
             let (left_by_s, end_by_s) =
                 ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
             let is_still = round > 0 && end_by_s.max(left_by_s) < STILL_S;
@@ -285,11 +272,7 @@ impl Search<'_> {
                 break;
             }
         }
-        // A fit that reaches into the contact shows no flight, where one before it did.
-        let ends_shown = attempt.fitted.as_ref().is_some_and(|(flight, _)| self.shows(flight));
-        let before = shown.filter(|_| !ends_shown);
-        let found = self.conclude(ends, attempt);
-        (found, before.map(|before| self.left_later(ends, before)))
+        self.conclude(ends, attempt)
     }
 
     /// Where the signal of R shows it to strike after `from_s`; free of ringing but for `calm_m_s2`.
@@ -358,7 +341,9 @@ impl Search<'_> {
         let contact_s = self.integrated.contact_s;
         // A well-explained flight hides no slap-down in its ringing, and a poorly fitted one can imitate a
         // slap-down.
-        if self.shows(flight) {
+        let most_left_m_s = EXPLAINED_M_S.max(SHOWN * self.file.drop.impact_velocity_m_s);
+        let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
+        if is_shown {
             let calm_m_s2 = calm_m_s2(second, flight);
             let from_s = self.earliest_s.max(attempt.free_s);
             let cut_short = || {
@@ -371,25 +356,6 @@ impl Search<'_> {
         attempt.separation =
             events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.separation);
         attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.separation.time_s);
-    }
-
-    /// Whether a flight leaves too little for a contact or a slap-down within it.
-    fn shows(&self, flight: &FlightFit) -> bool {
-        let most_left_m_s = EXPLAINED_M_S.max(SHOWN * self.file.drop.impact_velocity_m_s);
-        flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s)
-    }
-
-    /// What an attempt ends with whose separation lies between the one that was found, from which on a fit
-    /// reaches into the contact, and the beginning of its flight: where the impulse has been given.
-    fn left_later(&self, ends: &mut Ends, attempt: Attempt) -> FoundFlight {
-        let Some((flight, window)) = &attempt.fitted else { return self.conclude(ends, attempt) };
-        self.take_ringing_off(ends, &attempt, flight);
-        let found_s = attempt.separation.time_s;
-        let from_s = window.from_s.max(found_s);
-        let given_s = events::impulse_given(ends.0.signal(), self.integrated.contact_s, attempt.end_s);
-        let time_s = given_s.unwrap_or(found_s.midpoint(from_s)).clamp(found_s, from_s);
-        let separation = At { time_s, u_s: (from_s - found_s) / 12.0_f64.sqrt() };
-        self.conclude(ends, Attempt { separation, ..attempt })
     }
 
     /// What the last round ended with, the separation by the impulse.
