@@ -6,8 +6,8 @@ use super::flight_search::Patience;
 use super::second_look::{Doubt, closes, is_too_large};
 use crate::data::shown::digits;
 use crate::data::{
-    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Finding,
-    FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
+    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Events,
+    Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
     STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
 };
 use crate::judge;
@@ -375,12 +375,12 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
     }
 }
 
-/// The velocity steps of a flight, as samples, and when the first contact began.
+/// The velocity steps of a flight, as samples, and its events.
 #[derive(Clone)]
 struct StepSamples {
     recording: Recording,
     flight: FlightFit,
-    contact_s: f64,
+    events: Events,
 }
 
 /// The velocity steps of the flight, as a recording of two samples a channel, the step and its standard
@@ -388,19 +388,19 @@ struct StepSamples {
 ///
 /// One body has them in any stretch of time that all channels share; what the fit leaves counts as uncertain.
 fn of_steps(recording: &Recording, result: &DropResult) -> Option<StepSamples> {
-    let (flight, contact_s) = (result.flight.clone()?, result.first_impact.time?.value);
+    let (flight, events) = (result.flight.clone()?, result.events);
     let mut steps = recording.clone();
     for channel in &mut steps.channels {
         let own = flight.plateau(&channel.name).map(|p| [p.velocity_step_m_s, p.u_m_s.hypot(p.residual_m_s)]);
         let in_unit = own.unwrap_or([f64::NAN; 2]).map(|x| x / channel.scale_m_s2);
         channel.samples = Samples::F64(in_unit.to_vec());
     }
-    Some(StepSamples { recording: steps, flight, contact_s })
+    Some(StepSamples { recording: steps, flight, events })
 }
 
 /// Whether these steps may be those of one rigid body with these slips put right.
 fn is_rigid(slips: &[Slip], of_steps: &StepSamples, file: &CaskFile) -> bool {
-    let StepSamples { recording: mut steps, mut flight, contact_s } = of_steps.clone();
+    let StepSamples { recording: mut steps, mut flight, events } = of_steps.clone();
     let mut stated = file.clone();
     for slip in slips {
         put_right(slip, &mut steps, &mut stated);
@@ -414,7 +414,7 @@ fn is_rigid(slips: &[Slip], of_steps: &StepSamples, file: &CaskFile) -> bool {
     let across = steps.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let places =
         across.map(|c| judge::SensorPlace { name: &c.name, position_m: c.position_m, offset_m: c.offset_m });
-    judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop, contact_s).is_none()
+    judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop, &events).is_none()
 }
 
 /// The samples of two channels change places, and what the cask file says of each channel stays, its polarity

@@ -38,7 +38,7 @@ impl Measured {
             flight,
             &file.tolerances,
             &file.drop,
-            impact.contact.time_s,
+            events,
         ));
         let known = (quantities.k, quantities.speed);
         let contact_s = impact.contact.time_s;

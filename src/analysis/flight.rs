@@ -163,7 +163,7 @@ fn moved(
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.untested(&|flight| {
         let places = judge::places(&impact.signals);
-        judge::judge_rigid(places, flight, &file.tolerances, &file.drop, impact.contact.time_s).is_some()
+        judge::judge_rigid(places, flight, &file.tolerances, &file.drop, events).is_some()
     });
     let ringing = events
         .slap_down

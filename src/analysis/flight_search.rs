@@ -321,10 +321,11 @@ impl Search<'_> {
                 .map_or(0.0, |f| motion::turned_rad_s(signals, f, before_rad_s, events_s)),
         };
         // After R the modes ring on from both impacts: what drove them is not one force.
-        let drive = self
-            .to_target
-            .then(|| motion::drive(self.integrated, before, attempt.separation.time_s, window.from_s, cog_m));
-        let drive = drive.flatten();
+        let drive = || {
+            let left_s = attempt.separation.time_s;
+            motion::drive(self.integrated, before, left_s, window.from_s, cog_m, before_rad_s)
+        };
+        let drive = self.to_target.then(drive).flatten();
         let fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m, attempt.most_modes);
         (window, fits)
     }
@@ -422,8 +423,7 @@ impl Search<'_> {
         if self.cost(&found) < 1.0 || found.flight.as_ref().is_none_or(FlightFit::is_told_apart) {
             return found;
         }
-        let FoundFlight { separation, seat_s, slap_down, window, .. } = found;
-        let with = |flight| FoundFlight { separation, seat_s, slap_down, flight: Some(flight), window };
+        let with = |flight| FoundFlight { flight: Some(flight), ..found };
         others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(found)
     }
 

@@ -1,6 +1,6 @@
 //! The velocity steps of three and more transverse channels to whether one rigid body can have them.
 
-use crate::data::{Axis, ChannelFinding, Drop, Finding, FlightFit, Signal, Tolerances};
+use crate::data::{Axis, ChannelFinding, Drop, Events, Finding, FlightFit, Signal, Tolerances};
 
 /// A velocity step this many standard uncertainties off the line through the other channels' steps speaks
 /// against one rigid body: of three or four channels chance puts the farthest one nearer.
@@ -9,9 +9,9 @@ const SURE: f64 = 4.0;
 /// step.
 const LEAST_M_S: f64 = 0.1;
 
-/// Mean of Ω² from first contact to the flight's window over Ω² of the flight, and its standard uncertainty:
-/// 3/8 in a contact whose force is a half sine, 1 behind it.
-const TURNING_SHARE: f64 = 0.45;
+/// Mean of Ω² in a contact over Ω² of the flight, where the force is a half sine, and its standard
+/// uncertainty.
+const TURNING_SHARE: f64 = 0.375;
 const U_TURNING_SHARE: f64 = 0.1;
 /// Slope of a free beam's first bending shape at its end, times the length, over the deflection there.
 const END_SLOPE: f64 = 4.65;
@@ -46,16 +46,18 @@ struct Reading<'a> {
 /// Holds the velocity steps against the line over positions that a rigid body gives   (16)
 ///
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
-/// named. A channel off the axis also reads −Ω² η from `contact_s` on, with Ω of its section   (14)
+/// named. A channel off the axis also reads −Ω² η from first contact on, with Ω of its section   (14)
 pub fn judge_rigid<'a>(
     transverse: impl Iterator<Item = SensorPlace<'a>>,
     flight: &FlightFit,
     tolerances: &Tolerances,
     drop: &Drop,
-    contact_s: f64,
+    events: &Events,
 ) -> Option<Finding> {
     let places: Vec<SensorPlace> = transverse.collect();
-    let turned_s = (flight.from_s - contact_s).max(0.0);
+    let left_s = events.separation_s().unwrap_or(flight.from_s);
+    let contact_s = (left_s - events.first_contact_s()?).max(0.0);
+    let flown_s = (flight.from_s - left_s).max(0.0);
     let bending_m2_s2: f64 =
         flight.modes.iter().map(|mode| (END_SLOPE * mode.amplitude_m_s).powi(2) / 2.0).sum();
     // The axial velocity changes by about this much: where L sticks, its corner is thrown straight up.
@@ -68,9 +70,10 @@ pub fn judge_rigid<'a>(
         .iter()
         .filter_map(|&SensorPlace { name, position_m, offset_m }| {
             let plateau = flight.plateau(name)?;
-            let by_square_m = offset_m * turned_s;
-            let step_m_s = plateau.velocity_step_m_s + TURNING_SHARE * turning_rad_s.powi(2) * by_square_m;
-            let u_offset_m_s = by_square_m * (U_TURNING_SHARE * turning_rad_s.powi(2)).hypot(bending_rad2_s2);
+            let pulled_m_s2 = offset_m * turning_rad_s.powi(2);
+            let step_m_s = plateau.velocity_step_m_s + pulled_m_s2 * (TURNING_SHARE * contact_s + flown_s);
+            let u_bent_m_s = offset_m * bending_rad2_s2 * (contact_s + flown_s);
+            let u_offset_m_s = (U_TURNING_SHARE * pulled_m_s2 * contact_s).hypot(u_bent_m_s);
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s =
                 (tolerances.calibration * step_m_s).hypot(tolerances.cross_axis * axial_m_s) / 2.0;
@@ -129,7 +132,7 @@ fn line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Plateau, example};
+    use crate::data::{At, Plateau, example};
 
     /// Steps of 20 − 6 x m/s at four places, each known to 0.02 m/s, the second one off.
     fn named(off_m_s: f64, places_m: &[f64]) -> Option<String> {
@@ -158,7 +161,8 @@ mod tests {
         };
         let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
         let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, angle_rad) };
-        judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, 0.0).and_then(|i| i.channel)
+        let events = example::events(0.0, 0.1);
+        judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events).and_then(|i| i.channel)
     }
 
     #[test]
@@ -197,7 +201,9 @@ mod tests {
             };
             let flight = example::flight(0.03, 0.09, signals.iter().map(plateau).collect());
             let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) };
-            judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, 0.0)
+            let left = Some(At::exactly(0.024));
+            let events = Events { separation: left, ..example::events(0.0, 0.1) };
+            judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events)
         };
         // ∫Ω² of an Ω that rises to 6 rad/s in 24 of 30 ms is 36 (3/8 · 0.024 + 0.006) = 0.54 rad²/s.
         assert!(named(0.4 * 0.54).is_none(), "{:?}", named(0.4 * 0.54));

@@ -1,8 +1,8 @@
 //! Signals and the plateaus of the flight to what the channels say over the contact: the line over their
 //! positions, free of ringing.
 
-use super::flight::oscillation;
-use super::{Integrated, Velocity};
+use super::flight::{centrifugal_m_s2, oscillation};
+use super::{Integrated, Velocity, turned_rad_s};
 use crate::data::{Axis, CONTACT_STEPS, FlightFit, Mode, Signal};
 use crate::numerics::as_f64;
 use crate::numerics::damped_modes::{Drive, rate};
@@ -21,6 +21,8 @@ pub(super) type Sums = [f64; 3];
 /// positions, its value at S and its slope along the axis   (16), the axial ones by their mean.
 pub(super) struct AlongAxis {
     weights: Vec<Sums>,
+    /// Place of S, m.
+    cog_m: f64,
     /// What ∫Ω² dt since contact adds to the first two, m and 1: f_η holds −Ω² η   (14)
     turned_m: [f64; 2],
     /// Mean place of the axial channels: from L and off the axis, m; `None` without any.
@@ -48,7 +50,7 @@ impl AlongAxis {
         let turned_m = [0, 1].map(|i| signals.iter().zip(&weights).map(|(s, w)| w[i] * s.offset_m).sum());
         let axial_m = (on(Axis::Axial).next().is_some())
             .then(|| [mean(Axis::Axial, |s| s.position_m), mean(Axis::Axial, |s| s.offset_m)]);
-        (square_m2 > 1e-6).then_some(Self { weights, turned_m, axial_m })
+        (square_m2 > 1e-6).then_some(Self { weights, cog_m, turned_m, axial_m })
     }
 
     /// What steps of all channels change: the velocity of S across the axis, Ω, and the velocity along the
@@ -80,6 +82,7 @@ impl<'a> Histories<'a> {
         Integrated { signals, velocities, .. }: &Integrated,
         fit: &FlightFit,
         line: &'a AlongAxis,
+        before_rad_s: f64,
         (contact_s, separation_s): (f64, f64),
         steps: usize,
     ) -> Option<Self> {
@@ -87,12 +90,15 @@ impl<'a> Histories<'a> {
         if length_s <= 0.0 {
             return None;
         }
+        let turning_rad_s = turned_rad_s(signals, fit, before_rad_s, [contact_s, separation_s]);
         let mut sums = vec![[0.0; 3]; steps + 1];
         for ((signal, velocity), weights) in signals.iter().zip(velocities).zip(&line.weights) {
             let plateau = fit.plateau(&signal.name)?;
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
-            let before_s = fit.from_s - separation_s + length_s / 2.0;
-            let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
+            let flown_s = fit.from_s - separation_s;
+            let shifted_m_s = plateau.zero_shift_m_s2 * (flown_s + length_s / 2.0);
+            let pulled_m_s = centrifugal_m_s2(signal, turning_rad_s, line.cog_m) * flown_s;
+            let plateau_m_s = plateau.velocity_step_m_s - shifted_m_s - pulled_m_s;
             velocity.add_even((contact_s, length_s / as_f64(steps)), plateau_m_s, *weights, &mut sums);
         }
         let mut histories = Self { line, sums };
@@ -218,12 +224,14 @@ pub fn drive(
     left_s: f64,
     from_s: f64,
     cog_m: f64,
+    before_rad_s: f64,
 ) -> Option<Drive> {
     let contact_s = integrated.contact_s;
     let line = AlongAxis::through(&integrated.signals, cog_m)?;
     let turning = match fit {
         Some(fit) => {
-            Histories::new(integrated, fit, &line, (contact_s, left_s), CONTACT_STEPS)?.turning_rad_s()
+            Histories::new(integrated, fit, &line, before_rad_s, (contact_s, left_s), CONTACT_STEPS)?
+                .turning_rad_s()
         }
         None if left_s > contact_s => half_sine(CONTACT_STEPS).into_iter().map(|share| -share).collect(),
         None => return None,

@@ -74,7 +74,8 @@ fn follow(
     let contact_s = events.first_contact_s()?;
     let separation_s = events.separation_s()?;
     let line = AlongAxis::through(&integrated.signals, setup.cog_m)?;
-    let histories = Histories::new(integrated, fit, &line, (contact_s, separation_s), setup.contact_steps)?
+    let (before_rad_s, events_s) = (setup.angular_velocity_rad_s, (contact_s, separation_s));
+    let histories = Histories::new(integrated, fit, &line, before_rad_s, events_s, setup.contact_steps)?
         .at_rate(setup.second_s);
     let mut body = OnTarget::start(setup, contact_s);
     let contact = body.state;
@@ -348,7 +349,12 @@ mod tests {
             vec![example::plateau("A1", first_m_s), example::plateau("A2", second_m_s)],
         );
         let events = Events { separation: Some(At::exactly(0.016)), ..example::events(0.01, 0.07) };
-        let setup = Setup {
+        reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup(axial))
+            .expect("two channels apart")
+    }
+
+    fn setup(axial: AxialClosure) -> Setup {
+        Setup {
             length_m: 5.0,
             height_m: 0.6,
             cog_m: 2.5,
@@ -362,8 +368,7 @@ mod tests {
             second_s: 1.0,
             inward: 0.0,
             contact_steps: CONTACT_STEPS,
-        };
-        reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup).expect("two channels apart")
+        }
     }
 
     #[test]
@@ -373,6 +378,36 @@ mod tests {
         assert!((m.separation.vertical_velocity_m_s + fallen_m_s).abs() < 1e-9);
         assert!(m.separation.horizontal_velocity_m_s.abs() < 1e-9);
         assert!(m.separation.angular_velocity_rad_s.abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_the_rotation_pulls_before_the_fit_begins_is_no_rotation() {
+        // Sensors on both skins whose flight is fitted from 1 and from 20 ms behind the separation on.
+        let rotation_rad_s = |from_s: f64| {
+            let off_axis = |signal: Signal, offset_m: f64| {
+                let turning = |i: i32| {
+                    let share = ((f64::from(i) * 1e-5 - 0.01) / 0.006).clamp(0.0, 1.0);
+                    26.0 / 4.0 * (1.0 - (std::f64::consts::PI * share).cos()) / 2.0
+                };
+                let pulled = |(i, force): (i32, &f64)| force - turning(i).powi(2) * offset_m;
+                let force_m_s2 = (0..).zip(&signal.force_m_s2).map(pulled).collect();
+                Signal { offset_m, force_m_s2, ..signal }
+            };
+            let signals = [
+                off_axis(signal("A1", End::First, 0.5, 19.0), 0.3),
+                off_axis(signal("A2", End::Second, 4.5, -7.0), -0.3),
+            ];
+            let integrated = Integrated::over(&signals, 0.01);
+            let read = signals.iter().zip(&integrated.velocities);
+            let steps = read.map(|(s, v)| example::plateau(&s.name, v.at(from_s))).collect();
+            let events = Events { separation: Some(At::exactly(0.016)), ..example::events(0.01, 0.07) };
+            let setup = setup(AxialClosure::Sticking);
+            let fit = example::flight(from_s, 0.07, steps);
+            let m = reconstruct(&integrated, &fit, &events, &setup).expect("two channels apart");
+            m.separation.angular_velocity_rad_s
+        };
+        assert!((rotation_rad_s(0.017) - 6.5).abs() < 0.02, "{}", rotation_rad_s(0.017));
+        assert!((rotation_rad_s(0.036) - 6.5).abs() < 0.02, "{}", rotation_rad_s(0.036));
     }
 
     #[test]

@@ -106,7 +106,7 @@ fn step_error_percent(of: &Prepared) -> f64 {
         angular_velocity_rad_s: truth.omega_rebound.expect("a separation"),
     };
     let integrated = motion::Integrated::over(&of.signals, of.contact_s);
-    let drive = motion::drive(&integrated, None, left_s, window.from_s, cog_m);
+    let drive = motion::drive(&integrated, None, left_s, window.from_s, cog_m, 0.0);
     let fit = motion::fit_flights(&integrated, &window, drive.as_ref(), cog_m, 3).swap_remove(0);
     let steps_m_s = velocity_steps_m_s(&of.drop.scene, length_s);
     let off = |(found_m_s, step_m_s): (f64, &f64)| 100.0 * (found_m_s - step_m_s).abs() / step_m_s.abs();
