@@ -165,11 +165,10 @@ fn moved(
         let places = judge::places(&impact.signals);
         judge::judge_rigid(places, flight, &file.tolerances, &file.drop, events).is_some()
     });
-    let ringing = events
-        .slap_down
-        .filter(|_| is_whole)
-        .map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at })
-        .and_then(|at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken));
+    let ringing =
+        events.slap_down.filter(|_| is_whole).map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at }).and_then(
+            |at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken, cask),
+        );
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
     let fit::RungTaken { quantities, budget, choice: reconstruction, openings, .. } = taken;
     Some(FlightResult {

@@ -1,6 +1,6 @@
 //! What the free-flight window gave: a plateau per channel, and the modes that ring on it.
 
-use super::{Axis, End, SLOWEST_BENDING_HZ, Signal};
+use super::{Axis, Cask, End, SLOWEST_BENDING_HZ, Signal};
 use serde::Serialize;
 
 /// One damped bending mode in the flight window.
@@ -158,14 +158,18 @@ const SLOWEST_HZ: f64 = 16.5;
 /// The second bending mode, in which the ends go apart, is faster than the first by more than this: 2.76
 /// times in a slender uniform beam.
 const SECOND_MODE: f64 = 1.8;
-/// The same of a beam of one height, and how it grows with the slenderness: 1.5 at two heights, where shear
-/// leaves 1.60 of it, 1.74 at 2.6, where it leaves 1.81 (Timoshenko beams of steel).
-const SECOND_MODE_THICK: (f64, f64) = (0.7, 0.4);
+/// The same of a beam of one height, and how it grows with the slenderness: 1.4 at two heights, where shear
+/// leaves 1.49 of it in a thick tube, 1.55 at 2.5, where it leaves 1.65 (Timoshenko beams of steel).
+const SECOND_MODE_THICK: (f64, f64) = (0.8, 0.3);
 /// No mount of contents that weigh tons is stiffer, Hz.
 const FASTEST_SWING_HZ: f64 = 100.0;
 /// In its first bending mode a uniform beam goes nearly straight from its end to a node at this share of its
 /// length.
 const NODE: f64 = 0.2155;
+/// A limiter on either end weighs up to this share of the beam …
+const MOST_END_MASS: f64 = 0.12;
+/// … and draws the node of its own end outwards by this share of its own, that of the other inwards by that.
+const NODE_BY_END_MASS: (f64, f64) = (0.55, 0.137);
 /// Sensors farther in than this share of the length on either end stand so near to that node, or beyond it,
 /// that their signs tell no shape.
 const NEAR_NODE: f64 = 0.175;
@@ -224,7 +228,8 @@ impl FlightFit {
     /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
     /// slowest in which they go together; or as far as one another where bending would let them differ. Of a
     /// cask of `height_m`; 0 where it is slender.
-    pub fn swinging(&self, signals: &[Signal], length_m: f64, height_m: f64) -> usize {
+    pub fn swinging(&self, signals: &[Signal], cask: &Cask) -> usize {
+        let &Cask { length_m, height_m, .. } = cask;
         let second_mode = if height_m > 0.0 {
             SECOND_MODE.min(SECOND_MODE_THICK.0 + SECOND_MODE_THICK.1 * length_m / height_m)
         } else {
@@ -235,7 +240,8 @@ impl FlightFit {
         let largest_m_s = sizes_m_s.iter().fold(0.0, |a: f64, b| a.max(*b));
         let goes = |(i, m): (usize, &Mode)| {
             let along = self.goes_along(i, signals);
-            (sizes_m_s[i] > SHOWN * largest_m_s).then_some((m.frequency_hz, along))
+            let is_mode = sizes_m_s[i] > SHOWN * largest_m_s && m.damping < STRONG_DAMPING;
+            is_mode.then_some((m.frequency_hz, along))
         };
         let shown: Vec<(f64, f64)> = self.modes.iter().enumerate().filter_map(goes).collect();
         let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ALONE);
@@ -247,7 +253,7 @@ impl FlightFit {
             slowest.map_or(*apart_hz < FASTEST_SWING_HZ, |slowest| is_near(*apart_hz, slowest.0))
         });
         let swings = |(hz, along): &&(f64, f64)| {
-            (*hz < FASTEST_SWING_HZ && goes_straight(*along, signals, length_m))
+            (*hz < FASTEST_SWING_HZ && goes_straight(*along, signals, cask))
                 || next.is_some_and(|next| is_near(next.0, *hz) && (next.0 - hz) * length_s > RESOLVED)
                 || apart_hz.is_some_and(|apart_hz| is_near(*hz, apart_hz))
         };
@@ -260,8 +266,8 @@ impl FlightFit {
 
     /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
     /// together, and which of these it is; 0 where the cask swings.
-    pub fn bending_orders(&self, signals: &[Signal], length_m: f64, height_m: f64) -> Vec<u8> {
-        let (swinging, mut together) = (self.swinging(signals, length_m, height_m), 0);
+    pub fn bending_orders(&self, signals: &[Signal], cask: &Cask) -> Vec<u8> {
+        let (swinging, mut together) = (self.swinging(signals, cask), 0);
         let order = |mode: usize| {
             let goes = mode >= swinging && self.goes_along(mode, signals) > 0.0;
             together += u8::from(goes);
@@ -328,11 +334,21 @@ fn shows_shapes(signals: &[Signal], length_m: f64) -> bool {
     first.max(1.0 - last) < NEAR_NODE
 }
 
-/// Whether both ends go nearly as far as one another, where the first bending mode would let them differ.
-fn goes_straight(along: f64, signals: &[Signal], length_m: f64) -> bool {
-    let (first, last) = outermost(signals, length_m);
-    let bent = (NODE - first) / (NODE - (1.0 - last));
-    bent.ln().abs() > TELLS.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
+/// Whether both ends go nearly as far as one another, where the first bending mode would let them differ:
+/// with limiters of no mass or of the most, and with what draws the centre of gravity to where it is in the
+/// beam or in the limiter of its end.
+fn goes_straight(along: f64, signals: &[Signal], cask: &Cask) -> bool {
+    let (first, last) = outermost(signals, cask.length_m);
+    let heavier = 2.0 * (cask.cog_m / cask.length_m - 0.5);
+    let limiters = [0.0, MOST_END_MASS]
+        .into_iter()
+        .flat_map(|both| [[both; 2], [both + (-heavier).max(0.0), both + heavier.max(0.0)]]);
+    limiters.into_iter().all(|masses| {
+        let (own, other) = NODE_BY_END_MASS;
+        let node = |own_mass: f64, other_mass: f64| NODE - own * own_mass + other * other_mass;
+        let bent = (node(masses[0], masses[1]) - first) / (node(masses[1], masses[0]) - (1.0 - last));
+        bent.ln().abs() > TELLS.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
+    })
 }
 
 #[cfg(test)]
@@ -369,7 +385,8 @@ mod tests {
             };
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
             let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
-            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }.swinging(&signals, 5.0, height_m)
+            FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }
+                .swinging(&signals, &example::cask(1.0, 5.0, height_m))
         };
         let of_modes = |modes: &[(f64, f64)], second_m: f64| placed(modes, second_m, 0.0);
         let swinging = |modes: &[(f64, f64)]| of_modes(modes, 4.7);
@@ -415,7 +432,8 @@ mod tests {
             Plateau { ringing_m_s, ..example::plateau("A", 0.0) }
         };
         let plateaus = channels.map(plateau).into();
-        assert_eq!(FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) }.swinging(&signals, 5.0, 0.0), 0);
+        let flight = FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) };
+        assert_eq!(flight.swinging(&signals, &example::cask(1.0, 5.0, 0.0)), 0);
     }
 
     #[test]

@@ -231,7 +231,7 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 /// The slowest mode where a cask that bends has none, and both ends go along.
 fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> Option<Finding> {
     let size_m_s = |mode| flight.size_m_s(mode, signals);
-    let swinging = flight.swinging(signals, cask.length_m, cask.height_m);
+    let swinging = flight.swinging(signals, cask);
     let mut modes = (0..swinging).filter(|mode| !flight.is_bend(*mode, signals));
     let length_s = flight.to_s - flight.from_s;
     // What integrated noise walks by looks like an oscillation as slow as the flight is long.

@@ -26,13 +26,7 @@ pub(super) fn turned_m_s2(signal: &Signal, signals: &[Signal], flight: &FlightFi
         let towards = if signal.axis == Axis::Axial { here } else { signal.offset_m * slope };
         if is_told { -0.5 * slope * towards / (there * there) * (a * a + b * b) * mean } else { 0.0 }
     };
-    flight
-        .modes
-        .iter()
-        .zip(flight.bending_orders(signals, length_m, cask.height_m))
-        .zip(&plateau.ringing_m_s)
-        .map(of_mode)
-        .sum()
+    flight.modes.iter().zip(flight.bending_orders(signals, cask)).zip(&plateau.ringing_m_s).map(of_mode).sum()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::Integrated;
 use super::flight::{centrifugal_m_s2, oscillation};
-use crate::data::{At, Axis, FlightFit, Setup, Signal};
+use crate::data::{At, Axis, Cask, FlightFit, Setup, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::free_beam;
 
@@ -33,6 +33,7 @@ pub fn ringing_of_second_end(
     turning_rad_s: f64,
     slap_down: At,
     setup: &Setup,
+    cask: &Cask,
 ) -> Option<CornerRinging> {
     let across = |s: &&Signal| s.axis == Axis::Transverse;
     let by_place = |a: &&Signal, b: &&Signal| a.position_m.total_cmp(&b.position_m);
@@ -46,7 +47,7 @@ pub fn ringing_of_second_end(
     let gained_m_s = integrated.velocities[channel].at(before_s);
     let own_m_s = gained_m_s - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut fitted_m_s, mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0, 0.0_f64);
-    let orders = flight.bending_orders(&integrated.signals, setup.length_m, setup.height_m);
+    let orders = flight.bending_orders(&integrated.signals, cask);
     for (i, (mode, order)) in flight.modes.iter().zip(orders).enumerate() {
         let Some(size) = plateau.ringing_m_s.get(i) else { continue };
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };
@@ -125,7 +126,8 @@ mod tests {
             contact_steps: CONTACT_STEPS,
         };
         let integrated = Integrated::over(&signals, 0.02);
-        ringing_of_second_end(&integrated, &flight, 0.0, At::exactly(0.1), &setup).expect("two ends")
+        let cask = example::cask(1.0, setup.length_m, setup.height_m);
+        ringing_of_second_end(&integrated, &flight, 0.0, At::exactly(0.1), &setup, &cask).expect("two ends")
     }
 
     #[test]
