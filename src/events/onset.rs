@@ -20,10 +20,18 @@ pub(super) const NOISE_FACTOR: f64 = 6.0;
 const EARLIER_STAGE: f64 = 0.02;
 /// Of the second impact, before which a flight rings and drifts, so much does.
 const SECOND_STAGE: f64 = 0.2;
+/// The velocity tells a rise from this share of what it has given to its middle on, up to that one …
+const GIVEN: f64 = 0.04;
+const MOST_GIVEN: f64 = 0.4;
+/// … which ringing shifts by so many times what it takes to give as much: in 600 drawn pulses u so holds.
+const SHIFTED: f64 = 3.0;
+/// So many samples before the rise show what rings.
+const FEWEST_CALM: usize = 16;
 /// An offset that no free fall has shown is the level of the record's first millisecond, s …
 const LEVEL_S: f64 = 1e-3;
-/// … where that is no more of its peak than accelerometers have.
+/// … where that is no more of its peak than accelerometers have, known to so many standard uncertainties.
 const MOST_LEVEL: f64 = 0.05;
+const SURE_LEVEL: f64 = 4.0;
 /// What a calm signal does is the slap-down's from so many times what the flight shows on …
 const DEPARTS: f64 = 2.0;
 /// … and back to a pause of this length, s.
@@ -48,33 +56,41 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let stretch = from..signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     match signal.end {
-        End::First => first_rise(&levelled(signal), stretch, coarse.velocity_step_m_s),
+        End::First => first_rise(levelled(signal), stretch, coarse.velocity_step_m_s),
         End::Second => first_stir(signal, stretch),
     }
 }
 
 /// The signal without its offset, where the record begins too shortly before the contact for its free fall to
-/// show one: what adds up before the rise would pass for a stage of the contact.
-fn levelled(signal: &Signal) -> Cow<'_, Signal> {
+/// show one, and the standard uncertainty of that, m/s²: what adds up before the rise would pass for a stage
+/// of the contact.
+fn levelled(signal: &Signal) -> (Cow<'_, Signal>, f64) {
     let first = &signal.force_m_s2[..signal.index_from(signal.start_s + LEVEL_S)];
     if signal.free_fall_s > 0.0 || first.is_empty() {
-        return Cow::Borrowed(signal);
+        return (Cow::Borrowed(signal), 0.0);
     }
-    let level_m_s2 = robust::centre_and_spread(first).0;
+    let (level_m_s2, spread_m_s2) = robust::centre_and_spread(first);
     if level_m_s2.abs() > MOST_LEVEL * reduce::peak(&signal.force_m_s2) {
-        return Cow::Borrowed(signal);
+        return (Cow::Borrowed(signal), 0.0);
     }
     let force_m_s2 = signal.force_m_s2.iter().map(|force| force - level_m_s2).collect();
-    Cow::Owned(Signal { force_m_s2, ..signal.clone() })
+    (Cow::Owned(Signal { force_m_s2, ..signal.clone() }), spread_m_s2 / as_f64(first.len()).sqrt())
 }
 
 /// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing
 /// rings. A layer that yields far below the peak and lets go again has struck before the rise that leads to
 /// it.
-fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, step_m_s: f64) -> Option<At> {
-    let sign = step_m_s.signum();
+fn first_rise(
+    (signal, u_level_m_s2): (Cow<'_, Signal>, f64),
+    stretch: std::ops::Range<usize>,
+    step_m_s: f64,
+) -> Option<At> {
+    let (signal, sign) = (&*signal, step_m_s.signum());
     let found = onset(signal, stretch.clone(), sign, Rise::First, 0.0)?.at;
-    Some(first_stage(signal, stretch.start, found, EARLIER_STAGE * step_m_s, 0.0))
+    // What is left of an offset that noise hid adds up too.
+    let open_m_s = SURE_LEVEL * u_level_m_s2 * (found.time_s - signal.time_s(stretch.start));
+    let least_m_s = sign * (EARLIER_STAGE * step_m_s.abs()).max(open_m_s);
+    Some(first_stage(signal, stretch.start, found, least_m_s, 0.0))
 }
 
 /// The rise that was found, or the earliest one from `from` on before which the velocity has not changed by
@@ -92,9 +108,9 @@ fn first_stage(signal: &Signal, from: usize, mut found: At, least_m_s: f64, ring
         let gained_m_s: Vec<f64> = running.collect();
         let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > least_m_s.abs());
         let Some(all_m_s) = all_m_s else { return found };
-        let earlier = onset(signal, before, sign, Rise::First, ringing_m_s2).map(|earlier| earlier.at);
-        let earlier = earlier.filter(|e| e.time_s < found.time_s);
-        let Some(earlier) = earlier else {
+        let earlier = onset(signal, before, sign, Rise::First, ringing_m_s2);
+        let earlier = earlier.filter(|e| e.border == Border::Clear && e.at.time_s < found.time_s);
+        let Some(OnsetFound { at: earlier, .. }) = earlier else {
             // The noise hides where that began.
             let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s).unwrap_or(0);
             let open_s = found.time_s - signal.time_s(from + begun);
@@ -160,7 +176,8 @@ pub fn slap_down(
         if border == Border::Clear && calm_m_s2.is_some() {
             // A sensor may ring higher behind the pulse than in it.
             let from = from.saturating_sub(reach).max(earliest);
-            return Some(first_stage(signal, from, at, SECOND_STAGE * largest, left_m_s2));
+            let found = first_stage(signal, from, at, SECOND_STAGE * largest, left_m_s2);
+            return Some(by_velocity(signal, earliest, found, middle));
         }
         // Ringing that is still there has a foot anywhere.
         if calm_m_s2.is_none() && border != Border::Shoulder {
@@ -171,6 +188,50 @@ pub fn slap_down(
         }
         from = from.saturating_sub(reach).max(earliest);
     }
+}
+
+/// What `by_force` says of the onset on the same signal, held against the velocity that the pulse has given
+/// up to its `middle`: ringing hides the foot of a slow rise, but gives no velocity.
+///
+/// Behind a force that goes with the n-th power of the time, a share of the velocity, twice and four times it
+/// are reached after times in the ratio of q = 2^(1/(n + 1)): between a step, n = 0, and a line, n = 1.
+fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At {
+    let Some(force) = signal.force_m_s2.get(from..middle) else { return by_force };
+    let calm = signal.index_from(by_force.time_s).saturating_sub(from) * 2 / 3;
+    if calm < FEWEST_CALM || calm > force.len() {
+        return by_force;
+    }
+    let level = reduce::sum(&force[..calm]) / as_f64(calm);
+    let add = |sum: &mut f64, f: &f64| {
+        *sum += f - level;
+        Some(*sum)
+    };
+    let velocities: Vec<f64> = force.iter().scan(0.0, add).collect();
+    let gained = velocities[velocities.len() - 1];
+    let rings = reduce::peak(&velocities[..calm]);
+    let least = (GIVEN * gained).max(ABOVE_RINGING * rings);
+    if least > MOST_GIVEN * gained {
+        return by_force;
+    }
+    let reached = |share: f64| as_f64(velocities.iter().rposition(|v| *v < share).map_or(0, |last| last + 1));
+    let [first, second, fourth] = [1.0, 2.0, 4.0].map(|times| reached(times * least));
+    let rise = (second - first).max(1.0);
+    let begun = |q: f64| signal.time_s(from) + (first - rise / (q - 1.0)) / signal.sample_rate_hz;
+    let (earliest_s, latest_s) = (begun(std::f64::consts::SQRT_2), begun(2.0));
+    if by_force.time_s - by_force.u_s < latest_s {
+        // Ringing may look like a foot.
+        let may_ring = least > GIVEN * gained;
+        let early_s = if may_ring { (earliest_s - by_force.time_s).max(0.0) } else { 0.0 };
+        return At { u_s: by_force.u_s.hypot(early_s / 3.0_f64.sqrt()), ..by_force };
+    }
+    let time_s = if least < MOST_GIVEN / 4.0 * gained {
+        begun((fourth - second) / rise).clamp(earliest_s, latest_s)
+    } else {
+        earliest_s.midpoint(latest_s)
+    };
+    let shifted_s = SHIFTED * rise * rings / least / signal.sample_rate_hz;
+    let u_s = ((latest_s - earliest_s) / 12.0_f64.sqrt()).hypot(shifted_s);
+    At { time_s, u_s: u_s.max(by_force.u_s) }
 }
 
 /// The slap-down as the beginning of what a calm signal does without a pause until the rise that was found: a
@@ -410,6 +471,21 @@ mod tests {
         assert!((in_means.time_s - 0.02).abs() < 2.0 * in_means.u_s, "{in_means:?}");
         let quiet = seen(with_foot(2e4, 1e4, 0.05));
         assert!((quiet.time_s - 0.02).abs() < 1e-4, "{quiet:?}");
+    }
+
+    #[test]
+    fn a_slow_rise_begins_before_it_leaves_what_rings_on() {
+        // A half sine of 40 ms to 1000 m/s² under 100 m/s² at 900 Hz that no fit took off hides its foot.
+        let plain = signal(End::Second, 2e4, 0.08, 1.0);
+        let force = |i: usize| {
+            let t = plain.time_s(i) - 0.08;
+            let pulse = if (0.0..0.04).contains(&t) { 1000.0 * (PI * t / 0.04).sin() } else { 0.0 };
+            pulse + 100.0 * (1800.0 * PI * t).cos()
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        let ringing = Signal { force_m_s2, ..plain };
+        let found = slap_down(&ringing, 5.0, 0.03..0.19, 2.0, Some(100.0)).expect("an onset");
+        assert!((found.time_s - 0.08).abs() < 2.0 * found.u_s && found.u_s < 2e-3, "{found:?}");
     }
 
     #[test]
