@@ -79,6 +79,8 @@ pub struct FoundFlight {
     pub separation: At,
     /// How late the sensor that shows it may answer, s.
     pub seat_s: f64,
+    /// Where its signal has become calm, s.
+    calm_s: f64,
     /// Slap-down, where there is one.
     pub slap_down: Option<At>,
     /// The flight between them, where it could be fitted.
@@ -144,7 +146,8 @@ pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Opt
     let mut found = searched(file, integrated, true, beginnings)?;
     if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
-        motion::compare_early(flight, integrated, window, file.cask.cog_m, found.separation.time_s);
+        let early_s = (found.separation.time_s, found.calm_s);
+        motion::compare_early(flight, integrated, window, file.cask.cog_m, early_s);
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
         let is_off =
             flight.plateaus.iter().any(|p| p.late_mismatch_m_s.is_some_and(|off_m_s| off_m_s != 0.0));
@@ -364,6 +367,7 @@ impl Search<'_> {
         let Attempt { mut separation, mut slap_down, fitted, others, .. } = attempt;
         let contact_s = self.integrated.contact_s;
         let (flight, window) = fitted.unzip();
+        let calm_s = separation.time_s;
         if let (Some(flight), Some(struck)) = (&flight, slap_down) {
             let calm_m_s2 = calm_m_s2(second, flight);
             let from_s = self.earliest_s.max(flight.from_s);
@@ -375,7 +379,7 @@ impl Search<'_> {
                 events::by_impulse(first.signal(), contact_s, separation, &(window.from_s..window.to_s));
         }
         let seat_s = events::seat_s(first.signal(), contact_s, separation.time_s);
-        self.best_of(FoundFlight { separation, seat_s, slap_down, flight, window }, others)
+        self.best_of(FoundFlight { separation, seat_s, calm_s, slap_down, flight, window }, others)
     }
 
     /// The flight from behind a blow that L has so soon after it left the target that its contact was not

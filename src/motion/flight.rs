@@ -116,16 +116,17 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
     }
 }
 
-/// Holds each channel behind the separation at `left_s` against the fit, carried back   (20)
+/// Holds each channel behind the separation at `left_s`, for as long as more rings than is fitted, up to
+/// `calm_s`, against the fit, carried back   (20)
 pub fn compare_early(
     flight: &mut FlightFit,
     integrated: &Integrated,
     window: &Window,
     cog_m: f64,
-    left_s: f64,
+    (left_s, calm_s): (f64, f64),
 ) {
     let from_s = clear_of_contact_s(integrated.contact_s, left_s);
-    let length_s = LONGEST_EARLY_S.min((flight.from_s - from_s) / 2.0);
+    let length_s = LONGEST_EARLY_S.max(calm_s - from_s).min((flight.from_s - from_s) / 2.0);
     if length_s < SHORTEST_EARLY_S {
         return;
     }
