@@ -340,10 +340,10 @@ fn shows_shapes(signals: &[Signal], length_m: f64) -> bool {
 fn goes_straight(along: f64, signals: &[Signal], cask: &Cask) -> bool {
     let (first, last) = outermost(signals, cask.length_m);
     let heavier = 2.0 * (cask.cog_m / cask.length_m - 0.5);
-    let limiters = [0.0, MOST_END_MASS]
+    let mut limiters = [0.0, MOST_END_MASS]
         .into_iter()
         .flat_map(|both| [[both; 2], [both + (-heavier).max(0.0), both + heavier.max(0.0)]]);
-    limiters.into_iter().all(|masses| {
+    limiters.all(|masses| {
         let (own, other) = NODE_BY_END_MASS;
         let node = |own_mass: f64, other_mass: f64| NODE - own * own_mass + other * other_mass;
         let bent = (node(masses[0], masses[1]) - first) / (node(masses[1], masses[0]) - (1.0 - last));
@@ -410,6 +410,28 @@ mod tests {
         // At 0.06 and 0.86 of its length a beam that bends goes twice as far at the first place.
         assert_eq!(of_modes(&[(45.0, 1.9), (150.0, 1.9)], 4.3), 0);
         assert_eq!(of_modes(&[(45.0, 1.0), (150.0, 1.9)], 4.3), 1, "ends that go as far as one another");
+    }
+
+    #[test]
+    fn what_limiters_bend_and_a_damped_mode_makes_up_for_is_no_swing() {
+        let signal = |end, position_m| Signal { end, position_m, ..example::signal(1e4, vec![]) };
+        let swinging = |modes: &[Mode], along: f64, cog_m: f64| {
+            let signals = [signal(End::First, 0.705), signal(End::Second, 4.52)];
+            let plateau = |size_m_s: f64| Plateau {
+                ringing_m_s: modes.iter().map(|_| (0.0, size_m_s)).collect(),
+                ..example::plateau("A", 0.0)
+            };
+            let fit = FlightFit { modes: modes.to_vec(), ..flight(0.1, &[]) };
+            let cask = Cask { cog_m, ..example::cask(1.0, 5.0, 0.0) };
+            FlightFit { plateaus: vec![plateau(along), plateau(1.0)], ..fit }.swinging(&signals, &cask)
+        };
+        let mode = |frequency_hz, damping| Mode { frequency_hz, damping, amplitude_m_s: 1.0 };
+        // At 0.14 and 0.90 of the length a uniform beam goes 0.6 times as far at the first place; with a limiter
+        // of 8 % on the second end 1.1 times.
+        assert_eq!(swinging(&[mode(47.0, 0.01)], 1.3, 2.5), 1);
+        assert_eq!(swinging(&[mode(47.0, 0.01)], 1.3, 2.7), 0);
+        assert_eq!(swinging(&[mode(322.0, 0.01), mode(473.0, 0.02)], 1.3, 2.5), 1);
+        assert_eq!(swinging(&[mode(322.0, 0.01), mode(473.0, 0.1)], 1.3, 2.5), 0);
     }
 
     #[test]
