@@ -5,7 +5,7 @@ use super::turned::turned_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
     Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
-    SLOWEST_BENDING_HZ, Severity, Signal, planar,
+    SLOWEST_BENDING_HZ, Severity, Signal, Tolerances, planar,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 
@@ -57,7 +57,11 @@ pub fn judge_motion(
     quantities: &Quantities,
 ) -> Vec<Finding> {
     let mut findings = signs(signals, flight);
-    findings.extend(of_flight(signals, flight, quantities, &cask_file.cask));
+    let Tolerances { position_m, cog_m, .. } = cask_file.tolerances;
+    // Half of a 95 % half-width is a standard uncertainty.
+    let u_place_m = position_m.hypot(cog_m) / 2.0;
+    let u_pulled_m_s2 = motion.separation.angular_velocity_rad_s.powi(2) * u_place_m;
+    findings.extend(of_flight(signals, flight, quantities, &cask_file.cask, u_pulled_m_s2));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
@@ -159,7 +163,13 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .collect()
 }
 
-fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, cask: &Cask) -> Vec<Finding> {
+fn of_flight(
+    signals: &[Signal],
+    flight: &FlightFit,
+    quantities: &Quantities,
+    cask: &Cask,
+    u_pulled_m_s2: f64,
+) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
     findings.extend(bends(flight, signals, v0_m_s));
@@ -169,7 +179,7 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, ca
     for plateau in &flight.plateaus {
         let signal = signals.iter().find(|s| s.name == plateau.channel);
         let turned_m_s2 = signal.map_or(0.0, |s| turned_m_s2(s, signals, flight, cask));
-        findings.extend(shifted(flight, plateau, turned_m_s2, quantities));
+        findings.extend(shifted(flight, plateau, [turned_m_s2, u_pulled_m_s2], quantities));
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
         let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
@@ -184,12 +194,12 @@ fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities, ca
     findings
 }
 
-/// A zero shift that was taken off, beyond what bending makes, with what it does to the velocity over the
-/// contact.
+/// A zero shift that was taken off, beyond what bending makes and what the rotation pulls at an uncertain
+/// place, with what it does to the velocity over the contact.
 fn shifted(
     flight: &FlightFit,
     plateau: &Plateau,
-    turned_m_s2: f64,
+    [turned_m_s2, u_pulled_m_s2]: [f64; 2],
     quantities: &Quantities,
 ) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
@@ -204,7 +214,8 @@ fn shifted(
     let small_m_s = held_m_s.max(least_m_s);
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, severity };
-    (flight.drift && beyond_m_s2 > 3.0 * u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2))
+    let u_all_m_s2 = u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
+    (flight.drift && beyond_m_s2 > 3.0 * u_all_m_s2)
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
 }
 
