@@ -426,8 +426,8 @@ mod tests {
             FlightFit { plateaus: vec![plateau(along), plateau(1.0)], ..fit }.swinging(&signals, &cask)
         };
         let mode = |frequency_hz, damping| Mode { frequency_hz, damping, amplitude_m_s: 1.0 };
-        // At 0.14 and 0.90 of the length a uniform beam goes 0.6 times as far at the first place; with a limiter
-        // of 8 % on the second end 1.1 times.
+        // At 0.14 and 0.90 of the length a uniform beam goes 0.6 times as far at the first place; with a
+        // limiter of 8 % on the second end 1.1 times.
         assert_eq!(swinging(&[mode(47.0, 0.01)], 1.3, 2.5), 1);
         assert_eq!(swinging(&[mode(47.0, 0.01)], 1.3, 2.7), 0);
         assert_eq!(swinging(&[mode(322.0, 0.01), mode(473.0, 0.02)], 1.3, 2.5), 1);
