@@ -432,14 +432,23 @@ impl InputList {
             inputs.step(channel, -by * share * other_m_s);
             inputs.crosses[channel] += by * share;
         });
+        let by_m = known.position_m / 2.0;
+        let place = |key, number_m| {
+            let place = stated("position_m", key, "10 mm", 0.01 / by_m, SECOND_SENSOR);
+            Some(place.with_number(number_m, by_m).of(&signal.name))
+        };
         if is_transverse {
-            let by_m = known.position_m / 2.0;
-            let place = stated("position_m", "position_m", "10 mm", 0.01 / by_m, SECOND_SENSOR);
-            let place = place.with_number(signal.position_m, by_m);
-            self.add(name("position"), mm(by_m), Some(place.of(&signal.name)), move |inputs, by| {
+            let place = place("position_m", signal.position_m);
+            self.add(name("position"), mm(by_m), place, move |inputs, by| {
                 // A sensor farther from L by δ reads Ω δ = −ω δ more.
                 inputs.step(channel, by * omega * by_m);
                 inputs.places_m[channel] += by * by_m;
+            });
+        } else {
+            let offset = place("offset_m", signal.offset_m);
+            self.add(name("offset"), mm(by_m), offset, move |inputs, by| {
+                // A sensor farther from the axis by δ reads −Ω δ more   (15)
+                inputs.step(channel, -by * omega * by_m);
             });
         }
     }
