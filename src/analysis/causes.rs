@@ -6,11 +6,12 @@ use super::flight_search::Patience;
 use super::second_look::{Doubt, closes, is_too_large};
 use crate::data::shown::digits;
 use crate::data::{
-    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Events,
-    Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
+    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Effect, End,
+    Events, Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
     STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
 };
-use crate::judge;
+use crate::numerics::robust;
+use crate::{events, judge};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
@@ -29,6 +30,10 @@ const LEAST_M: f64 = 0.1;
 /// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
 /// the unit is wrong.
 const MOST_LOST: f64 = 3.0;
+/// Clocks that are less far apart show it by how late a channel answers the first impact alone, s.
+const NEAR_S: f64 = 8e-3;
+/// Places that differ by less are one, m.
+const SAME_M: f64 = 0.01;
 /// Openings that are tried: no more than so many, of a χ² up to this many times the least and three times
 /// [`CLEARLY`] more; and how often: a place 0.7 m off is found by the second time.
 const MOST_OPENED: usize = 5;
@@ -50,13 +55,14 @@ pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut An
     let is_of_it = |slips: &[Slip]| left_out.is_none_or(|name| slips.iter().any(|s| s.names.contains(name)));
     let steps = of_steps(recording, &found.result);
     let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
-    let usual = hypotheses(recording, file).into_par_iter().filter(|slips| is_of_it(slips)).filter(may_cure);
-    let by_slips = best(usual.filter_map(|slips| stated.cured_by_slips(slips)).collect());
+    let usual = hypotheses(recording, file).into_par_iter().filter(may_cure).chain(stated.of_clock(found));
+    let own = usual.filter(|slips| is_of_it(slips));
+    let by_slips = best(own.filter_map(|slips| stated.cured_by_slips(slips)).collect());
     let is_usual = !by_slips.is_empty();
     let by_number = || {
-        let numbers = stated.numbers_to_try(&found.openings).into_par_iter();
-        let own = numbers.filter(|slip| is_of_it(std::slice::from_ref(slip)));
-        best(own.filter_map(|slip| stated.cured_by_number(slip)).collect())
+        let numbers = stated.numbers_to_try(found).into_par_iter();
+        let own = numbers.filter(|(slip, _)| is_of_it(std::slice::from_ref(slip)));
+        best(own.filter_map(|number| stated.cured_by_number(number)).collect())
     };
     let cures = if is_usual { by_slips } else { by_number() };
     if cures.len() <= MOST_NAMED {
@@ -92,10 +98,27 @@ impl Contradicted<'_> {
         is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.cure(slips, &analysis))
     }
 
-    /// By another number, which is opened again where a large mistake leaves it open.
-    fn cured_by_number(&self, mut slip: Slip) -> Option<(Doubt, Cure)> {
-        let is_opened = slip.key != "offset_m";
-        let patience = if is_opened { Patience::EachBeginning } else { Patience::OneBeginning };
+    /// The clock of the second end's channels put right by how late they answer the first impact, as it was
+    /// found or where they first stir at one time with the struck one.
+    fn of_clock(&self, found: &Analysis) -> Vec<Vec<Slip>> {
+        let v0_m_s = self.file.drop.impact_velocity_m_s;
+        let behind_s = events::Changes::of(&self.recording.channels).behind_s(v0_m_s);
+        let far = self.recording.channels.iter().filter(|c| c.end == End::Second);
+        let names: Vec<String> = far.map(|c| c.name.clone()).collect();
+        let earlier = |by_s: f64| {
+            let way = if by_s > 0.0 { "earlier" } else { "later" };
+            let right = format!("{:.2} ms {way}", 1e3 * by_s.abs());
+            vec![Slip { right: right.into(), ..slip("time", names.clone(), "", [-by_s, 1.0]) }]
+        };
+        let roughly = behind_s.filter(|behind_s| behind_s.abs() > NEAR_S).map(|behind_s| {
+            let moved = self.with(&earlier(behind_s), Patience::OneBeginning);
+            behind_s + late_s(&moved, &names).unwrap_or(0.0)
+        });
+        late_s(found, &names).into_iter().chain(roughly).map(earlier).collect()
+    }
+
+    /// By another number, which is opened again where a large mistake leaves it open, as patiently.
+    fn cured_by_number(&self, (mut slip, patience): (Slip, Patience)) -> Option<(Doubt, Cure)> {
         for _ in 0..ROUNDS {
             let analysis = self.with(std::slice::from_ref(&slip), patience);
             // All closures and steps are met: only intervals that say nothing are too wide.
@@ -124,7 +147,7 @@ impl Contradicted<'_> {
 
     /// Other numbers of a drop that come near to explaining it, and offsets to the other side, which move
     /// little.
-    fn numbers_to_try(&self, openings: &[Opening]) -> Vec<Slip> {
+    fn numbers_to_try(&self, found: &Analysis) -> Vec<(Slip, Patience)> {
         let first = |opening: &Opening| {
             let names = match opening.key {
                 "sample_rate_hz" => self.recording.channels.iter().map(|c| c.name.clone()).collect(),
@@ -133,18 +156,35 @@ impl Contradicted<'_> {
             let as_stated = Slip { key: opening.key, names, right: "".into(), from: 0.0, by: 1.0 };
             (opening.chi_square, self.opened(&as_stated, opening))
         };
-        let possible = openings.iter().map(first).filter(|(_, slip)| is_possible(slip, self.file));
+        let possible = found.openings.iter().map(first).filter(|(_, slip)| is_possible(slip, self.file));
         let mut most = f64::INFINITY;
         let near = possible.take_while(|(chi_square, _)| {
             most = most.min(NEARLY * chi_square + 3.0 * CLEARLY);
             *chi_square < most
         });
-        let mut all: Vec<Slip> = near.take(MOST_OPENED).map(|(_, slip)| slip).collect();
         let channels = &self.recording.channels;
-        all.extend(of_skin(channels, self.file.cask.height_m));
         let off_axis = channels.iter().filter(|c| c.offset_m != 0.0);
-        all.extend(off_axis.map(|c| slip("offset_m", vec![c.name.clone()], "reversed", [0.0, -1.0])));
-        all
+        let reversed = off_axis.map(|c| slip("offset_m", vec![c.name.clone()], "reversed", [0.0, -1.0]));
+        let on_axis =
+            channels.iter().filter(|c| c.offset_m == 0.0 && is_doubted_place(&found.result, &c.name));
+        let as_others = on_axis.flat_map(|c| self.places_of_others(c));
+        let offsets = of_skin(channels, self.file.cask.height_m).into_iter().chain(reversed).chain(as_others);
+        let opened = near.take(MOST_OPENED).map(|(_, slip)| (slip, Patience::EachBeginning));
+        opened.chain(offsets.map(|slip| (slip, Patience::OneBeginning))).collect()
+    }
+
+    /// A sensor that is stated on the axis as far off it as the others, or on the skin.
+    fn places_of_others(&self, channel: &Channel) -> Vec<Slip> {
+        let others_m = self.recording.channels.iter().map(|c| c.offset_m.abs());
+        let mut all_m: Vec<f64> =
+            others_m.chain([self.file.cask.height_m / 2.0]).filter(|m| *m > 0.0).collect();
+        all_m.sort_by(f64::total_cmp);
+        all_m.dedup_by(|a, b| (*a - *b).abs() < SAME_M);
+        let slip = |offset_m: f64| {
+            let right = format!("{} in place of 0", digits(offset_m, 4));
+            Slip { right: right.into(), ..slip("offset_m", vec![channel.name.clone()], "", [offset_m, 0.0]) }
+        };
+        all_m.into_iter().flat_map(|offset_m| [slip(offset_m), slip(-offset_m)]).collect()
     }
 
     /// The slip with the number that an opening has, found where it was put right as `slip` has it.
@@ -196,6 +236,27 @@ impl Contradicted<'_> {
     }
 }
 
+/// How late these channels answer the first impact beside the struck one, s: the median of those that a
+/// finding names.
+fn late_s(analysis: &Analysis, names: &[String]) -> Option<f64> {
+    let delay_s = |f: &Finding| match f.what {
+        FindingKind::Channel(
+            ChannelFinding::AnswersEarly { delay_s, .. }
+            | ChannelFinding::AnswersLate { delay_s, .. }
+            | ChannelFinding::AnswersAsAWave { delay_s, .. },
+        ) if f.channel.as_ref().is_some_and(|name| names.contains(name)) => Some(delay_s),
+        _ => None,
+    };
+    let mut late_s: Vec<f64> = analysis.result.quality.iter().filter_map(delay_s).collect();
+    (!late_s.is_empty()).then(|| robust::median(&mut late_s))
+}
+
+/// Whether a finding says that a channel may sit elsewhere.
+fn is_doubted_place(result: &DropResult, name: &str) -> bool {
+    let doubts = |f: &Finding| f.effect == Effect::DoubtfulPlace && f.severity > Severity::Note;
+    result.quality.iter().any(|f| doubts(f) && f.channel.as_deref() == Some(name))
+}
+
 /// Those that do as well as the best, in their order.
 fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
@@ -213,6 +274,7 @@ fn is_possible(slip: &Slip, file: &CaskFile) -> bool {
         "sample_rate_hz" if file.channels.iter().any(|c| c.sample_rate_hz.is_none()) => false,
         _ if is_factor => LIKELY_FACTOR.contains(&slip.by),
         "position_m" | "cask.cog_m" => (0.0..=length_m).contains(&slip.from),
+        "offset_m" => slip.from.abs() <= file.cask.height_m,
         "drop.angle_deg" => (0.0..FRAC_PI_2).contains(&slip.from),
         "cask.length_m" | "cask.height_m" => slip.from > LEAST_M,
         _ => true,
@@ -367,10 +429,11 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
         "position_m" => own.for_each(|c| mend(&mut c.position_m)),
         "scale" => own.for_each(|c| mend(&mut c.scale_m_s2)),
         "sample_rate_hz" => own.for_each(|c| mend(&mut c.sample_rate_hz)),
-        // What the sensor can read stays what it is.
+        "time" => own.for_each(|c| mend(&mut c.start_s)),
+        // The limit that a sensor has is stated in the right unit or in the wrong one: the larger counts.
         _ => own.for_each(|c| {
             mend(&mut c.scale_m_s2);
-            c.full_scale = c.full_scale.map(|full_scale| full_scale / by.abs());
+            c.full_scale = c.full_scale.map(|full_scale| full_scale / by.abs().min(1.0));
         }),
     }
 }

@@ -39,7 +39,7 @@ const LAST_SHARE: f64 = 0.3;
 /// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
-/// The second end first stirs with this share of its largest change …
+/// An end first stirs with this share of its largest change …
 const FIRST_SHARE: f64 = 0.15;
 /// … and what stays below this share of the first impact's change falls still.
 const STILL: f64 = 0.1;
@@ -122,18 +122,25 @@ impl<'a> Changes<'a> {
             let is_then = |i: &usize| struck.end_s(*i) < until_s;
             (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
         };
-        let mut far = self.0.iter().filter(|changing| changing.channel.end == End::Second);
-        let of_channel = |changing: &Changing| {
-            let largest_m_s = reduce::peak(&changing.changes_m_s);
-            let least_m_s = (FIRST_SHARE * largest_m_s).max(LAST_SHARE_OF_FALL * v0_m_s);
-            let least_m_s = least_m_s.max(WALKS * changing.noise_m_s);
-            let crossing = changing.changes_m_s.iter().position(|c| c.abs() >= least_m_s)?;
-            let at_s = changing.end_s(crossing) - WIDTH_S;
+        let first = |changing: &Changing| {
+            let at_s = changing.stirs_s(v0_m_s)?;
             let delay_s = at_s - event.near_s;
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
             (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
         };
-        far.find_map(of_channel)
+        self.of_second_end().find_map(first)
+    }
+
+    /// How much later the channels of the second end first stir than the struck one, s: roughly, the median.
+    pub fn behind_s(&self, v0_m_s: f64) -> Option<f64> {
+        let struck_s = self.struck()?.stirs_s(v0_m_s)?;
+        let mut behind_s: Vec<f64> =
+            self.of_second_end().filter_map(|far| Some(far.stirs_s(v0_m_s)? - struck_s)).collect();
+        (!behind_s.is_empty()).then(|| robust::median(&mut behind_s))
+    }
+
+    fn of_second_end(&self) -> impl Iterator<Item = &Changing<'a>> {
+        self.0.iter().filter(|changing| changing.channel.end == End::Second)
     }
 
     /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how
@@ -191,6 +198,15 @@ impl<'a> Changing<'a> {
     /// From which change on it is the first impact's, m/s.
     fn least_m_s(&self, least_step_m_s: f64) -> f64 {
         (SHARE * reduce::peak(&self.changes_m_s)).min(SHARE_OF_LEAST * least_step_m_s)
+    }
+
+    /// Where the width begins over which the velocity first changes by a share of its largest change, s.
+    fn stirs_s(&self, v0_m_s: f64) -> Option<f64> {
+        let largest_m_s = reduce::peak(&self.changes_m_s);
+        let least_m_s = (FIRST_SHARE * largest_m_s).max(LAST_SHARE_OF_FALL * v0_m_s);
+        let least_m_s = least_m_s.max(WALKS * self.noise_m_s);
+        let crossing = self.changes_m_s.iter().position(|c| c.abs() >= least_m_s)?;
+        Some(self.end_s(crossing) - WIDTH_S)
     }
 
     /// When a block ends, s.

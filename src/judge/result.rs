@@ -11,6 +11,8 @@ use crate::numerics::noise::integral_uncertainty_by;
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
+/// A sensor on the skin with its block sits no farther off the axis than this, in half sections.
+const ON_SKIN: f64 = 1.2;
 /// Zero shifts whose effect on the velocity over the contact is below this, m/s, 0.5 % of a slap-down, or
 /// below a share of the speed's half-width and of v0 are a note.
 const SMALL_SHIFT_M_S: f64 = 0.1;
@@ -60,8 +62,9 @@ pub fn judge_motion(
     let Tolerances { position_m, cog_m, .. } = cask_file.tolerances;
     // Half of a 95 % half-width is a standard uncertainty.
     let u_place_m = position_m.hypot(cog_m) / 2.0;
-    let u_pulled_m_s2 = motion.separation.angular_velocity_rad_s.powi(2) * u_place_m;
-    findings.extend(of_flight(signals, flight, quantities, &cask_file.cask, u_pulled_m_s2));
+    let rotation_rad2_s2 = motion.separation.angular_velocity_rad_s.powi(2);
+    let pull = Pull { rotation_rad2_s2, u_place_m };
+    findings.extend(of_flight(signals, flight, quantities, &cask_file.cask, &pull));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
@@ -163,12 +166,30 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .collect()
 }
 
+/// What the rotation of the flight pulls at a sensor.
+struct Pull {
+    /// Square of the angular velocity.
+    rotation_rad2_s2: f64,
+    /// Standard uncertainty of a sensor's place.
+    u_place_m: f64,
+}
+
+impl Pull {
+    /// The stated offset of a transverse channel, and the one that a shift of its level would show: −ω² η  (14);
+    /// `None` beyond the cask.
+    fn offsets_m(&self, signal: &Signal, shift_m_s2: f64, section_m: f64) -> Option<[f64; 2]> {
+        let explains_m = signal.offset_m - shift_m_s2 / self.rotation_rad2_s2;
+        let is_on_cask = signal.axis == Axis::Transverse && explains_m.abs() < ON_SKIN * section_m / 2.0;
+        is_on_cask.then_some([signal.offset_m, explains_m])
+    }
+}
+
 fn of_flight(
     signals: &[Signal],
     flight: &FlightFit,
     quantities: &Quantities,
     cask: &Cask,
-    u_pulled_m_s2: f64,
+    pull: &Pull,
 ) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
@@ -177,9 +198,13 @@ fn of_flight(
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
-        let signal = signals.iter().find(|s| s.name == plateau.channel);
-        let turned_m_s2 = signal.map_or(0.0, |s| turned_m_s2(s, signals, flight, cask));
-        findings.extend(shifted(flight, plateau, [turned_m_s2, u_pulled_m_s2], quantities));
+        if let Some(signal) = signals.iter().find(|s| s.name == plateau.channel) {
+            let turned_m_s2 = turned_m_s2(signal, signals, flight, cask);
+            let offsets_m = pull.offsets_m(signal, plateau.zero_shift_m_s2, cask.height_m);
+            let u_pulled_m_s2 = pull.rotation_rad2_s2 * pull.u_place_m;
+            let shifted = shifted(flight, plateau, [turned_m_s2, u_pulled_m_s2], quantities, offsets_m);
+            findings.extend(shifted);
+        }
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
         let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
@@ -201,6 +226,7 @@ fn shifted(
     plateau: &Plateau,
     [turned_m_s2, u_pulled_m_s2]: [f64; 2],
     quantities: &Quantities,
+    offsets_m: Option<[f64; 2]>,
 ) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
     // A sensor on a stiff block turns by less than its place.
@@ -213,7 +239,7 @@ fn shifted(
     let held_m_s = quantities.speed.map_or(0.0, |speed| (of_speed * speed.u95).min(most_m_s));
     let small_m_s = held_m_s.max(least_m_s);
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, severity };
+    let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
     let u_all_m_s2 = u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
     (flight.drift && beyond_m_s2 > 3.0 * u_all_m_s2)
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))

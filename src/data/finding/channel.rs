@@ -192,11 +192,15 @@ pub enum ChannelFinding {
         ("reads the first impact as pulling towards the target: set `polarity = -1` for it, or its end is \
          the other one");
     /// The offset in the flight is another than before the impact; taken off.
-    ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, severity: Severity }
-        => (Code::ZeroShift, *severity, Nothing),
-        ("reads {:+.2} ± {:.2} g more between the impacts than before the first (zero shift or droop); it \
+    ///
+    /// Or its offset from the axis, stated and as it would have to be, makes it.
+    ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, offsets_m: Option<[f64; 2]>, severity: Severity }
+        => (Code::ZeroShift, *severity, if offsets_m.is_some() { DoubtfulPlace } else { Nothing }),
+        ("reads {:+.2} ± {:.2} g more between the impacts than before the first (zero shift or droop{}); it \
          was taken off, which moves the velocity by up to {effect_m_s:.2} m/s",
-         shift_m_s2 / G, 2.0 * u_m_s2 / G);
+         shift_m_s2 / G, 2.0 * u_m_s2 / G,
+         offsets_m.map(|[stated, explains]| format!(
+             ", or `offset_m` is {explains:.2} in place of {stated:.2}")).unwrap_or_default());
     /// The velocity is off its flight by the time R strikes.
     LateMismatch { mismatch_m_s: f64 } => (Code::SecondContact, Warning, Motion),
         ("is {mismatch_m_s:+.2} m/s off its flight between the impacts by the time the second end strikes: \
