@@ -85,15 +85,16 @@ pub(super) fn clipped(
     spans
 }
 
-/// The flanks towards 0 that fall in one straight line between two kinks: no force does so, and the amplifier
-/// does not follow it. A limiter's rise is straight, too, but its fall as it lets go is rounded.
+/// The flanks towards 0, or through it, that fall in one straight line between two kinks: no force does so,
+/// and the amplifier does not follow it. A limiter's rise is straight, too, but its fall as it lets go is
+/// rounded.
 fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();
     flanks.retain(|flank| {
         let (from, to) = (force[flank.from], force[flank.to]);
         let is_long = flank.to - flank.from >= LEAST_FLANK && (from - to).abs() > FLANK_SHARE * peak;
-        is_long && from.abs() > to.abs()
+        is_long && (from.abs() > to.abs() || (from * to < 0.0 && from.abs() > FLANK_SHARE / 2.0 * peak))
     });
     flanks
 }
@@ -203,6 +204,12 @@ mod tests {
         let [flank] = limited(&pulse(1e9), 30.0)[..] else { panic!("one flank") };
         assert!(flank.from > 300 && flank.to - flank.from > 60, "{flank:?}");
         assert_eq!(limited(&pulse(1e9), 1e9), []);
+        // Through 0 into a deeper trough behind it, and out of that.
+        let through = |most: f64| {
+            let swing = |i: u32| if i < 100 { 2500.0 } else { 4000.0 } * (f64::from(i) * 0.031_416).sin();
+            limited(&(0..200).map(swing).collect::<Vec<_>>(), most)
+        };
+        assert_eq!((through(60.0).len(), through(1e9).len()), (2, 0));
         // A limiter rises in a straight line to its plateau, and lets go more and more.
         let crush = |i: u32| (75.0 * f64::from(i)).min(3000.0) * (1.0 - (f64::from(i) / 200.0).powi(8));
         assert_eq!(limited(&(0..200).map(crush).collect::<Vec<_>>(), 1e9), []);

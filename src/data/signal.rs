@@ -113,8 +113,9 @@ impl Signal {
     /// sample on.
     pub fn is_flank(&self, span: &Span) -> bool {
         let within = self.force_m_s2.get(span.from..span.to).unwrap_or_default();
-        let [first, last] = [within.first(), within.last()].map(|f| f.map_or(0.0, |f| f.abs()));
-        let largest = within.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        let sign = within.first().map_or(1.0, |first| first.signum());
+        let [first, last] = [within.first(), within.last()].map(|f| f.map_or(0.0, |f| sign * f));
+        let largest = within.iter().fold(0.0_f64, |most, f| most.max(sign * f));
         within.len() >= LEAST_FLANK && last < (1.0 - LEVEL_SHARE) * first && largest < FIRST_SHARE * first
     }
 
@@ -129,7 +130,7 @@ impl Signal {
             .map(|span| {
                 if self.is_flank(span) {
                     let under = self.force_m_s2.get(span.from..span.to).unwrap_or_default();
-                    return under.iter().sum::<f64>().abs() / self.sample_rate_hz / 2.0;
+                    return under.iter().map(|f| f.abs()).sum::<f64>() / self.sample_rate_hz / 2.0;
                 }
                 let length_s = (span.to - span.from) as f64 / self.sample_rate_hz;
                 let level = force(span.from).unwrap_or(0.0);
