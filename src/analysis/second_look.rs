@@ -36,11 +36,14 @@ impl Doubt {
     }
 }
 
+fn lacks_end(finding: &Finding) -> bool {
+    finding.code == IssueCode::MissingChannel
+}
+
 /// Whether nothing is left that the motion contradicts; an end without a channel shows no slap-down to
 /// compare.
 pub(super) fn closes(analysis: &Analysis) -> bool {
     let result = &analysis.result;
-    let lacks_end = |f: &Finding| f.code == IssueCode::MissingChannel;
     let is_one_ended = result.quality.iter().any(lacks_end);
     let agrees = is_one_ended || result.comparison.is_some_and(|comparison| comparison.agrees);
     let meets = |closures: &[crate::data::Closure]| closures.iter().all(|c| c.miss_in_u.abs() < MISSED_U);
@@ -66,7 +69,10 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
         let analysis = analyse_once(&others, file, Patience::OneBeginning);
-        (Doubt::of(&analysis), (*name).to_owned(), analysis)
+        let mut doubt = Doubt::of(&analysis);
+        // The only channel of its end is a candidate, too: what the mass properties replace speaks against none.
+        doubt.errors -= analysis.result.quality.iter().filter(|f| lacks_end(f)).count();
+        (doubt, (*name).to_owned(), analysis)
     };
     let mut tried: Vec<_> = spare.iter().map(without).collect();
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
