@@ -34,6 +34,8 @@ pub fn judge_other(
     for finding in &mut findings {
         let is_loss = finding.effect == Effect::LostSamples;
         finding.severity = finding.severity.min(if is_loss { Severity::Warning } else { Severity::Note });
+        // What it takes is no part of the motion.
+        finding.effect = if finding.effect == Effect::Motion { Effect::Nothing } else { finding.effect };
     }
     findings.extend(clipped(channel, told));
     findings.extend(events.first_contact.and_then(|_| faint(told)).map(|found| found.on(&channel.name)));

@@ -1,6 +1,6 @@
 //! What speaks against the times of a recording, with its numbers, to code, severity and sentence.
 
-use super::{IssueCode as Code, Severity};
+use super::{Effect, IssueCode as Code, Severity};
 use crate::data::shown::{digits, hz};
 
 findings! {
@@ -43,7 +43,7 @@ pub enum TimesFinding of Times {
     /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so
     /// unevenly.
     Coarse { step_s: f64, rate_hz: f64, uncertainty: f64, off_s: Option<f64>, is_sure: bool }
-        => (Code::Clock, if *is_sure { Note } else { Warning }, Nothing),
+        => (Code::Clock, if *is_sure { Note } else { Warning }, rows_lost(*off_s)),
         ("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at \
          {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
          digits(step_s * rate_hz, 3), digits(*rate_hz, 6), digits(100.0 * uncertainty, 2),
@@ -58,7 +58,7 @@ pub enum TimesFinding of Times {
          digits(*step_s, 3));
     /// Coarse times beside a stated rate; `off_s` where they contradict it.
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> }
-        => (Code::Clock, if off_s.is_some() { Warning } else { Note }, Nothing),
+        => (Code::Clock, if off_s.is_some() { Warning } else { Note }, rows_lost(*off_s)),
         ("the times are cut to {} s{}; the samples were taken as evenly spaced at the declared {rate} Hz",
          digits(*step_s, 3),
          off_s.map(|off_s| format!(" and change up to {} s off even steps at the declared {} Hz: samples are \
@@ -102,6 +102,11 @@ pub enum TimesFinding of Times {
                          the first to start was kept; where they follow on one another in truth, the stamps \
                          are too coarse for such blocks") });
 }
+}
+
+/// Where coarse times change off even steps, rows may be missing anywhere, also amid an impact.
+fn rows_lost(off_s: Option<f64>) -> Effect {
+    if off_s.is_some() { Effect::Motion } else { Effect::Nothing }
 }
 
 /// How far times lie off an even base, and what interpolating onto it may add.

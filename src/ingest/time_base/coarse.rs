@@ -305,7 +305,7 @@ fn edge(function: &impl Fn(f64) -> f64, most: f64, (mut inside, mut outside): (f
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::data::{IssueCode, Severity};
+    use crate::data::{IssueCode, ResultPart, Severity};
     use crate::ingest::time_base::{Uniform, from_times};
 
     #[test]
@@ -436,6 +436,7 @@ mod tests {
             lost.drain(lost_from..lost_from + 40);
             let stated = placed(&lost, Some(20_000.0)).unwrap();
             assert_eq!(only(&stated).0, Severity::Warning, "{step_s}: {}", only(&stated).1);
+            assert!(stated.issues[0].takes(ResultPart::Motion), "rows of the impact may be missing");
         }
         // Blocks of 1000 samples that a computer stamps as they come, 3 ms early or late.
         let blocks: Vec<f64> =
