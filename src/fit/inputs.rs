@@ -15,7 +15,11 @@ const ROLL_RAD_S: f64 = 1.0;
 pub(super) const REST: &str = "record the cask at rest before the release";
 pub(super) const RELEASE: &str = "begin the recording before the release";
 pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
+pub(super) const LARGER_RANGE: &str = "a second sensor of ten times the range at the same end";
 const MEASURE: &str = "measure between the edges that strike";
+
+/// What the name of an input begins with that strain of a channel's base is.
+pub(super) const BASE_STRAIN: &str = "base strain of ";
 
 /// The key of the tolerance of the friction.
 const FRICTION: &str = "friction_percent";
@@ -416,7 +420,7 @@ impl InputList {
         let (tolerance, key) = ("base_strain_percent", "tolerance.base_strain_percent");
         let strain = stated(tolerance, key, "1 %", 0.01 / share, SECOND_SENSOR);
         let step = move |inputs: &mut Inputs, by: f64| inputs.step(channel, by * add_m_s);
-        self.add(name("base strain"), percent(share), Some(strain), step);
+        self.add(format!("{BASE_STRAIN}{}", signal.name), percent(share), Some(strain), step);
         let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
         let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
         let omega = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;

@@ -2,7 +2,7 @@
 //! the half-width of its interval is found by no check.
 
 use super::FitData;
-use super::inputs::{Inputs, RELEASE, REST, SECOND_SENSOR, UncertainInput};
+use super::inputs::{BASE_STRAIN, Inputs, LARGER_RANGE, RELEASE, REST, SECOND_SENSOR, UncertainInput};
 use crate::data::{FlightFit, MISSED_U, Quantities, Untested, UntestedMoves};
 
 /// A number so many half-widths off is wrong.
@@ -10,6 +10,10 @@ const WRONG: f64 = 2.0;
 
 /// A mistake of more than so many usual ones is not made: 20 % of a scale, 0.2 m of a place.
 const MOST_USUAL: f64 = 20.0;
+
+/// A pulse whose peak is read 1 % too low by an amplifier that compresses, by the cube of the reading, loses
+/// this many times 1 % of its area, where base strain of 1 % adds 1 %: ∫ sin³ over ∫ sin of half a sine.
+const COMPRESSED: f64 = 2.0 / 3.0;
 
 /// What one standard uncertainty of an input does, where the file were off by it.
 pub(super) struct Influence {
@@ -52,9 +56,29 @@ pub(super) fn silent(
             slap_down_speed_m_s: moved.speed.map(|by_m_s| by_u * by_m_s.abs()),
         };
         let untested = Untested { moves, ..of_key };
-        silent.push(SilentMistake { input, wrong_u, untested });
+        let with_it = linearity(own, &untested);
+        silent.extend(std::iter::once(untested).chain(with_it).map(|untested| SilentMistake {
+            input,
+            wrong_u,
+            untested,
+        }));
     }
     silent
+}
+
+/// That a channel reads its peak as it does less, beside its base strain: either changes the velocity step
+/// alone, and what finds one finds the other.
+fn linearity(input: &UncertainInput, strain: &Untested) -> Option<Untested> {
+    let channel = input.name.strip_prefix(BASE_STRAIN)?;
+    let UntestedMoves { k, slap_down_speed_m_s } = strain.moves;
+    let scaled = |by: f64| COMPRESSED * by;
+    Some(Untested {
+        what: format!("linearity at the peak of {channel}"),
+        key: format!("channel.{channel}.full_scale"),
+        moves: UntestedMoves { k: k.map(scaled), slap_down_speed_m_s: slap_down_speed_m_s.map(scaled) },
+        remedy: LARGER_RANGE,
+        ..strain.clone()
+    })
 }
 
 /// Those of them that no other check finds either; `finds` says whether one does in velocity steps.
