@@ -1,6 +1,7 @@
 //! Everything found on the way to findings and a verdict: what speaks against the result.
 
 mod at_rest;
+mod bandwidth;
 mod blows;
 mod channels;
 mod closures;
@@ -23,6 +24,7 @@ mod turned;
 pub use at_rest::{
     LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
 };
+pub use bandwidth::judge_bandwidth;
 pub use blows::{is_sharp, judge_blows};
 pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places, note_what_is_held};
 pub use closures::{MOST_U95_K, MOST_U95_SPEED, judge_closures, judge_strained, tells_lost_steps};

@@ -152,6 +152,15 @@ pub enum ChannelFinding {
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value \
          once");
+    /// Noise that ends at a corner below the report's cut-off; of a half sine as long as the contact a share is
+    /// `lost`.
+    Filtered { corner_hz: f64, cutoff_hz: f64, rise_s: f64, contact_s: f64, lost: f64 }
+        => (Code::Filtered, Warning, Nothing),
+        ("is low-passed at about {corner_hz:.0} Hz in its chain, where the noise of the free fall ends, and \
+         the report at {cutoff_hz:.0} Hz: its rise takes {:.1} ms, the contact may be shorter by as much, peak \
+         and crush are those of a smoothed pulse (a half sine of {:.1} ms loses {:.0} %, a sharper one more); \
+         the velocity stands. Set the low-pass of amplifier or recorder higher",
+         1e3 * rise_s, 1e3 * contact_s, 100.0 * lost);
     /// Rows of two sensors by turns, with the factor between them.
     ByTurns { factor: f64 } => (Code::Scale, Error, Motion),
         ("holds the rows of two sensors by turns: throughout the shocks every other row reads {:.2} of its \

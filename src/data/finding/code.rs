@@ -58,6 +58,7 @@ issue_codes! {
     LowRate, "Channel": "the first pulse has too few samples";
     Aliasing, "Channel": "the signal has content up to half the sample rate, so higher frequencies are \
                           aliased";
+    Filtered, "Channel": "the measuring chain low-passes a channel below the report's cut-off";
     AcCoupled, "Channel": "a channel is AC-coupled: stated and undone, or found by its droop";
     Scale, "Channels together": "units, sensitivities or rest levels contradict each other";
     NotRigid, "Channels together": "channels cannot belong to one rigid body, or the rotation does not \

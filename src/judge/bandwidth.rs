@@ -1,0 +1,94 @@
+//! The noise of the free fall to a low-pass in the measuring chain that takes off what the report's would
+//! leave.
+
+use crate::data::{Axis, ChannelFinding, Events, Finding, Signal};
+use crate::numerics::as_f64;
+
+/// Noise this many times as dense below a corner as from an octave above it on is filtered: 1/f gives 4. Of
+/// the 102 channels of 25 simulated sound drops none is above 7; of 119 behind a Butterworth low-pass of the
+/// second to eighth order at 100 to 1000 Hz, with the converter's noise behind it, 107 are above 12.
+const FALL: f64 = 12.0;
+/// Below the corner the noise is level: the means of its halves differ by less than this factor.
+const LEVEL: f64 = 2.5;
+/// Where the noise is looked at, over the corner: the level from the first to the second, the fall from the
+/// third on.
+const LEVEL_FROM: f64 = 1.0 / 6.0;
+const LEVEL_TO: f64 = 0.8;
+const FALLEN_FROM: f64 = 2.0;
+/// Fewest bins of a level: chance makes one of fewer.
+const FEWEST_BINS: usize = 3;
+/// A low-pass of this −3 dB frequency f rises from 10 to 90 % within this / f, whatever its order.
+const RISE: f64 = 0.35;
+
+/// Names each transverse channel whose noise ends below `cutoff_hz`, the −3 dB frequency of the report's
+/// low-pass.
+pub fn judge_bandwidth(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Finding> {
+    let Some((from_s, to_s)) = events.first_contact_s().zip(events.separation_s()) else { return Vec::new() };
+    let across = signals.iter().filter(|signal| signal.axis == Axis::Transverse);
+    let found = across.filter_map(|signal| {
+        let corner_hz = corner_hz(&signal.noise_spectrum, cutoff_hz)?;
+        let contact_s = to_s - from_s;
+        // What the second order at that corner leaves of a half sine as long as the contact.
+        let left = 1.0 / (1.0 + (0.5 / (contact_s * corner_hz)).powi(4)).sqrt();
+        let rise_s = RISE / corner_hz;
+        let said = ChannelFinding::Filtered { corner_hz, cutoff_hz, rise_s, contact_s, lost: 1.0 - left };
+        Some(said.on(&signal.name))
+    });
+    found.collect()
+}
+
+/// The frequency below `cutoff_hz` at which a spectrum of noise, as [`Signal`] has it, falls to half of its
+/// level for good.
+fn corner_hz(spectrum: &[(f64, f64)], cutoff_hz: f64) -> Option<f64> {
+    let between = |from_hz: f64, to_hz: f64| {
+        let from = spectrum.partition_point(|bin| bin.0 < from_hz);
+        &spectrum[from..spectrum.partition_point(|bin| bin.0 <= to_hz).max(from)]
+    };
+    let mean = |bins: &[(f64, f64)]| bins.iter().map(|bin| bin.1).sum::<f64>() / as_f64(bins.len().max(1));
+    let corners = spectrum.iter().map(|bin| bin.0).take_while(|corner_hz| *corner_hz <= cutoff_hz);
+    let falls = corners.filter_map(|corner_hz| {
+        let level = between(LEVEL_FROM * corner_hz, LEVEL_TO * corner_hz);
+        let fallen = between(FALLEN_FROM * corner_hz, f64::INFINITY);
+        let (first, second) = level.split_at(level.len() / 2);
+        let is_level = level.len() >= FEWEST_BINS && mean(first) < LEVEL * mean(second);
+        let fall = mean(level) / mean(fallen).max(f64::MIN_POSITIVE);
+        (is_level && fallen.len() > 1 && fall > FALL).then_some((fall, mean(level)))
+    });
+    let (_, level) = falls.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    let last = spectrum.iter().rposition(|bin| bin.1 > level / 2.0)?;
+    spectrum.get(last + 1).map(|next| (spectrum[last].0 * next.0).sqrt()).filter(|hz| *hz < cutoff_hz)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{At, example};
+
+    /// Bins a quarter apart from 20 Hz to 4 kHz of noise of this density.
+    fn named(density: impl Fn(f64) -> f64) -> Option<f64> {
+        let bins = std::iter::successors(Some(20.0), |hz| Some(hz * 1.25)).take_while(|hz| *hz < 4e3);
+        let noise_spectrum = bins.map(|hz| (hz, density(hz))).collect();
+        let signal = Signal { noise_spectrum, ..example::signal(1e4, vec![]) };
+        let events = Events { separation: Some(At::exactly(0.11)), ..example::events(0.1, 0.16) };
+        let found = judge_bandwidth(&[signal], &events, 400.0);
+        found.first().map(|found| match found.what {
+            crate::data::FindingKind::Channel(ChannelFinding::Filtered { corner_hz, .. }) => corner_hz,
+            _ => panic!("{found:?}"),
+        })
+    }
+
+    #[test]
+    fn noise_that_ends_below_the_reports_cut_off_is_filtered_and_no_other_is() {
+        let low_pass =
+            |corner_hz: f64, floor: f64| move |hz: f64| floor + 1.0 / (1.0 + (hz / corner_hz).powi(8));
+        for corner_hz in [120.0, 200.0, 300.0] {
+            let found_hz = named(low_pass(corner_hz, 0.01)).expect("named");
+            assert!((found_hz / corner_hz - 1.0).abs() < 0.2, "{corner_hz} {found_hz}");
+        }
+        assert_eq!(named(low_pass(900.0, 0.01)), None, "above the report's");
+        assert_eq!(named(low_pass(200.0, 0.2)), None, "the converter's noise hides it");
+        assert_eq!(named(|_| 1.0), None);
+        assert_eq!(named(|hz| 1.0 / hz), None, "1/f");
+        assert_eq!(named(|hz| 1.0 / (hz * hz)), None, "a drift");
+    }
+}
