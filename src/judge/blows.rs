@@ -21,6 +21,10 @@ const LIMIT: f64 = 6.0;
 const TOGETHER: f64 = 7.0;
 /// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, at most 2.8.
 const SHARP: f64 = 3.0;
+/// A shock of one channel this far off, beside which no other is farther off than the second, is none of the
+/// cask: a blow has all of a rigid body's places jump, and those that are next to its centre of percussion ring.
+const ALONE: f64 = 24.0;
+const ELSEWHERE: f64 = 4.0;
 /// Windows in which all channels are looked at together, s, and the fewest means of one.
 const WINDOW_S: f64 = 1e-3;
 const FEWEST_MEANS: f64 = 4.0;
@@ -66,7 +70,19 @@ pub fn judge_blows(
     let mut before_s = f64::NEG_INFINITY;
     times_s.retain(|&t| t - std::mem::replace(&mut before_s, t) > APART_S);
     let after_s = times_s.iter().map(|t| t - contact_s).collect();
-    let found = ChannelFinding::Struck { after_s, far: hardest(struck) };
+    let far = hardest(struck);
+    let is_near = |mean: &&Unforetold| times_s.iter().any(|time_s| (time_s - mean.time_s).abs() < APART_S);
+    let mut others = looked.iter().filter(|channel| channel.signal.name != struck.signal.name);
+    let farthest =
+        |channel: &Looked<'_>| channel.means.iter().filter(is_near).map(|m| m.far).reduce(f64::max);
+    let is_alone = looked.len() > 1
+        && far > ALONE
+        && others.all(|other| farthest(other).is_some_and(|far| far < ELSEWHERE));
+    let found = if is_alone {
+        ChannelFinding::JumpsAlone { after_s, far }
+    } else {
+        ChannelFinding::Struck { after_s, far }
+    };
     Some(found.on(&struck.signal.name).between(first_s, last_s))
 }
 
@@ -224,6 +240,19 @@ mod tests {
                 .all(|(found, true_s)| (found - true_s).abs() < 2.5e-3);
             assert!(after_s.len() == 3 && are, "{after_s:?}");
         }
+    }
+
+    #[test]
+    fn a_shock_of_one_channel_alone_is_electrical() {
+        let code = |other: &Signal| {
+            let signals = [signal(&[0.06], 60.0), Signal { name: "A2".into(), ..other.clone() }];
+            let flight = example::flight(0.025, 0.1, vec![]);
+            let events = example::events(0.02, 0.1);
+            judge_blows(&signals, &flight, &events, &[], &example::cask(1.0, 5.0, 0.0)).map(|f| f.code)
+        };
+        assert_eq!(code(&signal(&[], 0.0)), Some(IssueCode::Electrical));
+        assert_eq!(code(&signal(&[0.06], -20.0)), Some(IssueCode::SecondContact));
+        assert_eq!(code(&signal(&[0.061], 6.0)), Some(IssueCode::SecondContact));
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod closures;
 mod copies;
 mod coupling;
 mod fall;
+mod jumps;
 mod late_blow;
 mod limits;
 mod missing;
@@ -31,6 +32,7 @@ pub use closures::{MOST_U95_K, MOST_U95_SPEED, judge_closures, judge_strained, t
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
+pub use jumps::judge_jumps;
 pub use late_blow::{judge_late_blow, judge_rest, moves_the_cask};
 pub use limits::beside_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};

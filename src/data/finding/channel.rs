@@ -244,6 +244,18 @@ pub enum ChannelFinding {
          and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix \
          what was before with what came after, so k and the slap-down speed are not determined; fasten the \
          contents, or read the speed from the film", times_ms(after_s));
+    /// The channel jumps from one sample to the next, and no other changes then.
+    Jumps { after_s: f64, size_m_s2: f64 } => (Code::Electrical, Warning, Motion),
+        ("jumps by {:+.0} g from one sample to the next, {:.1} ms after first contact, and no other channel \
+         changes then: no force does so, but a cable that breaks contact or the spike of a trigger; k and the \
+         slap-down speed are not determined; fasten cable and connector, and keep the trigger's line apart",
+         size_m_s2 / G, 1e3 * after_s);
+    /// The channel jumps in the flight and no other does, with the numbers of `Struck`.
+    JumpsAlone { after_s: Vec<f64>, far: f64 } => (Code::Electrical, Warning, Motion),
+        ("jumps in the flight, at {} ms after first contact, by {far:.0} times what ringing and noise leave, \
+         and no other channel shows it: no blow on a cask does so, but a cable that breaks contact or the \
+         spike of a trigger; k and the slap-down speed are not determined; fasten cable and connector, and \
+         keep the trigger's line apart", times_ms(after_s));
     /// The channel is struck while the first end still falls.
     Ahead { ahead_s: f64 } => (Code::Skew, Error, Everything),
         ("is struck some {:.0} ms before the first end, which still falls by then: its recorder's clock is \

@@ -49,6 +49,7 @@ issue_codes! {
     LogTimeUsed, "File": "a message has no time stamp of its own, and its log time was used";
     Spikes, "Channel": "one to five samples are far off their neighbours";
     Dropout, "Channel": "runs of equal samples begin or end with a jump";
+    Electrical, "Channel": "a channel jumps while no other does";
     DeadChannel, "Channel": "a channel shows only noise while others show the impacts";
     CopiedChannel, "Channel": "a channel has the samples of another one";
     Offset, "Channel": "a channel has an offset in the free fall, or the offset drifts";
