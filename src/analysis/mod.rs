@@ -185,7 +185,8 @@ fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> A
     findings.extend(on_channels);
     let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     findings.extend(judge::judge_jumps(impact.recorded(), events));
-    findings.extend(judge::judge_bandwidth(impact.recorded(), events, cutoff_hz));
+    let filtered = judge::judge_bandwidth(impact.recorded(), events, cutoff_hz, &findings);
+    findings.extend(filtered);
     let judged = |flown: &FlightResult| Measured::of(flown, impact, events, file, &mut findings);
     let measured = flown.as_ref().and_then(judged);
     if measured.is_none() {

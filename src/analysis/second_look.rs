@@ -70,7 +70,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
         let analysis = analyse_once(&others, file, Patience::OneBeginning);
         let mut doubt = Doubt::of(&analysis);
-        // The only channel of its end is a candidate, too: what the mass properties replace speaks against none.
+        // The only channel of its end is a candidate, too: that the mass properties replace it is no error.
         doubt.errors -= analysis.result.quality.iter().filter(|f| lacks_end(f)).count();
         (doubt, (*name).to_owned(), analysis)
     };

@@ -1,7 +1,7 @@
 //! The noise of the free fall to a low-pass in the measuring chain that takes off what the report's would
 //! leave.
 
-use crate::data::{Axis, ChannelFinding, Events, Finding, Signal};
+use crate::data::{Axis, ChannelFinding, Events, Finding, IssueCode, Signal};
 use crate::numerics::as_f64;
 
 /// Noise this many times as dense below a corner as from an octave above it on is filtered: 1/f gives 4. Of
@@ -21,11 +21,18 @@ const FEWEST_BINS: usize = 3;
 const RISE: f64 = 0.35;
 
 /// Names each transverse channel whose noise ends below `cutoff_hz`, the −3 dB frequency of the report's
-/// low-pass.
-pub fn judge_bandwidth(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Finding> {
+/// low-pass; hum that was `found` on one hides its noise.
+pub fn judge_bandwidth(
+    signals: &[Signal],
+    events: &Events,
+    cutoff_hz: f64,
+    found: &[Finding],
+) -> Vec<Finding> {
     let Some((from_s, to_s)) = events.first_contact_s().zip(events.separation_s()) else { return Vec::new() };
-    let across = signals.iter().filter(|signal| signal.axis == Axis::Transverse);
-    let found = across.filter_map(|signal| {
+    let hums =
+        |s: &Signal| found.iter().any(|f| f.code == IssueCode::Hum && f.channel.as_ref() == Some(&s.name));
+    let across = signals.iter().filter(|signal| signal.axis == Axis::Transverse && !hums(signal));
+    let filtered = across.filter_map(|signal| {
         let corner_hz = corner_hz(&signal.noise_spectrum, cutoff_hz)?;
         let contact_s = to_s - from_s;
         // What the second order at that corner leaves of a half sine as long as the contact.
@@ -34,7 +41,7 @@ pub fn judge_bandwidth(signals: &[Signal], events: &Events, cutoff_hz: f64) -> V
         let said = ChannelFinding::Filtered { corner_hz, cutoff_hz, rise_s, contact_s, lost: 1.0 - left };
         Some(said.on(&signal.name))
     });
-    found.collect()
+    filtered.collect()
 }
 
 /// The frequency below `cutoff_hz` at which a spectrum of noise, as [`Signal`] has it, falls to half of its
@@ -70,7 +77,7 @@ mod tests {
         let noise_spectrum = bins.map(|hz| (hz, density(hz))).collect();
         let signal = Signal { noise_spectrum, ..example::signal(1e4, vec![]) };
         let events = Events { separation: Some(At::exactly(0.11)), ..example::events(0.1, 0.16) };
-        let found = judge_bandwidth(&[signal], &events, 400.0);
+        let found = judge_bandwidth(&[signal], &events, 400.0, &[]);
         found.first().map(|found| match found.what {
             crate::data::FindingKind::Channel(ChannelFinding::Filtered { corner_hz, .. }) => corner_hz,
             _ => panic!("{found:?}"),

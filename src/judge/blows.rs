@@ -22,7 +22,7 @@ const TOGETHER: f64 = 7.0;
 /// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, at most 2.8.
 const SHARP: f64 = 3.0;
 /// A shock of one channel this far off, beside which no other is farther off than the second, is none of the
-/// cask: a blow has all of a rigid body's places jump, and those that are next to its centre of percussion ring.
+/// cask: a blow has all places of a rigid body jump, and those near its centre of percussion ring.
 const ALONE: f64 = 24.0;
 const ELSEWHERE: f64 = 4.0;
 /// Windows in which all channels are looked at together, s, and the fewest means of one.

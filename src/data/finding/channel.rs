@@ -152,14 +152,14 @@ pub enum ChannelFinding {
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value \
          once");
-    /// Noise that ends at a corner below the report's cut-off; of a half sine as long as the contact a share is
-    /// `lost`.
+    /// Noise that ends at a corner below the report's cut-off, which `lost` a share of the peak of a half sine
+    /// as long as the contact.
     Filtered { corner_hz: f64, cutoff_hz: f64, rise_s: f64, contact_s: f64, lost: f64 }
         => (Code::Filtered, Warning, Nothing),
         ("is low-passed at about {corner_hz:.0} Hz in its chain, where the noise of the free fall ends, and \
-         the report at {cutoff_hz:.0} Hz: its rise takes {:.1} ms, the contact may be shorter by as much, peak \
-         and crush are those of a smoothed pulse (a half sine of {:.1} ms loses {:.0} %, a sharper one more); \
-         the velocity stands. Set the low-pass of amplifier or recorder higher",
+         the report at {cutoff_hz:.0} Hz: its rise takes {:.1} ms, the contact may be shorter by as much, \
+         peak and crush are those of a smoothed pulse (a half sine of {:.1} ms loses {:.0} %, a sharper one \
+         more); the velocity stands. Set the low-pass of amplifier or recorder higher",
          1e3 * rise_s, 1e3 * contact_s, 100.0 * lost);
     /// Rows of two sensors by turns, with the factor between them.
     ByTurns { factor: f64 } => (Code::Scale, Error, Motion),
@@ -247,8 +247,9 @@ pub enum ChannelFinding {
     /// The channel jumps from one sample to the next, and no other changes then.
     Jumps { after_s: f64, size_m_s2: f64 } => (Code::Electrical, Warning, Motion),
         ("jumps by {:+.0} g from one sample to the next, {:.1} ms after first contact, and no other channel \
-         changes then: no force does so, but a cable that breaks contact or the spike of a trigger; k and the \
-         slap-down speed are not determined; fasten cable and connector, and keep the trigger's line apart",
+         changes then: no force does so, but a cable that breaks contact or the spike of a trigger; k and \
+         the slap-down speed are not determined; fasten cable and connector, and keep the trigger's line \
+         apart",
          size_m_s2 / G, 1e3 * after_s);
     /// The channel jumps in the flight and no other does, with the numbers of `Struck`.
     JumpsAlone { after_s: Vec<f64>, far: f64 } => (Code::Electrical, Warning, Motion),
