@@ -94,7 +94,10 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         };
         least(false) + CLEARLY < least(true)
     };
-    if !is_told || is_other(&tried[0].1) {
+    let remains = |(_, name, without): &(Doubt, String, Analysis)| {
+        *name != tried[0].1 && is_alone_at_its_end(recording, name) && !is_refuted(without)
+    };
+    if !is_told || is_other(&tried[0].1) || tried.iter().any(remains) {
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
@@ -113,6 +116,20 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     better.result.quality.push(finding);
     better.result.verdict = judge::verdict(&mut better.result.quality);
     better
+}
+
+/// Whether no other transverse channel sits on a channel's end.
+fn is_alone_at_its_end(recording: &Recording, name: &str) -> bool {
+    let mut across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    let own = across.clone().find(|c| c.name == name);
+    own.is_some_and(|own| across.all(|c| c.name == name || c.end != own.end))
+}
+
+/// Whether the other channels contradict one another without the one that is left out: where they do not, or
+/// are too few to say, that one may be at fault as well.
+fn is_refuted(without: &Analysis) -> bool {
+    let contradicts = |f: &Finding| matches!(f.code, IssueCode::NotRigid | IssueCode::Geometry);
+    without.result.quality.iter().any(|f| f.severity > Severity::Note && contradicts(f))
 }
 
 pub(super) fn is_too_large(recording: &Recording) -> bool {
