@@ -152,8 +152,8 @@ pub enum ChannelFinding {
          the recorder dropped out, or a driver writes each value several times; they are taken for lost (the \
          longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value \
          once");
-    /// Noise that ends at a corner below the report's cut-off, which `lost` a share of the peak of a half sine
-    /// as long as the contact.
+    /// Noise that ends at a corner below the report's cut-off. A half sine as long as the contact has `lost`
+    /// that share of its peak.
     Filtered { corner_hz: f64, cutoff_hz: f64, rise_s: f64, contact_s: f64, lost: f64 }
         => (Code::Filtered, Warning, Nothing),
         ("is low-passed at about {corner_hz:.0} Hz in its chain, where the noise of the free fall ends, and \
