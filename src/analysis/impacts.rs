@@ -3,9 +3,9 @@
 use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
-    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ClosureKind, DropFinding, DropResult, End, Estimate,
-    Events, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Mode, Quantities,
-    RigidBodyDeceleration, Signal,
+    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ChannelPulse, ClosureKind, DropFinding, DropResult, End,
+    Estimate, Events, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Mode,
+    PulseLength, Quantities, RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
@@ -349,7 +349,7 @@ fn channel_peaks(
     let pulses = motion::pulses(recorded, between_s, cutoff_hz);
     let largest_m_s2 = |axis: Axis| {
         let of_axis = recorded.iter().zip(&pulses).filter(|(signal, _)| signal.axis == axis);
-        of_axis.filter_map(|(_, pulse)| Some((*pulse)?.raw_m_s2.abs())).fold(0.0, f64::max)
+        of_axis.filter_map(|(_, pulse)| Some((*pulse)?.raw.abs())).fold(0.0, f64::max)
     };
     let [transverse_m_s2, read_m_s2] = [Axis::Transverse, Axis::Axial].map(largest_m_s2);
     // Along the axis: what is read there, else that of S by the force and the friction, else at most the same
@@ -363,7 +363,7 @@ fn channel_peaks(
     } else {
         by_force.unwrap_or(transverse_m_s2 * (sin + cos) / cos.max(GRAZING_COS))
     };
-    let channel_peak = |(signal, pulse): (&Signal, &Option<motion::ChannelPulse>)| {
+    let channel_peak = |(signal, pulse): (&Signal, &Option<ChannelPulse>)| {
         let own = file.channels.iter().find(|spec| spec.name == signal.name).and_then(|s| s.calibration);
         let calibration = own.unwrap_or(file.tolerances.calibration);
         let aside_m_s2 = match signal.axis {
@@ -377,8 +377,8 @@ fn channel_peaks(
         let peak = |value: f64, left: f64| {
             Estimate::new(value, (calibration * value).hypot(crossed_m_s2).hypot(noise(left)), "m/s^2")
         };
-        let length = |pulse: motion::ChannelPulse| {
-            let motion::PulseLength { length_s, by_level } = pulse.length?;
+        let length = |pulse: ChannelPulse| {
+            let PulseLength { length_s, by_level } = pulse.length?;
             let level_m_s2 = (0.1 * crossed_m_s2).hypot(noise(left));
             Some(Estimate::new(length_s, (2.0 * pulse.sample_s).hypot(by_level * level_m_s2), "s"))
         };
@@ -386,11 +386,12 @@ fn channel_peaks(
             name: signal.name.clone(),
             filter: filter.clone(),
             cutoff_hz,
-            peak_raw: pulse.map(|p| peak(p.raw_m_s2, 1.0)),
-            peak_filtered: pulse.map(|p| peak(p.filtered_m_s2, left)),
-            is_above_raw: pulse.is_some_and(|p| p.filtered_m_s2.abs() > p.raw_m_s2.abs()),
+            peak_raw: pulse.map(|p| peak(p.raw, 1.0)),
+            peak_filtered: pulse.map(|p| peak(p.filtered, left)),
+            is_above_raw: pulse.is_some_and(|p| p.filtered.abs() > p.raw.abs()),
             time: pulse.map(|p| Estimate::new(p.time_s, p.sample_s, "s")),
             pulse_length: pulse.and_then(length),
+            pulse: *pulse,
         }
     };
     recorded.iter().zip(&pulses).map(channel_peak).collect()

@@ -3,6 +3,7 @@
 use super::cask::End;
 use super::estimate::Estimate;
 use super::quantities::named_numbers;
+use super::shocks::ChannelPulse;
 use serde::Serialize;
 
 named_numbers! {
@@ -117,6 +118,9 @@ pub struct ChannelPeak {
     pub time: Option<Estimate>,
     /// How long the filtered reading stays above a tenth of its peak around it, s.
     pub pulse_length: Option<Estimate>,
+    /// What all that is read off.
+    #[serde(skip)]
+    pub pulse: Option<ChannelPulse>,
 }
 
 impl ImpactTable {

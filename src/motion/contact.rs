@@ -4,9 +4,10 @@
 use super::Integrated;
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
-use crate::data::{End, MotionState, Setup, Signal, transverse};
+use crate::data::{ChannelPulse, End, MotionState, PulseLength, Setup, Signal, transverse};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
+use crate::numerics::quadrature::running_integral;
 use std::f64::consts::PI;
 
 /// A second maximum of the force, as a share of the larger; and the share of the lower one that the force
@@ -245,29 +246,9 @@ pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value))
 }
 
-/// One channel's pulse.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChannelPulse {
-    /// The largest of either sign, m/s².
-    pub raw_m_s2: f64,
-    /// The same through the low-pass, m/s².
-    pub filtered_m_s2: f64,
-    /// When that is reached, s.
-    pub time_s: f64,
-    /// From one time of that reading to the next, s.
-    pub sample_s: f64,
-    /// How long the filtered reading stays above a tenth of it.
-    pub length: Option<PulseLength>,
-}
-
-/// How long a reading stays above a level.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PulseLength {
-    /// s.
-    pub length_s: f64,
-    /// By how much that changes with the level, both ends apart, s/(m/s²).
-    pub by_level: f64,
-}
+/// The pulse of which change of velocity and displacement are stated ends where its filtered reading falls to
+/// this share of its peak: of a half sine 5e-5 of the change of velocity lies beyond.
+const PULSE_FOOT: f64 = 0.01;
 
 /// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz;
 /// `None` where samples are clipped or lost.
@@ -275,7 +256,9 @@ pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Op
     let [from_s, to_s] = between_s;
     let is_whole =
         |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
-    let wide: Vec<Signal> = signals.iter().map(|s| cut_wide(s, (from_s, to_s), cutoff_hz)).collect();
+    // Without a low-pass the ends of the pulse are sought as far as with a slow one.
+    let margin_hz = if cutoff_hz.is_finite() { cutoff_hz } else { 100.0 };
+    let wide: Vec<Signal> = signals.iter().map(|s| cut_wide(s, (from_s, to_s), margin_hz)).collect();
     let all = signals.iter().zip(wide.iter().zip(filtered(&wide, cutoff_hz)));
     all.map(|(signal, (wide, smooth))| pulse(wide, &smooth, between_s).filter(|_| is_whole(signal))).collect()
 }
@@ -286,24 +269,35 @@ fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<Cha
         let within = of.index_from(from_s)..of.index_from(to_s);
         within.max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
     };
-    let (at, filtered_m_s2) = peak(smooth)?;
+    let (at, peak_m_s2) = peak(smooth)?;
     let (filtered, sample_s) = (&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
-    let level_m_s2 = 0.1 * filtered_m_s2.abs();
-    let above = |i: usize| filtered[i] * filtered_m_s2.signum() - level_m_s2;
-    // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a
-    // higher level is passed.
-    let passed = |below: usize, beside: usize| {
-        let (from, step) = (as_f64(below), as_f64(beside) - as_f64(below));
-        let rise_m_s2 = above(beside) - above(below);
-        [from - step * above(below) / rise_m_s2, step / rise_m_s2]
+    // When the reading passes a share of the peak before and after it, in samples, and how much later it
+    // passes a higher level: on a line from a sample below the level to its neighbour above.
+    let passed = |share: f64| {
+        let level_m_s2 = share * peak_m_s2.abs();
+        let above = |i: usize| filtered[i] * peak_m_s2.signum() - level_m_s2;
+        let on_line = |below: usize, beside: usize| {
+            let (from, step) = (as_f64(below), as_f64(beside) - as_f64(below));
+            let rise_m_s2 = above(beside) - above(below);
+            [from - step * above(below) / rise_m_s2, step / rise_m_s2]
+        };
+        let began = (0..at).rev().find(|&i| above(i) < 0.0).map(|i| on_line(i, i + 1));
+        let ended = (at..filtered.len()).find(|&i| above(i) < 0.0).map(|i| on_line(i, i - 1));
+        began.zip(ended)
     };
-    let began = (0..at).rev().find(|&i| above(i) < 0.0).map(|i| passed(i, i + 1));
-    let ended = (at..filtered.len()).find(|&i| above(i) < 0.0).map(|i| passed(i, i - 1));
-    let length = began.zip(ended).map(|(began, ended)| PulseLength {
+    let length = passed(0.1).map(|(began, ended)| PulseLength {
         length_s: (ended[0] - began[0]) * sample_s,
         by_level: began[1].hypot(ended[1]) * sample_s,
     });
-    Some(ChannelPulse { raw_m_s2: peak(wide)?.1, filtered_m_s2, time_s: smooth.time_s(at), sample_s, length })
+    let integrals = passed(PULSE_FOOT).map(|(began, ended)| {
+        let index = |position: f64| wide.index_from(smooth.start_s + position * sample_s);
+        let step_s = 1.0 / wide.sample_rate_hz;
+        let velocity_m_s = running_integral(&wide.force_m_s2[index(began[0])..index(ended[0])], step_s);
+        let way_m = running_integral(&velocity_m_s, step_s);
+        [velocity_m_s, way_m].map(|course| course.last().copied().unwrap_or_default())
+    });
+    let raw = peak(wide)?.1;
+    Some(ChannelPulse { raw, filtered: peak_m_s2, time_s: smooth.time_s(at), sample_s, length, integrals })
 }
 
 #[cfg(test)]

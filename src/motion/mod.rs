@@ -17,7 +17,7 @@ mod ringing;
 mod window;
 
 pub use answer::most_late_s;
-pub use contact::{ChannelPulse, ContactCourse, FirstTouch, ForceCourse, PulseLength, largest, pulses};
+pub use contact::{ContactCourse, FirstTouch, ForceCourse, largest, pulses};
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_early, compare_late, fit_flights};
 pub use histories::drive;
