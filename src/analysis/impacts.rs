@@ -4,8 +4,8 @@ use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ChannelPulse, ClosureKind, DropFinding, DropResult, End,
-    Estimate, Events, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U, Mode,
-    PulseLength, Quantities, RigidBodyDeceleration, Signal,
+    Estimate, Events, FilteredPeak, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U,
+    Mode, PulseLength, Quantities, RigidBodyDeceleration, STANDARD_GRAVITY_M_S2, Signal, transverse,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
@@ -46,6 +46,7 @@ impl Tabulated {
         for table in self.tables.iter_mut().flatten() {
             let deceleration = &mut table.rigid_body_deceleration;
             (deceleration.at_cog, deceleration.at_struck_end) = (None, None);
+            deceleration.at_cog_unfiltered = None;
             for number in table.numbers.of_course() {
                 *number = None;
             }
@@ -321,11 +322,38 @@ fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> Ri
             cutoff_hz,
             at_cog: deceleration(0),
             at_struck_end: deceleration(1),
+            at_cog_unfiltered: Some(largest(&contact.at_cog_m_s2)),
             others: Vec::new(),
         }
     };
     let others = motion::usual_filters(file.cask.mass_kg).into_iter().map(through).collect();
     RigidBodyDeceleration { others, ..through(low_pass(file)) }
+}
+
+/// What the usual low-passes, and none, make of the first end's first impact; empty where its transverse
+/// channel or its first contact is missing.
+pub(super) fn filters(file: &CaskFile, recorded: &[Signal], result: &DropResult) -> Vec<FilteredPeak> {
+    let [stretch_s, _] = stretches_s(&result.events, None, file.cask.length_m);
+    let Some((between_s, struck)) = stretch_s.zip(transverse(recorded, End::First)) else {
+        return Vec::new();
+    };
+    let own = &result.impacts[0].rigid_body_deceleration;
+    let in_g = |m_s2: f64| m_s2 / STANDARD_GRAVITY_M_S2;
+    let through = |(name, cutoff_hz): (String, f64)| {
+        let pulse = motion::pulses(std::slice::from_ref(struck), between_s, cutoff_hz).pop().flatten();
+        let through = own.others.iter().find(|other| other.filter == name).and_then(|other| other.at_cog);
+        let is_filtered = cutoff_hz.is_finite();
+        let at_cog = if is_filtered { through.map(|e| e.value) } else { own.at_cog_unfiltered };
+        FilteredPeak {
+            cutoff_hz: is_filtered.then_some(cutoff_hz),
+            peak_g: pulse.map(|p| in_g(p.filtered)),
+            deceleration_g: at_cog.map(in_g),
+            duration_s: pulse.and_then(|p| Some(p.length?.length_s)),
+            name,
+        }
+    };
+    let unfiltered = [("unfiltered".to_owned(), f64::INFINITY)];
+    motion::usual_filters(file.cask.mass_kg).into_iter().chain(unfiltered).map(through).collect()
 }
 
 fn force_over_crush(contact: &ContactCourse, mass_kg: f64, cutoff_hz: f64) -> ForceOverCrush {

@@ -27,6 +27,7 @@ mod rotation;
 mod second_impact;
 mod second_look;
 mod setup;
+mod shocks;
 
 pub use check::check;
 pub use first_look::look_at_each;
@@ -62,7 +63,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
-    rayon::scope(|_| others::add(recording, cask_file, &mut found));
+    rayon::scope(|_| {
+        others::add(recording, cask_file, &mut found);
+        shocks::add(recording, cask_file, &mut found);
+    });
     let result = &mut found.result;
     result.verdict = judge::verdict(&mut result.quality);
     judge::behind_the_motion(&mut result.quality, &result.other_channels);

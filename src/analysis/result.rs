@@ -60,6 +60,7 @@ pub(super) fn of(
     let openings = flown.as_ref().map_or_else(Vec::new, |flown| flown.openings.clone());
     let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
+    result.filters = impacts::filters(file, signals, &result);
     result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, effect));
     match flown.map(|flown| (flown, measured)) {

@@ -79,7 +79,8 @@ pub fn condition(
     (signals, findings.into_iter().flatten().collect())
 }
 
-fn signal(
+/// One channel as [`condition`] treats all, but for what only a comparison of several shows.
+pub fn signal(
     channel: &Channel,
     event: &CoarseEvent,
     reach: &Reach,

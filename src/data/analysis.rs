@@ -16,6 +16,7 @@ use super::prototype::Prototype;
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
+use super::shocks::{FilteredPeak, Shock};
 use super::test_record::{Limit, LimitState, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -254,6 +255,10 @@ pub struct DropResult {
     pub amplification: Option<Estimate>,
     /// The first impact and the second, as test reports tabulate them.
     pub impacts: [ImpactTable; 2],
+    /// What every channel reads in each of them, also where the motion is not determined.
+    pub shocks: Vec<Shock>,
+    /// What the choice of the low-pass makes of the first end's first impact.
+    pub filters: Vec<FilteredPeak>,
     /// All that as of the prototype, where the cask is a scale model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub prototype: Option<Prototype>,

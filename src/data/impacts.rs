@@ -85,6 +85,9 @@ pub struct RigidBodyDeceleration {
     pub at_cog: Option<Estimate>,
     /// At the end that strikes, m/s².
     pub at_struck_end: Option<Estimate>,
+    /// `at_cog` without a low-pass, m/s².
+    #[serde(skip)]
+    pub at_cog_unfiltered: Option<f64>,
     /// The same through other low-passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<RigidBodyDeceleration>,

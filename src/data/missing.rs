@@ -1,6 +1,7 @@
 //! The JSON of a result to the quantities that are null, each with the finding that took it.
 
 use super::finding::{DropFinding, Finding, FindingKind, ResultPart};
+use super::unit::acceleration_unit_m_s2;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -21,7 +22,8 @@ pub struct MissingQuantity {
 
 /// Where quantities stand in a result, and the part that each of the others belongs to; all else is of the
 /// first impact.
-const PLACES: [&str; 6] = ["first_impact", "slap_down", "k", "amplification", "impacts", "comparison"];
+const PLACES: [&str; 7] =
+    ["first_impact", "slap_down", "k", "amplification", "impacts", "shocks", "comparison"];
 const PARTS: [(&str, ResultPart); 5] = [
     ("slap_down.local_speed", ResultPart::SecondImpact),
     ("slap_down", ResultPart::SlapDown),
@@ -52,11 +54,28 @@ pub(super) fn missing_in(result: &Value, found: &[Finding]) -> Vec<MissingQuanti
         let words = because.map_or(reason.unwrap_or_default().into(), |place| found[place].with_channel());
         MissingQuantity { quantity, because, reason, words }
     };
-    PLACES.iter().flat_map(|place| nulls(&result[place], (*place).to_owned())).map(missing).collect()
+    let all = PLACES.iter().flat_map(|place| nulls(&result[place], (*place).to_owned()));
+    all.filter(|quantity| is_meant(result, quantity)).map(missing).collect()
 }
 
-/// The name of the channel that a pulse of an impact belongs to.
+/// The shock of a place, and which number of it.
+fn shock<'a, 'b>(result: &'a Value, place: &'b str) -> Option<(&'a Value, &'b str)> {
+    let (row, number) = place.strip_prefix("shocks[")?.split_once("].")?;
+    Some((result.pointer(&format!("/shocks/{row}"))?, number))
+}
+
+/// Whether a quantity has a velocity: strain has none.
+fn is_meant(result: &Value, place: &str) -> bool {
+    let is_of_motion = |number: &str| number.starts_with("velocity") || number.starts_with("displacement");
+    let is_acceleration = |shock: &Value| shock["unit"].as_str().and_then(acceleration_unit_m_s2).is_some();
+    shock(result, place).is_none_or(|(shock, number)| is_acceleration(shock) || !is_of_motion(number))
+}
+
+/// The name of the channel that a shock, or a pulse of an impact, belongs to.
 fn channel<'a>(result: &'a Value, place: &str) -> Option<&'a str> {
+    if let Some((shock, _)) = shock(result, place) {
+        return shock["channel"].as_str();
+    }
     let (impact, pulse) = place.strip_prefix("impacts[")?.split_once("].channels[")?;
     let number = pulse.split(']').next()?;
     result.pointer(&format!("/impacts/{impact}/channels/{number}/name"))?.as_str()

@@ -33,6 +33,7 @@ impl ImpactTable {
             cutoff_hz: scale * cutoff_hz,
             at_cog: scaled(at_cog),
             at_struck_end: scaled(at_struck_end),
+            at_cog_unfiltered: None,
             others: Vec::new(),
         };
         Self { numbers: self.numbers.map(scaled), rigid_body_deceleration, ..Self::unknown(self.end) }

@@ -27,9 +27,10 @@ pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64) -> (f64, &'static str) {
     match choice {
         FilterChoice::Cfc(class) => (class * CFC_DESIGN * TWO_PASS_CUTOFF, "cask file"),
         FilterChoice::CutoffHz(hz) => (hz, "cask file"),
-        FilterChoice::Auto => {
-            (CUTOFF_100_T_HZ * (1e5 / mass_kg).cbrt(), "default: IAEA SSG-26, 200 Hz × (100 t/m)^⅓")
-        }
+        FilterChoice::Auto => (
+            CUTOFF_100_T_HZ * (1e5 / mass_kg).cbrt(),
+            "default: IAEA SSG-26, upper end of 100 to 200 Hz × (100 t/m)^⅓",
+        ),
     }
 }
 

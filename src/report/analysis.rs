@@ -10,6 +10,7 @@ use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
+use super::shocks::shocks;
 use super::text::{
     Style, causes, determined, dropped, json_word, reasons, sentence, span_text, tail, taken_mark,
     true_minus, verdict_sentence, verdict_style, verdict_word, yes,
@@ -63,6 +64,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
                 .with(record::sensors(file)),
             quantities(result),
             impacts(result).with_all(pictures(&["impacts", "crush"])),
+            shocks(result),
             prototype(result, file),
             comparison(result, file),
             record::observed(&result.observed),

@@ -3,11 +3,9 @@
 
 use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
+use super::shocks::what_if;
 use super::text::{distinct, reasons};
-use crate::data::{
-    CaskFile, ChannelPeak, DropResult, Estimate, ImpactTable, QuantityRow, RigidBodyDeceleration,
-    STANDARD_GRAVITY_M_S2,
-};
+use crate::data::{CaskFile, DropResult, Estimate, ImpactTable, QuantityRow, STANDARD_GRAVITY_M_S2};
 
 /// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
 struct ImpactRow(&'static str, &'static str, f64, bool, fn(&ImpactTable) -> Option<Estimate>);
@@ -37,6 +35,10 @@ const ROWS: [ImpactRow; 14] = [
     ImpactRow("deceleration of the centre of gravity", "g", G, true, |i| i.rigid_body_deceleration.at_cog),
     ImpactRow("deceleration at the struck end", "g", G, true, |i| i.rigid_body_deceleration.at_struck_end),
 ];
+
+fn in_g(estimate: Option<Estimate>) -> String {
+    scaled(estimate, G, "")
+}
 
 fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
     estimate.map_or_else(|| MISSING.to_owned(), |e| pair(factor * e.value, factor * e.u95, unit))
@@ -70,10 +72,7 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
             .into()
     };
     let rigid = "The rigid body, free of ringing; impulse, energy and force with the stated mass";
-    let of_page = [table(all, rigid)]
-        .into_iter()
-        .chain(by_low_pass(&result.impacts))
-        .chain([channels(&result.impacts)]);
+    let of_page = [table(all, rigid)].into_iter().chain(what_if(result, in_g));
     chapter
         .with(ChapterPart::only(table(short, ""), Medium::Terminal))
         .with(ChapterPart::text(filter_words(result)))
@@ -86,7 +85,15 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
 fn filter_words(result: &DropResult) -> String {
     let peaks = || result.impacts.iter().flat_map(|i| &i.channels);
     let low_pass = peaks().next().map_or_else(String::new, |peak| {
-        let rule = if peak.filter.starts_with("SSG-26") { " × (100 t/m)^⅓" } else { "" };
+        let rule = if peak.filter.starts_with("SSG-26") {
+            let [least, most] = [0.5, 1.0].map(|share| plain(share * peak.cutoff_hz, 4));
+            format!(
+                " × (100 t/m)^⅓, the upper end of the band that SSG-26 advises (100 to 200 Hz for 100 t, \
+                 here {least} to {most} Hz)"
+            )
+        } else {
+            String::new()
+        };
         format!(
             "Forces, decelerations and filtered curves go through one low-pass: {}{rule} (−3 dB at {} Hz).",
             peak.filter,
@@ -115,42 +122,6 @@ fn energy_words(result: &DropResult) -> Option<String> {
         )
     });
     Some(format!("Slap-down speed over impact velocity: {amplified}.{}", left.unwrap_or_default()))
-}
-
-/// The decelerations through the low-passes that were not taken.
-fn by_low_pass([first, second]: &[ImpactTable; 2]) -> Option<ChapterPart> {
-    let [first, second] = [first, second].map(|impact| &impact.rigid_body_deceleration);
-    let others: Vec<_> = first.others.iter().filter(|other| other.filter != first.filter).collect();
-    let of_second = |d: &RigidBodyDeceleration| second.others.iter().find(|other| other.filter == d.filter);
-    let table = ReportTable::of(&others)
-        .caption(
-            "Both decelerations through other low-passes, g; SSG-26 scales its 100 Hz and 200 Hz with \
-             (100 t/m)^⅓",
-        )
-        .head("Low-pass", |d| &d.filter[..])
-        .number("−3 dB, Hz", |d| plain(d.cutoff_hz, 4))
-        .number("First impact, centre of gravity", |d| scaled(d.at_cog, G, ""))
-        .number("at the struck end", |d| scaled(d.at_struck_end, G, ""))
-        .number("Second impact, centre of gravity", |d| scaled(of_second(d).and_then(|d| d.at_cog), G, ""))
-        .number("at the struck end", |d| scaled(of_second(d).and_then(|d| d.at_struck_end), G, ""));
-    (!others.is_empty()).then(|| table.into())
-}
-
-/// What the channels read in each impact.
-fn channels([first, second]: &[ImpactTable; 2]) -> ChapterPart {
-    let rows: Vec<(&str, &ChannelPeak)> = [("first", first), ("second", second)]
-        .into_iter()
-        .flat_map(|(name, impact)| impact.channels.iter().map(move |peak| (name, peak)))
-        .collect();
-    ReportTable::of(&rows)
-        .caption("What the channels read, ringing and all")
-        .head("Impact", |(name, _)| *name)
-        .text("Channel", |(_, c)| &c.name[..])
-        .number("Unfiltered peak, g", |(_, c)| scaled(c.peak_raw, G, ""))
-        .number("Filtered, g", |(_, c)| scaled(c.peak_filtered, G, ""))
-        .number("At, ms", |(_, c)| scaled(c.time, 1e3, ""))
-        .number("Pulse, ms", |(_, c)| scaled(c.pulse_length, 1e3, ""))
-        .into()
 }
 
 /// The chapter; empty where no scale is stated.

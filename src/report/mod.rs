@@ -35,6 +35,7 @@ mod sample;
 mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
+mod shocks;
 pub(crate) mod table;
 mod template;
 pub(crate) mod text;

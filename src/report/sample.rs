@@ -105,6 +105,8 @@ fn result() -> DropResult {
         analysed: Some("2026-11-24T02:00:00Z".into()),
         amplification: Some(Estimate::new(1.55, 0.03, "1")),
         impacts: impacts(),
+        shocks: Vec::new(),
+        filters: Vec::new(),
         test: crate::data::TestRecord::default(),
         observed: Vec::new(),
         limits: Vec::new(),

@@ -38,6 +38,7 @@ mod safety;
 mod same;
 mod scale_model;
 mod sentences;
+mod shocks;
 mod short_flights;
 mod slips;
 mod stages;

@@ -63,7 +63,7 @@ impl Drop {
     #[track_caller]
     fn analysed(&self) -> Value {
         let result = analyze(&self.recording, &self.cask).json();
-        let own = ["input", "command", "settings", "cask_text", "quality", "verdict"];
+        let own = ["input", "command", "settings", "cask_text", "quality", "verdict", "shocks", "missing"];
         for (key, value) in self.plain.as_object().expect("a result") {
             assert!(own.contains(&key.as_str()) || result[key] == *value, "{key} moved");
         }
@@ -71,6 +71,16 @@ impl Drop {
         let is_other = |finding: &Value| finding["channel"] == "S1" || finding["channel"] == "T1";
         let of_motion: Vec<Value> = found(&result).into_iter().filter(|f| !is_other(f)).collect();
         assert_eq!(of_motion, found(&self.plain));
+        let shocks = result["shocks"].as_array().expect("shocks");
+        let (others, of_motion): (Vec<_>, Vec<_>) =
+            shocks.iter().cloned().partition(|row| row["channel"] == "S1" || row["channel"] == "T1");
+        assert_eq!(Value::from(of_motion), self.plain["shocks"]);
+        assert_eq!(others.len(), 4, "two channels in two impacts");
+        let missing = |result: &Value| result["missing"].as_array().expect("a list").clone();
+        let is_other = |row: &Value| row["quantity"].as_str().is_some_and(|at| at.starts_with("shocks["));
+        let of_motion: Vec<Value> = missing(&result).into_iter().filter(|row| !is_other(row)).collect();
+        let plain: Vec<Value> = missing(&self.plain).into_iter().filter(|row| !is_other(row)).collect();
+        assert_eq!(of_motion, plain);
         result
     }
 }
@@ -92,6 +102,11 @@ fn other_channels_are_told_beside_the_motion() {
     assert!((value("/largest/time_s") - contact_s - 0.005).abs() < 5e-4);
     assert!((value("/smallest/value") + 14.0).abs() < 0.5);
     assert_eq!(strain["findings"], serde_json::json!([]));
+    // The strain's shock is its change from the rest, at the report's low-pass.
+    let shocks = result["shocks"].as_array().expect("shocks");
+    let shock = shocks.iter().find(|row| row["channel"] == "S1").expect("a shock");
+    assert!((number(shock, "/peak").expect("a peak") - 900.0).abs() < 9.0, "{shock}");
+    assert!(shock["velocity_change_m_s"].is_null() && shock["unit"] == "µm/m", "{shock}");
     // A slow quantity stays as it is, which is worth a note.
     assert_eq!(temperature["unit"], "°C");
     assert_eq!(temperature["findings"], serde_json::json!(["dead_channel"]));

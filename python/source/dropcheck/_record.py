@@ -121,11 +121,39 @@ class Comparison(Record):
     agrees: bool
 
 
+class Shock(Record):
+    """What one channel reads in one impact; `None` where it does not show the pulse whole."""
+
+    __slots__ = ()
+    channel: str
+    event: str
+    peak: float | None
+    peak_unfiltered: float | None
+    time_s: float | None
+    duration_s: float | None
+    velocity_change_m_s: float | None
+    displacement_m: float | None
+    unit: str
+
+
+class FilteredPeak(Record):
+    """What one low-pass makes of the first end's first impact."""
+
+    __slots__ = ()
+    name: str
+    cutoff_hz: float | None
+    peak_g: float | None
+    deceleration_g: float | None
+    duration_s: float | None
+
+
 _CLASSES: dict[str, type[Record]] = {
     "first_impact": FirstImpact,
     "slap_down": SlapDown,
     "quality": Finding,
     "comparison": Comparison,
+    "shocks": Shock,
+    "filters": FilteredPeak,
 }
 
 
@@ -173,6 +201,8 @@ class Result(Answer):
     comparison: Comparison | None
     predictions: list[Record]
     impacts: list[Record]
+    shocks: list[Shock]
+    filters: list[FilteredPeak]
     missing: list[Record]
 
     def __init__(self, analysis: _dropcheck.Analysis) -> None:
