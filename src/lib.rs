@@ -74,5 +74,6 @@ pub mod stages {
     pub use crate::fit::{FitData, ladder};
     pub use crate::motion::{Integrated, Window, filtered, fit_flights, outcome, pulses, reconstruct};
     pub use crate::numerics::filter::ZeroPhaseLowPass;
+    pub use crate::numerics::shock_response::{ShockResponse, shock_response};
     pub use crate::numerics::spectrum::magnitude;
 }

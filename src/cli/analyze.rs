@@ -31,7 +31,7 @@ pub struct Arguments {
     /// rest` of the cask file
     #[arg(long, value_name = "REST")]
     rest: Option<PathBuf>,
-    /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
+    /// Folder for the report: report.html, result.json, curves.csv, srs.csv, curves.h5, curves.mcap, pictures
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the report of another recording in --out
@@ -43,7 +43,7 @@ pub struct Arguments {
     /// Also report.pdf, printed by an installed Chromium, Chrome or Edge
     #[arg(long, requires = "out")]
     pdf: bool,
-    /// Separators of curves.csv: en (comma, decimal point) or de (semicolon, decimal comma)
+    /// Separators of curves.csv and srs.csv: en (comma, decimal point) or de (semicolon, decimal comma)
     #[arg(long, value_name = "LOCALE", default_value = "en", requires = "out")]
     csv_locale: CsvLocale,
     /// Print all tables below the first screen
@@ -200,7 +200,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> miette::Result<()> {
     let mut files = report::files(analysis)?;
     if arguments.csv_locale == CsvLocale::De {
-        for (_, bytes) in files.iter_mut().filter(|(name, _)| name == "curves.csv") {
+        for (_, bytes) in files.iter_mut().filter(|(name, _)| ["curves.csv", "srs.csv"].contains(&&name[..]))
+        {
             *bytes = report::in_german(bytes)?;
         }
     }

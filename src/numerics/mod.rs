@@ -12,6 +12,7 @@ pub mod quadrature;
 pub mod reduce;
 pub mod robust;
 pub mod root;
+pub mod shock_response;
 pub mod sinusoid;
 pub mod spectrum;
 #[cfg(feature = "lab")]

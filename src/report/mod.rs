@@ -36,6 +36,7 @@ mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
 mod shocks;
+mod srs;
 pub(crate) mod table;
 mod template;
 pub(crate) mod text;
@@ -114,6 +115,7 @@ pub const FILE_NAMES: &[&str] = &[
     "result.json",
     "results.tex",
     "curves.csv",
+    "srs.csv",
     #[cfg(feature = "native")]
     "curves.h5",
     #[cfg(feature = "native")]
@@ -141,13 +143,16 @@ fn file_names(analysis: &Analysis) -> &'static [&'static str] {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let (binary, (curves_csv, pictures)) = rayon::join(
+    let (binary, ((curves_csv, spectra), pictures)) = rayon::join(
         || binary_curves(analysis),
-        || rayon::join(|| grid::table_bytes(&analysis.curves), || pictures::draw(analysis)),
+        || {
+            let tables = || (grid::table_bytes(&analysis.curves), srs::table_bytes(analysis));
+            rayon::join(tables, || pictures::draw(analysis))
+        },
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
     let (result, table) = (json::pretty(&analysis.result)?, latex::table(&analysis.result));
-    let text = [page, result, table, curves_csv?];
+    let text = [page, result, table, curves_csv?, spectra?];
     let bytes =
         text.into_iter().chain(binary?).chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
     Ok(file_names(analysis).iter().map(|name| (*name).to_owned()).zip(bytes).collect())

@@ -9,7 +9,7 @@ use crate::data::{DropResult, End, Estimate, FilteredPeak, RigidBodyDeceleration
 const CAPTION: &str = "At the report's low-pass, and unfiltered. An acceleration counts from the free fall, \
                        another quantity from its level before the release. Length: above a tenth of the \
                        peak. Change of velocity and displacement: over the pulse, unfiltered; the \
-                       displacement is that against an undisturbed motion.";
+                       displacement is that against an undisturbed motion. `srs.csv` has the spectra.";
 
 /// The chapter; empty where no channel shows an impact.
 pub(super) fn shocks(result: &DropResult) -> Chapter {

@@ -1,9 +1,9 @@
-//! From pulses of known size, and from drops without a slap-down, to the shocks and low-passes.
+//! From pulses of known size, and from drops without a slap-down, to the shocks, spectra and low-passes.
 
 use crate::command_line::Bench;
 use crate::run::{dropcheck, fixture, number, words};
 use dropcheck::data::{STANDARD_GRAVITY_M_S2, Signal};
-use dropcheck::stages::pulses;
+use dropcheck::stages::{pulses, shock_response};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
@@ -40,6 +40,48 @@ fn a_clipped_pulse_has_no_shock() {
     let mut clipped = half_sine();
     clipped.clipped = vec![dropcheck::data::Span { from: 2500, to: 2600 }];
     assert_eq!(pulses(&[clipped], [0.015, 0.04], 564.0), [None]);
+}
+
+/// Natural frequencies, Hz, with the response and the pseudo-velocity times s that `pyyeti` 1.4.7 gives:
+/// `srs(…, Q=10, stype="absacce" and "pvelo", rolloff="none")`, 2000 samples at 20 kHz.
+const FREQUENCIES_HZ: [f64; 6] = [5.0, 20.0, 80.0, 320.0, 1000.0, 2000.0];
+const HALF_SINE: [[f64; 6]; 2] = [
+    [20.43136, 78.30987, 164.8243, 110.4254, 100.7543, 100.0883],
+    [0.647_101_2, 0.620_057, 0.327_044_3, 0.054_895_23, 0.016_034_53, 0.007_964_903],
+];
+const SAWTOOTH: [[f64; 6]; 2] = [
+    [21.74015, 85.6953, 270.4914, 254.5282, 248.2783, 247.9689],
+    [0.688_553_4, 0.678_535_3, 0.535_436_1, 0.126_370_4, 0.039_424_12, 0.019_706_8],
+];
+const RINGING: [[f64; 6]; 2] = [
+    [22.86842, 90.91594, 329.2624, 426.0224, 484.7372, 368.8254],
+    [0.724_287_6, 0.719_881_2, 0.651_868_4, 0.211_472, 0.076_849_7, 0.029_334_99],
+];
+
+#[test]
+fn spectra_are_those_of_pyyeti() {
+    let sine = |since: f64, long: f64| if since < long { (PI * since / long).sin() } else { 0.0 };
+    let half_sine = |since: f64| 100.0 * sine(since, 220.0);
+    let sawtooth = |since: f64| if since < 120.0 { 250.0 * since / 120.0 } else { 0.0 };
+    let ringing = |since: f64| {
+        let since_s = since / 2e4;
+        300.0 * sine(since, 80.0) + 80.0 * (-since_s / 0.004).exp() * (1400.0 * PI * since_s).sin()
+    };
+    let pulses: [(&dyn Fn(f64) -> f64, _); 3] =
+        [(&half_sine, HALF_SINE), (&sawtooth, SAWTOOTH), (&ringing, RINGING)];
+    for (pulse, [accelerations, velocities]) in pulses {
+        let sample = |i: u32| if i < 200 { 0.0 } else { pulse(f64::from(i - 200)) };
+        let samples: Vec<f64> = (0..2000).map(sample).collect();
+        // What follows a record that ends early is the oscillators' own.
+        for count in [2000, 1600] {
+            let found = shock_response(&samples[..count], 2e4, &FREQUENCIES_HZ, 10.0);
+            for (i, response) in found.iter().enumerate() {
+                let off = |value: f64, truth: f64| (value / truth - 1.0).abs();
+                assert!(off(response.acceleration, accelerations[i]) < 1e-5, "{i}: {response:?}");
+                assert!(off(response.pseudo_velocity, velocities[i]) < 1e-5, "{i}: {response:?}");
+            }
+        }
+    }
 }
 
 fn rows<'a>(result: &'a Value, name: &str) -> &'a Vec<Value> {
@@ -85,5 +127,32 @@ fn every_channel_has_its_shocks_and_every_low_pass_its_peak() {
         ["Shocks of every channel", "upper end of the band", "What another low-pass would make of it"]
     {
         assert!(page.contains(words), "{words}");
+    }
+}
+
+/// Of a channel that clips, or whose zero shifts, no spectrum is stated: at 5 Hz it would be its velocity's
+/// error.
+#[test]
+fn spectra_are_of_channels_that_return_to_rest() {
+    for (name, ending, channels) in [
+        ("anf18-json", "mcap", &["A1", "A2"][..]),
+        ("damaged-clipped", "h5", &["A2"]),
+        ("damaged-zero-shift", "h5", &["A2"]),
+    ] {
+        let [recording, cask] = [ending, "toml"].map(|ending| fixture(&format!("{name}.{ending}")));
+        let bench = Bench::new();
+        let out = bench.0.path().join("out");
+        dropcheck(words!["analyze", recording, "--cask", cask, "--out", out]);
+        let table = fs::read_to_string(out.join("srs.csv")).expect("spectra");
+        let mut lines = table.lines();
+        assert_eq!(lines.next(), Some("channel,frequency_hz,acceleration,pseudo_velocity_m_s"));
+        let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+        let mut named: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+        named.dedup();
+        assert_eq!(named, channels, "{name}");
+        let value = |row: &[&str], i: usize| row[i].parse::<f64>().expect("a number");
+        let first = rows.first().expect("a spectrum");
+        assert!((value(first, 1) - 5.0).abs() < 1e-6, "{first:?}");
+        assert!(rows.iter().all(|row| value(row, 2) > 0.0 && value(row, 3) > 0.0), "{name}");
     }
 }
