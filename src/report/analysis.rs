@@ -6,6 +6,7 @@ use super::document::{
 };
 use super::first_screen::{RIGID, agreement, built_in, by_measured, of_corner, untested};
 use super::impacts::{impacts, not_determined, prototype};
+use super::kind;
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
@@ -126,6 +127,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let said = [limits.map(|said| format!("Limits: {said}")), causes, assumed, interval_by, untested];
     let said = said.into_iter().flatten().map(ChapterPart::text);
     Chapter::new("")
+        .with_all(kind::words(result, file).map(ChapterPart::text))
         .with(ChapterPart::title(what).only(Medium::Terminal))
         .with(ChapterPart::line(files).only(Medium::Terminal))
         .with_all(record::line(&result.test))

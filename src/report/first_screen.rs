@@ -145,7 +145,8 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let recording = tail(&result.input.recording, 40);
     let title = format!("{} · {} · {recording}", file.cask.name, dropped(&file.drop));
-    let title = styled_lines(Style::Bold, &clamped(&title, width, 0, 1));
+    let kind = super::kind::words(result, file).map_or_else(String::new, |kind| clamped(&kind, width, 0, 3));
+    let title = kind + &styled_lines(Style::Bold, &clamped(&title, width, 0, 1));
     let limits = limits_said(&result.limits, 3);
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
     let alarm = alarm.map_or_else(String::new, |said| row(LIMIT_EXCEEDED, &said, width, 5));
@@ -171,7 +172,8 @@ pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> 
     let lines = |text: &str| text.lines().count();
     // Where nothing else is to be said the causes have room for their remedies.
     let (untested, most) = (untested(result), if result.untested.is_empty() { MOST_LINES } else { 3 });
-    let others = lines(&alarm) + lines(&numbers) + lines(&foot) + if untested.is_some() { 3 } else { 1 };
+    let others = lines(&title) + lines(&alarm) + lines(&numbers) + lines(&foot);
+    let others = others + if untested.is_some() { 2 } else { 0 };
     let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
     let most = most.min(MOST_LINES.saturating_sub(others).max(1));
     let said = [vec![verdict_sentence(result)], causes(result)].concat().join(" ");

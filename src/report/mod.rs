@@ -21,6 +21,7 @@ mod first_screen;
 mod grid;
 mod impacts;
 pub(crate) mod json;
+mod kind;
 mod latex;
 mod listing;
 pub(crate) mod pictures;

@@ -1,7 +1,7 @@
 //! From pulses of known size, and from drops without a slap-down, to the shocks, spectra and low-passes.
 
 use crate::command_line::Bench;
-use crate::run::{dropcheck, fixture, number, words};
+use crate::run::{analyze, dropcheck, fixture, number, words};
 use dropcheck::data::{STANDARD_GRAVITY_M_S2, Signal};
 use dropcheck::stages::{pulses, shock_response};
 use serde_json::Value;
@@ -154,5 +154,45 @@ fn spectra_are_of_channels_that_return_to_rest() {
         let first = rows.first().expect("a spectrum");
         assert!((value(first, 1) - 5.0).abs() < 1e-6, "{first:?}");
         assert!(rows.iter().all(|row| value(row, 2) > 0.0 && value(row, 3) > 0.0), "{name}");
+    }
+}
+
+#[test]
+fn a_drop_without_a_slap_down_says_what_kind_it_is_and_has_its_shocks() {
+    let scene = fs::read_to_string(fixture("scene-anf18.toml")).expect("the example scene");
+    let axial = |(name, end, position_m): (&str, &str, f64)| {
+        format!(
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"axial\"\nposition_m = {position_m}\n\
+             sample_rate_hz = 25000\nwhite_noise_g = 0.1\n"
+        )
+    };
+    let scene = scene + "\n" + &[("B1", "first", 0.15), ("B2", "second", 5.362)].map(axial).concat();
+    for (angle_deg, kind) in
+        [("0.1", "Flat drop"), ("1.0", "Flat drop"), ("81.0", "Corner drop"), ("89.0", "End drop")]
+    {
+        let bench = Bench::new();
+        let line = scene.lines().find(|line| line.starts_with("angle_deg")).expect("an angle");
+        let wide = scene.replace("full_scale = 2000.0", "full_scale = 6000.0");
+        let file = bench.put("scene.toml", wide.replacen(line, &format!("angle_deg = {angle_deg}"), 1));
+        let made = bench.0.path().join("drop.csv");
+        let answer = dropcheck(words!["synth", file, "--out", made]);
+        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        let cask = made.with_extension("toml");
+        let result = analyze(&made, &cask).json();
+        assert!(result["slap_down"]["speed"].is_null(), "{angle_deg}: {}", result["slap_down"]);
+        for name in ["A1", "A2", "B1", "B2"] {
+            let own = rows(&result, "shocks").iter().find(|row| row["channel"] == name);
+            assert!(own.is_some_and(|row| row["peak"].is_number()), "{angle_deg}: {name} {own:?}");
+        }
+        if angle_deg == "89.0" {
+            // The first end comes down with v0 and goes up with k v0; a part of it is the ringing's.
+            let own = rows(&result, "shocks").iter().find(|row| row["channel"] == "B1").expect("B1");
+            let change_m_s = number(own, "/velocity_change_m_s").expect("a change of velocity");
+            let truth_m_s = 1.55 * (2.0 * 9.81 * 9.0_f64).sqrt() * 89.0_f64.to_radians().sin();
+            assert!((change_m_s / truth_m_s - 1.0).abs() < 0.02, "{own}: {truth_m_s}");
+        }
+        let screen = dropcheck(words!["analyze", made, "--cask", cask]).stdout;
+        let first: String = screen.lines().take(3).map(|line| format!("{line} ")).collect();
+        assert!(first.starts_with(kind) && first.contains(" is expected"), "{angle_deg}: {screen}");
     }
 }
