@@ -9,6 +9,7 @@ pub mod pooled;
 pub mod prior_fit;
 pub mod projection;
 pub mod quadrature;
+pub mod rating;
 pub mod reduce;
 pub mod robust;
 pub mod root;
