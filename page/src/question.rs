@@ -117,10 +117,14 @@ impl Question {
 
     fn analysis(&self) -> Result<Analysis, Report> {
         let file = self.cask_file()?;
-        if file.rest.is_some() {
+        let other_files = [
+            ("`rest` out of [recording]", "rest", file.rest.is_some()),
+            ("[simulation] out", "calculation", file.simulation.is_some()),
+        ];
+        if let Some((key, what, _)) = other_files.into_iter().find(|(.., is_named)| *is_named) {
             return Err(miette!(
-                help = "take `rest` out of [recording] here, or analyse by the dropcheck command",
-                "{CASK_NAME}: the rest lies in a file of its own, which a page cannot open"
+                help = format!("take {key} here, or analyse by the dropcheck command"),
+                "{CASK_NAME}: the {what} lies in a file of its own, which a page cannot open"
             ));
         }
         let recording =

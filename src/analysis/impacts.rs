@@ -427,7 +427,11 @@ fn channel_peaks(
 
 /// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other
 /// end.
-fn stretches_s(events: &Events, second_left_s: Option<f64>, length_m: f64) -> [Option<[f64; 2]>; 2] {
+pub(super) fn stretches_s(
+    events: &Events,
+    second_left_s: Option<f64>,
+    length_m: f64,
+) -> [Option<[f64; 2]>; 2] {
     let wave_s = length_m / BENDING_WAVE_M_S;
     let stretch = |from: Option<f64>, to: Option<f64>, most_s: f64| {
         from.map(|from_s| [from_s, to.map_or(from_s + LONGEST_S, |to_s| to_s + wave_s).min(most_s)])

@@ -28,11 +28,12 @@ mod second_impact;
 mod second_look;
 mod setup;
 mod shocks;
+mod simulation;
 
 pub use check::check;
 pub use first_look::look_at_each;
 pub use plan::study;
-pub use rest::{read, read_within, take_rest};
+pub use rest::{read, read_files_beside, read_within};
 pub use setup::sticking;
 
 use crate::data::{
@@ -67,6 +68,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         others::add(recording, cask_file, &mut found);
         shocks::add(recording, cask_file, &mut found);
     });
+    simulation::add(recording, cask_file, &mut found);
     let result = &mut found.result;
     result.verdict = judge::verdict(&mut result.quality);
     judge::behind_the_motion(&mut result.quality, &result.other_channels);

@@ -1,6 +1,7 @@
 //! A recording and the file with the rest before the drop to the recording whose channels know what they
 //! read at rest.
 
+use super::simulation;
 use crate::data::shown;
 use crate::data::{
     CaskFile, Channel, Coupling, Finding, Recording, RestFile, RestFinding, RestLevel, RestReading, Signal,
@@ -35,15 +36,30 @@ pub fn read_within<'a>(
     progress: Progress,
 ) -> Result<Recording, IngestError> {
     let mut recording = ingest::read_within(recording, cask_file, limits, progress)?;
-    take_rest(&mut recording, cask_file, limits)?;
+    read_files_beside(&mut recording, cask_file, limits)?;
     Ok(recording)
+}
+
+/// Reads the files that the cask file names beside the recording, if any: the rest before the drop and the
+/// calculation.
+///
+/// # Errors
+/// [`IngestError`] where one cannot be read, or the rest is none of the same sensors.
+pub fn read_files_beside(
+    recording: &mut Recording,
+    file: &CaskFile,
+    limits: Limits,
+) -> Result<(), IngestError> {
+    take_rest(recording, file, limits)?;
+    recording.calculation = simulation::calculation(file, limits)?;
+    Ok(())
 }
 
 /// Gives the channels what they read at rest in the file that the cask file names, if it names one.
 ///
 /// # Errors
 /// [`IngestError`] where that file cannot be read, or is none of the same sensors at rest.
-pub fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
+fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
     let Some(path) = &file.rest else { return Ok(()) };
     let rest = ingest::read_within(path, file, limits, &|_| ())?;
     if rest.sha256 == recording.sha256 {

@@ -90,7 +90,7 @@ pub(super) fn of(
     signals.truncate(recorded);
     let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
-    let curves = move || Curves { channels: channels(), motion, others: vec![] };
+    let curves = move || Curves { channels: channels(), motion, ..Curves::default() };
     Analysis { openings, ..analysis(recording, file, result, curves) }
 }
 
@@ -169,6 +169,7 @@ fn result(
             cask_sha256: file.sha256.clone(),
             rest: recording.rest.as_ref().map(|rest| rest.path.display().to_string()),
             rest_sha256: recording.rest.as_ref().map(|rest| rest.sha256.clone()),
+            ..Input::default()
         },
         first_impact: FirstImpact::new(events.first_contact.map(time), quantities),
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),

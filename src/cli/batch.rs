@@ -164,7 +164,10 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
     let sha256 = |path: &Path| ingest::sha256(path).ok();
     let is_same_cask = |file: &CaskFile| {
         let rest_sha256 = file.rest.as_ref().map(|rest| sha256(rest));
-        input["cask_sha256"] == file.sha256 && input["rest_sha256"] == json!(rest_sha256)
+        let simulation_sha256 = file.simulation.as_ref().map(|simulation| sha256(&simulation.path));
+        input["cask_sha256"] == file.sha256
+            && input["rest_sha256"] == json!(rest_sha256)
+            && input["simulation_sha256"] == json!(simulation_sha256)
     };
     line["verdict"].is_string()
         && is_there()

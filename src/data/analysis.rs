@@ -17,6 +17,7 @@ use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use super::shocks::{FilteredPeak, Shock};
+use super::simulation::{CalculatedNumber, SimulationRow};
 use super::test_record::{Limit, LimitState, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -55,6 +56,12 @@ pub struct Input {
     /// Its SHA-256.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest_sha256: Option<String>,
+    /// The file of the calculation, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation: Option<String>,
+    /// Its SHA-256.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation_sha256: Option<String>,
 }
 
 /// How one analytical model stands against the measurement.
@@ -276,6 +283,11 @@ pub struct DropResult {
     pub observed: Vec<ObservedBeside>,
     /// The limits of the cask file, beside the result.
     pub limits: Vec<Limit>,
+    /// How the calculated curves agree with the measured ones.
+    pub simulation: Vec<SimulationRow>,
+    /// Numbers of the calculation beside the measured ones.
+    #[serde(skip)]
+    pub calculated: Vec<CalculatedNumber>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
     /// Every quantity that is null, with the finding that took it.

@@ -2,6 +2,7 @@
 
 use super::cask::{Cask, ChannelSpec, Contact, Drop, FilterChoice};
 use super::other::OtherSpec;
+use super::simulation::SimulationSpec;
 use super::test_record::{Letterhead, Limit, Observed, TestRecord};
 use super::tolerances::{Corrections, Tolerances};
 use std::borrow::Cow;
@@ -46,6 +47,8 @@ pub struct CaskFile {
     pub observed: Vec<Observed>,
     /// `[limits]`.
     pub limits: Vec<Limit>,
+    /// `[simulation]`.
+    pub simulation: Option<SimulationSpec>,
     /// `[report]`.
     pub letterhead: Letterhead,
     /// Whether the rotation before the contact is that of an angular-rate sensor.

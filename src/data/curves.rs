@@ -52,4 +52,7 @@ pub struct Curves {
     pub motion: Option<MotionCurve>,
     /// One for each channel that takes no part in the motion, where the first contact is known.
     pub others: Vec<OtherCurve>,
+    /// The calculated curves, laid over the measured ones of the same channels; unfiltered without the level
+    /// before first contact.
+    pub calculated: Vec<ChannelCurve>,
 }

@@ -17,7 +17,7 @@ const fn table(name: &'static str, remark: &'static str, keys: &'static [Key]) -
 }
 
 /// The tables of a cask file, in the order of the form.
-pub static TABLES: [KeyTable; 16] = [
+pub static TABLES: [KeyTable; 17] = [
     table("test", "for the head of the report; changes no number", &TEST),
     table("cask", "", &CASK),
     table("drop", "", &DROP),
@@ -32,6 +32,7 @@ pub static TABLES: [KeyTable; 16] = [
         "the customer's; exceeded, and exit status 1, where the whole interval lies beyond",
         &LIMITS,
     ),
+    table("simulation", "a calculation, laid over the recording and rated", &SIMULATION),
     table("report", "around the page report.html", &REPORT),
     table("channel", "", &CHANNEL),
     table("source", "", &SOURCE),
@@ -105,6 +106,15 @@ LIMITS {
 LIMIT {
     "least": "–", ANY, "0.2", "";
     "most": "–", ANY, "25.0", "";
+}
+
+/// Keys of `[simulation]`.
+SIMULATION {
+    "file": REQUIRED, Text, r#""fe.csv""#, "table of the calculated accelerations, beside this file";
+    "time": "found", Text, r#""t_s""#, "its column of times";
+    "unit": REQUIRED, Text, r#""m/s^2""#, r#"or "g""#;
+    "channels": REQUIRED, Table, r#"{ A2 = "N1234_az" }"#,
+        "the column of each channel, along the channel's axis and with its sign";
 }
 
 /// Keys of `[report]`.

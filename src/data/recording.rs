@@ -49,6 +49,8 @@ pub struct Recording {
     pub before_trigger_s: Option<f64>,
     /// The rest before the drop, where it is a file of its own.
     pub rest: Option<RestFile>,
+    /// The calculation beside the test, where the cask file names one.
+    pub calculation: Option<Box<Recording>>,
     /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
     pub issues: Vec<Finding>,
 }

@@ -9,6 +9,7 @@ mod range;
 mod record;
 pub(crate) mod section;
 mod settings;
+mod simulation;
 mod texts;
 pub(super) mod tolerance;
 mod wording;
@@ -161,6 +162,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
     let test = record::test(&root.table("test")?, photos)?;
     let observed = record::observed(&root.table("observed")?)?;
     let limits = record::limits(&root.table("limits")?)?;
+    let simulation = simulation::simulation(&root, folder, &channels)?;
     let letterhead = record::letterhead(&root.table("report")?, photos)?;
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
@@ -179,6 +181,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         test,
         observed,
         limits,
+        simulation,
         letterhead,
         defaults,
         ..CaskFile::plain(cask, drop, contact)

@@ -49,15 +49,15 @@ pub fn rate(reference: &[f64], curve: &[f64]) -> Option<CurveRating> {
     if count != curve.len() || count < 2 * SLOPE_WIDTH || least >= most {
         return None;
     }
-    let shift = best_shift(reference, curve);
     let most_steps = MOST_SHIFT * as_f64(count);
-    let [reference_at, curve_at] = shift.overlap(count);
+    let [reference_at, curve_at] = best_shift(reference, curve);
+    let steps = as_f64(count - curve_at.len());
     let (moved, against) = (&curve[curve_at], &reference[reference_at]);
     let slope_error = relative_difference(slopes(moved).zip(slopes(against)));
     let magnitude_error = relative_difference(warp_time(moved, against).into_iter());
     Some(CurveRating {
         corridor: corridor(reference, curve),
-        phase: (1.0 - as_f64(shift.steps) / most_steps).max(0.0),
+        phase: (1.0 - steps / most_steps).max(0.0),
         magnitude: (1.0 - magnitude_error / MOST_MAGNITUDE_ERROR).max(0.0),
         slope: (1.0 - slope_error / MOST_SLOPE_ERROR).max(0.0),
     })
@@ -78,37 +78,18 @@ fn relative_difference(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     if off > 0.0 { off / all } else { 0.0 }
 }
 
-/// By how many steps the curve is late or early.
-#[derive(Clone, Copy)]
-struct CurveShift {
-    steps: usize,
-    is_late: bool,
-}
-
-impl CurveShift {
-    /// The samples of the reference and of the curve that belong together.
-    fn overlap(self, count: usize) -> [Range<usize>; 2] {
-        let ranges = [0..count - self.steps, self.steps..count];
-        if self.is_late {
-            ranges
-        } else {
-            let [head, tail] = ranges;
-            [tail, head]
-        }
-    }
-}
-
-/// The smallest of the shifts that correlate best.
-fn best_shift(reference: &[f64], curve: &[f64]) -> CurveShift {
+/// The samples of the reference and of the curve that belong together by the smallest of the shifts that
+/// correlate best.
+fn best_shift(reference: &[f64], curve: &[f64]) -> [Range<usize>; 2] {
     let count = reference.len();
     let most = as_count(MOST_SHIFT * as_f64(count));
-    let shifts = (0..=most).flat_map(|steps| [true, false].map(|is_late| CurveShift { steps, is_late }));
-    let mut best = (f64::NEG_INFINITY, CurveShift { steps: 0, is_late: true });
-    for shift in shifts {
-        let [of_reference, of_curve] = shift.overlap(count);
-        let correlation = correlation(&reference[of_reference], &curve[of_curve]);
+    // A curve that is late by as much goes first.
+    let shifts = (0..=most).flat_map(|n| [[0..count - n, n..count], [n..count, 0..count - n]]);
+    let mut best = (f64::NEG_INFINITY, [0..count, 0..count]);
+    for [of_reference, of_curve] in shifts {
+        let correlation = correlation(&reference[of_reference.clone()], &curve[of_curve.clone()]);
         if correlation > best.0 {
-            best = (correlation, shift);
+            best = (correlation, [of_reference, of_curve]);
         }
     }
     best.1

@@ -12,6 +12,7 @@ use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction}
 use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::shocks::shocks;
+use super::simulation::simulation;
 use super::text::{
     Style, causes, determined, dropped, json_word, reasons, sentence, span_text, tail, taken_mark,
     true_minus, verdict_sentence, verdict_style, verdict_word, yes,
@@ -68,6 +69,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             shocks(result),
             prototype(result, file),
             comparison(result, file),
+            simulation(result),
             record::observed(&result.observed),
             record::limits(&result.limits),
             quality(&result.quality).only(Medium::Page),
@@ -317,6 +319,8 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         hash("SHA-256 of the cask file", Some(&input.cask_sha256)),
         words("Rest before the drop", input.rest.as_deref()),
         hash("SHA-256 of the rest", input.rest_sha256.as_deref()),
+        words("Calculation", input.simulation.as_deref()),
+        hash("SHA-256 of the calculation", input.simulation_sha256.as_deref()),
         words("Program", Some(&program(result))),
         hash("SHA-256 of the program", own),
         words("Schema of result.json", Some(result.schema)),

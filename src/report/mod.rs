@@ -37,6 +37,7 @@ mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
 mod shocks;
+mod simulation;
 mod srs;
 pub(crate) mod table;
 mod template;

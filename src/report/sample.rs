@@ -110,6 +110,8 @@ fn result() -> DropResult {
         test: crate::data::TestRecord::default(),
         observed: Vec::new(),
         limits: Vec::new(),
+        simulation: Vec::new(),
+        calculated: Vec::new(),
         prototype: None,
         keys: serde_json::Value::Null,
         cask_text: "[cask]".into(),
@@ -122,6 +124,8 @@ fn result() -> DropResult {
             cask_sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
             rest: None,
             rest_sha256: None,
+            simulation: None,
+            simulation_sha256: None,
         },
         first_impact: FirstImpact {
             time: estimate(CONTACT_S, 0.000_012, "s"),
@@ -375,6 +379,7 @@ fn curves() -> Curves {
         channels: vec![channel("A1", &time_s, &first), channel("A2", &time_s, &second)],
         motion: Some(motion()),
         others: Vec::new(),
+        calculated: Vec::new(),
     }
 }
 

@@ -40,6 +40,7 @@ mod scale_model;
 mod sentences;
 mod shocks;
 mod short_flights;
+mod simulation;
 mod slips;
 mod stages;
 mod stiff;

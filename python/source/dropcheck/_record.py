@@ -204,6 +204,7 @@ class Result(Answer):
     shocks: list[Shock]
     filters: list[FilteredPeak]
     missing: list[Record]
+    simulation: list[Record]
 
     def __init__(self, analysis: _dropcheck.Analysis) -> None:
         super().__init__(analysis.json())

@@ -79,5 +79,6 @@ issue_codes! {
     RestitutionRange, "Drop": "k is outside 0 to 1";
     Disagreement, "Drop": "measured and predicted differ by more than their intervals";
     Observed, "Drop": "the result and another observation differ by more than their intervals";
+    Simulation, "Drop": "a calculated curve cannot be rated, or reading it found something";
     FlightFit, "Drop": "the flight is too short, or not explained by plateau and modes";
 }

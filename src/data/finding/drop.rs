@@ -37,6 +37,11 @@ pub enum DropFinding of Drop {
     NoSlapDown { after_s: f64 } => (Code::NoSlapDown, Error, SlapDown),
         ("no slap-down within {:.0} ms after the first end left the target: the second end shows no impact",
          1e3 * after_s);
+    /// A calculated curve that cannot be laid over the measured one.
+    NotRated { why: String } => (Code::Simulation, Note, Nothing), ("the calculation is not rated: {why}");
+    /// Of the file with the calculation.
+    InCalculation { file: String, found: String } => (Code::Simulation, Note, Nothing),
+        ("in the calculation, {file}: {found}");
     /// The flight is too short to be fitted.
     ShortFlight => (Code::FlightFit, Error, Motion),
         ("the free flight between the impacts is too short to be separated from them and from ringing");

@@ -19,6 +19,7 @@ pub(super) fn require_no_blanks(root: &Section) -> Result<(), IngestError> {
     for table in TABLES.iter().filter(|table| !INNER_TABLES.contains(&table.name)) {
         let sections = match table.name {
             "channel" => root.tables(table.name)?,
+            "simulation" if root.value("simulation").is_none() => vec![],
             name => vec![root.table(name)?],
         };
         for (index, section) in sections.iter().enumerate() {

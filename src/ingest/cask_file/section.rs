@@ -25,8 +25,8 @@ pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[], tabl
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
 
-/// The table whose keys are the user's own.
-const OWN_NAMES: &str = "more";
+/// The tables whose keys are the user's own.
+const OWN_NAMES: [&str; 2] = ["more", "columns"];
 
 /// A table as a person finds it in a file.
 fn titled(name: &str) -> String {
@@ -37,6 +37,7 @@ fn titled(name: &str) -> String {
         "observation" => "{ value = …, u95 = … }".into(),
         "limit" => "{ least = …, most = … }".into(),
         "more" => "[test.more]".into(),
+        "columns" => "{ CHANNEL = \"column\" }".into(),
         name => format!("[{name}]"),
     }
 }
@@ -92,7 +93,7 @@ impl<'a> Document<'a> {
         span: Range<usize>,
     ) -> Result<Section<'a>, IngestError> {
         let section = Section { document: self, name, table, span };
-        if name == OWN_NAMES {
+        if OWN_NAMES.contains(&name) {
             return Ok(section);
         }
         match section.table.keys().find(|key| !section.keys().contains(&key.get_ref().as_ref())) {

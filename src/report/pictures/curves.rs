@@ -19,7 +19,9 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
     let panels = [(End::First, "First end"), (End::Second, "Second end")].map(|(end, title)| {
         let channels = channel_lines(analysis).filter(|line| line.end == end);
         let lines = channels.flat_map(|line| line.decelerations(0..line.curve.time_s.len()));
-        panel(analysis, title, "deceleration, g", lines.collect())
+        let calculated = calculated_lines(analysis).filter(|line| line.end == end);
+        let calculated = calculated.map(|line| line.calculated_deceleration(0..line.curve.time_s.len()));
+        panel(analysis, title, "deceleration, g", lines.chain(calculated).collect())
     });
     let filter = analysis
         .result
@@ -45,11 +47,13 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
     let impact = |title: &str, from: Option<f64>, to: Option<f64>| {
         let lines = from.map_or_else(Vec::new, |from| {
             let to = to.unwrap_or(from + LONGEST_S);
-            let decelerations = |line: ChannelLine| {
+            let shown = |line: &ChannelLine| {
                 let at = |time_s: f64| line.curve.time_s.partition_point(|s| *s < time_s);
-                line.decelerations(at(from - BESIDE_S)..at(to + BESIDE_S))
+                at(from - BESIDE_S)..at(to + BESIDE_S)
             };
-            channel_lines(analysis).flat_map(decelerations).collect()
+            let lines = channel_lines(analysis).flat_map(|line| line.decelerations(shown(&line)));
+            let calculated = calculated_lines(analysis);
+            lines.chain(calculated.map(|line| line.calculated_deceleration(shown(&line)))).collect()
         });
         panel(analysis, title, "deceleration, g", lines)
     };
@@ -61,6 +65,7 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
         "Specific force of every channel about both impacts, unfiltered (faint) and filtered (bold).";
     // They are part of the accelerations where these are not thinned.
     let count: usize = channel_lines(analysis).map(|line| 2 * line.curve.time_s.len()).sum();
+    let count = count + calculated_lines(analysis).map(|line| line.curve.time_s.len()).sum::<usize>();
     let lines_of = if count > MOST_VALUES { "" } else { "accelerations" };
     Plate::new("impacts", "Both impacts", caption).live_of(lines_of).picture(&panels)
 }
@@ -98,7 +103,10 @@ pub(super) fn velocities(analysis: &Analysis) -> Picture {
             .named(format!("{} ({} end{note})", curve.channel, json_word(end)))
             .broken(dash)
     };
-    let sensors = channels.into_iter().map(sensor).collect();
+    let calculated =
+        |line: ChannelLine| line.calculated(0..line.curve.time_s.len(), |c| &c.velocity_m_s, 1.0);
+    let calculated = calculated_lines(analysis).map(calculated);
+    let sensors = channels.into_iter().map(sensor).chain(calculated).collect();
     let mut panels = vec![panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
     if let Some(motion) = &analysis.curves.motion {
         let line = |label: &str, colour: usize, dash, values: &[f64]| {
@@ -199,7 +207,26 @@ pub(super) fn channel_lines(analysis: &Analysis) -> impl Iterator<Item = Channel
     })
 }
 
+/// The calculated curves, in the colours of the measured ones.
+fn calculated_lines(analysis: &Analysis) -> impl Iterator<Item = ChannelLine<'_>> {
+    analysis.curves.calculated.iter().filter_map(|curve| {
+        let measured = channel_lines(analysis).find(|line| line.curve.channel == curve.channel)?;
+        Some(ChannelLine { curve, ..measured })
+    })
+}
+
 impl ChannelLine<'_> {
+    /// A calculated curve over these samples, dotted.
+    fn calculated(&self, samples: Range<usize>, of: fn(&ChannelCurve) -> &Vec<f64>, factor: f64) -> Curve {
+        let (time_s, values) = (&self.curve.time_s[samples.clone()], &of(self.curve)[samples]);
+        let line = Curve::new(self.colour, points(time_s, values, factor));
+        line.named(format!("{} calculated", self.curve.channel)).broken(Dash::Dotted)
+    }
+
+    fn calculated_deceleration(&self, samples: Range<usize>) -> Curve {
+        self.calculated(samples, |curve| &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2)
+    }
+
     /// How its line is broken, and what its name is followed by: an axial one stands out.
     fn look(&self) -> (Dash, &'static str) {
         match self.axis {
