@@ -283,7 +283,7 @@ impl<'a> Overlay<'a> {
             let Some((measured, pulse)) = measured.zip(pulse) else { continue };
             let (g, length_s) = (STANDARD_GRAVITY_M_S2, pulse.length.map(|length| length.length_s));
             for (what, unit, size, begin, own, other) in [
-                ("peak", "g", g, 0.0, measured.peak_filtered, Some(pulse.filtered_m_s2)),
+                ("peak", "g", g, 0.0, measured.peak_filtered, Some(pulse.filtered)),
                 ("pulse", "ms", 1e-3, 0.0, measured.pulse_length, length_s),
                 ("peak after first contact", "ms", 1e-3, contact_s, measured.time, Some(pulse.time_s)),
             ] {
