@@ -35,8 +35,10 @@ impl<'a> MmeFiles<'a> {
         let io = |source| error::io(path, &source);
         let is_folder = recording.is_folder();
         let zipped = if is_folder { Vec::new() } else { zip::entries(recording).map_err(io)? };
+        // A zip may hold one name twice.
+        let in_zip = zipped.iter().map(|(name, _)| name.clone());
+        let names = if is_folder { in_folder(path).map_err(io)? } else { in_zip.collect() };
         let zipped: BTreeMap<String, ZipEntry> = zipped.into_iter().collect();
-        let names = if is_folder { in_folder(path).map_err(io)? } else { zipped.keys().cloned().collect() };
         // Those of "._" are a Mac's remarks on files.
         let is_header = |name: &&String| {
             name.to_ascii_lowercase().ends_with(".mme") && !name.starts_with("._") && !name.contains("/._")
