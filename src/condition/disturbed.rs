@@ -146,7 +146,10 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
             let least = if is_noisy { LEAST_QUIET_RUN } else { usize::MAX };
             #[allow(clippy::float_cmp, reason = "a limit repeats to the bit")]
             let at_limit = (force[from] == low || force[from] == high) && force[from] != 0.0;
-            (to - from >= least || jumps) && !at_limit && !is_lost(signal, from)
+            (to - from >= least || jumps)
+                && !at_limit
+                && !is_lost(signal, from)
+                && !is_rounded(force, from..to)
         })
         .map(|(from, to)| Span { from, to })
         .collect();
@@ -161,6 +164,23 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     signal.gaps.sort_by_key(|gap| gap.from);
     let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
     Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+}
+
+/// Whether equal samples are one step of numbers cut to three digits, as `7.27E+02`: they rise and fall about
+/// the run by whole steps of a size that goes with theirs.
+fn is_rounded(force: &[f64], run: Range<usize>) -> bool {
+    /// The last of three digits is no less a part of the number.
+    const LEAST_STEP: f64 = 9e-4;
+    let about = force.get(run.start.saturating_sub(AROUND)..run.end + AROUND).unwrap_or_default();
+    let step = |pair: &[f64]| (pair[1] - pair[0]).abs();
+    let steps = || about.windows(2).map(step).filter(|step| *step > 0.0);
+    let least = steps().fold(f64::INFINITY, f64::min);
+    let is_whole = |step: f64| (step / least - (step / least).round()).abs() < 0.05;
+    let mut ends = [run.start, run.end].into_iter().filter_map(|at| force.get(at.checked_sub(1)?..=at));
+    least >= LEAST_STEP * force[run.start].abs()
+        && steps().count() > LEAST_RUN
+        && steps().all(is_whole)
+        && ends.all(|end| step(end) < 1.5 * least)
 }
 
 /// Runs of [`LEAST_RUN`] equal samples and more, from the first step between them to behind the last: each
