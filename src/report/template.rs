@@ -92,9 +92,11 @@ fn head(listing: &Listing) -> Vec<String> {
     for table in TABLES.iter().take_while(|table| table.name != "channel") {
         let mark = if table.keys.iter().any(|key| key.is_asked) { "" } else { "# " };
         out.push(entry(&format!("{mark}[{}]", table.name), table.remark));
-        out.extend(table.keys.iter().map(|key| match time.filter(|_| table.name == "recording") {
-            Some(time) => entry(&format!("# time = {}", quoted(&time.source)), key.remark),
-            None => key_line(key),
+        out.extend(table.keys.iter().map(|key| {
+            match time.filter(|_| (table.name, key.name) == ("recording", "time")) {
+                Some(time) => entry(&format!("# time = {}", quoted(&time.source)), key.remark),
+                None => key_line(key),
+            }
         }));
         out.push(String::new());
     }
