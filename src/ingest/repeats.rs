@@ -2,13 +2,15 @@
 //! and blocks that were written twice.
 
 use crate::data::{Channel, ChannelFinding, Finding, Samples, Span, TimesFinding};
-use crate::numerics::{as_f64, robust};
+use crate::numerics::{as_f64, extent, robust};
 use std::collections::HashMap;
 
 /// Samples count that are this part of the largest, from the median: only those of a shock move a velocity.
 const LARGE: f64 = 0.05;
 /// So many large samples are looked at.
 const MOST_LARGE: usize = 1 << 18;
+/// Rows after which the first of several sensors may come again: of two, three and five, singly or in blocks.
+const TURNS: [usize; 7] = [2, 3, 4, 5, 6, 8, 16];
 /// The rows are cut into so many parts of equal energy, which must all show the same factors.
 const PARTS: usize = 6;
 /// Large samples a sensor, weighted by their energy, below which chance or a short pulse makes factors.
@@ -21,6 +23,8 @@ const ALIKE: f64 = 0.35;
 const WINDOW: usize = 4;
 /// Bits by which a run must be less likely than chance among all pairs of rows.
 const CERTAIN_BITS: f64 = 30.0;
+/// A window that comes more often is of a periodic signal.
+const MOST_COPIES: usize = 3;
 /// More runs that repeat are those of a periodic signal.
 const MOST_RUNS: usize = 8;
 
@@ -55,42 +59,65 @@ impl<'a> Centred<'a> {
     }
 }
 
-/// The factor between two sensors whose samples stand by turns, the lesser over the larger: odd rows against
-/// the interpolation of the even ones and the other way round, where it is the same throughout the recording.
-fn factor_by_turns(samples: &Samples) -> Option<f64> {
+/// Rows of several sensors by turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Turns {
+    /// Rows after which the first sensor comes again.
+    rows: usize,
+    /// The least of the sensors over the largest.
+    factor: f64,
+}
+
+/// The turns that the samples show: rows against the mean over all sensors about them, where the same pattern
+/// returns throughout the recording.
+fn turns(samples: &Samples) -> Option<Turns> {
     let centred = Centred::of(samples);
-    let about = |row: usize| (centred.at(row - 1) + 2.0 * centred.at(row) + centred.at(row + 1)) / 4.0;
-    let is_inside = |row: &usize| *row > 0 && row + 1 < samples.len();
-    let rows = centred.large().filter(is_inside).map(|row| (row, about(row)));
+    let large: Vec<usize> = centred.large().collect();
+    TURNS.into_iter().find_map(|rows| Some(Turns { rows, factor: factor_of(&centred, &large, rows)? }))
+}
+
+fn factor_of(centred: &Centred, large: &[usize], turn: usize) -> Option<f64> {
+    let half = turn / 2;
+    let mean = |row: usize| {
+        let ends = centred.at(row - half) + centred.at(row + half);
+        let inner: f64 = (row - half + 1..row + half).map(|near| centred.at(near)).sum();
+        // An even number of rows has its two ends half.
+        (inner + if turn.is_multiple_of(2) { ends / 2.0 } else { ends }) / as_f64(turn)
+    };
+    let is_inside = |row: &&usize| **row >= half && **row + half < centred.samples.len();
+    let rows = large.iter().filter(is_inside).map(|row| (*row, mean(*row)));
     let rows: Vec<(usize, f64)> = rows.filter(|(_, mean)| mean.is_finite()).collect();
     let energy: f64 = rows.iter().map(|(_, mean)| mean * mean).sum();
     let fourth: f64 = rows.iter().map(|(_, mean)| mean.powi(4)).sum();
-    if energy * energy < 2.0 * LEAST_ROWS * fourth || energy <= 0.0 {
+    if energy * energy < as_f64(turn) * LEAST_ROWS * fourth || energy <= 0.0 {
         return None;
     }
-    // Of each part, of even and odd rows: the products and the squares.
-    let mut sums = [[(0.0, 0.0); 2]; PARTS];
+    // Of each part, of each sensor: the products and the squares.
+    let mut sums = vec![vec![[0.0; 2]; turn]; PARTS];
     let mut before = 0.0;
     for (row, mean) in rows {
         let part = (0..PARTS - 1).find(|part| before < energy * as_f64(part + 1) / as_f64(PARTS));
-        let (products, squares) = &mut sums[part.unwrap_or(PARTS - 1)][row % 2];
+        let [products, squares] = &mut sums[part.unwrap_or(PARTS - 1)][row % turn];
         (*products, *squares) = (*products + centred.at(row) * mean, *squares + mean * mean);
         before += mean * mean;
     }
-    let difference = |[even, odd]: [(f64, f64); 2]| even.0 / even.1 - odd.0 / odd.1;
-    let add = |all: [(f64, f64); 2], part: &[(f64, f64); 2]| {
-        [0, 1].map(|row| (all[row].0 + part[row].0, all[row].1 + part[row].1))
+    let pattern = |sums: &dyn Fn(usize) -> [f64; 2]| -> Vec<f64> {
+        let factors: Vec<f64> = (0..turn).map(|sensor| sums(sensor)[0] / sums(sensor)[1]).collect();
+        let mean = factors.iter().sum::<f64>() / as_f64(turn);
+        factors.iter().map(|factor| factor / mean).collect()
     };
-    let whole = difference(sums.iter().fold([(0.0, 0.0); 2], add));
-    let is_alike = |part: &[(f64, f64); 2]| (difference(*part) - whole).abs() <= ALIKE * whole.abs();
-    let is_so = whole.abs() >= LEAST_DIFFERENCE && sums.iter().all(is_alike);
-    is_so.then(|| (2.0 - whole.abs()) / (2.0 + whole.abs()))
+    let whole = pattern(&|sensor| [0, 1].map(|sum| sums.iter().map(|part| part[sensor][sum]).sum()));
+    let off = |other: &[f64]| whole.iter().zip(other).map(|(own, other)| (own - other).powi(2)).sum::<f64>();
+    let (least, most) = extent(whole.iter().copied());
+    let size = off(&vec![1.0; turn]);
+    let is_alike = |part: &Vec<[f64; 2]>| off(&pattern(&|sensor| part[sensor])) <= ALIKE * ALIKE * size;
+    (most - least >= LEAST_DIFFERENCE && sums.iter().all(is_alike)).then_some(least / most)
 }
 
 /// Says of a channel that its rows are of several sensors by turns, where its samples show it.
 pub(super) fn by_turns(channel: &Channel) -> Option<Finding> {
-    let factor = factor_by_turns(&channel.samples)?;
-    Some(ChannelFinding::ByTurns { factor }.on(&channel.name))
+    let Turns { rows, factor } = turns(&channel.samples)?;
+    Some(ChannelFinding::ByTurns { rows, factor }.on(&channel.name))
 }
 
 /// Takes blocks that were written a second time for lost, with a finding for each: in all channels of one
@@ -102,20 +129,26 @@ pub(super) fn drop_repeated(channels: &mut [Channel], issues: &mut Vec<Finding>)
     clocks.dedup();
     for own in clocks {
         let mut together: Vec<&mut Channel> = channels.iter_mut().filter(|c| clock(c) == own).collect();
-        let runs = runs(&together.iter().map(|c| Centred::of(&c.samples)).collect::<Vec<_>>());
-        for channel in &mut together {
-            for &RepeatedRun { from, copy, count } in &runs {
-                let time_s = |row: usize| channel.start_s + as_f64(row) / channel.sample_rate_hz;
-                let found =
-                    TimesFinding::Repeated { samples: count, of_s: time_s(from), from_s: time_s(copy) };
-                issues
-                    .push(Finding::from(found).between(time_s(copy), time_s(copy + count)).on(&channel.name));
-                let span = Span { from: copy, to: copy + count };
-                channel.samples.lose(span);
-                channel.gaps.push(span);
-            }
-            channel.gaps.sort_by_key(|span| span.from);
+        lose_repeated(&mut together, issues);
+        // A driver of its own may have written one of them.
+        if together.len() > 1 {
+            together.into_iter().for_each(|channel| lose_repeated(&mut [channel], issues));
         }
+    }
+}
+
+fn lose_repeated(together: &mut [&mut Channel], issues: &mut Vec<Finding>) {
+    let runs = runs(&together.iter().map(|c| Centred::of(&c.samples)).collect::<Vec<_>>());
+    for channel in together {
+        for &RepeatedRun { from, copy, count } in &runs {
+            let time_s = |row: usize| channel.start_s + as_f64(row) / channel.sample_rate_hz;
+            let found = TimesFinding::Repeated { samples: count, of_s: time_s(from), from_s: time_s(copy) };
+            issues.push(Finding::from(found).between(time_s(copy), time_s(copy + count)).on(&channel.name));
+            let span = Span { from: copy, to: copy + count };
+            channel.samples.lose(span);
+            channel.gaps.push(span);
+        }
+        channel.gaps.sort_by_key(|span| span.from);
     }
 }
 
@@ -142,8 +175,9 @@ fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
         whole.map(|&row| ((row..row + WINDOW).flat_map(bits).fold(0xcbf2_9ce4, mix), row)).collect();
     windows.sort_unstable();
     let mut found: Vec<RepeatedRun> = Vec::new();
-    for same in windows.chunk_by(|one, other| one.0 == other.0).filter(|same| same.len() == 2) {
-        let (one, other) = (same[0].1, same[1].1);
+    let same = windows.chunk_by(|one, other| one.0 == other.0).filter(|same| same.len() <= MOST_COPIES);
+    for pair in same.flat_map(|same| same.windows(2)) {
+        let (one, other) = (pair[0].1, pair[1].1);
         let is_known = |run: &RepeatedRun| {
             run.copy - run.from == other - one && (run.copy..run.copy + run.count).contains(&other)
         };
@@ -154,11 +188,11 @@ fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
         let back = (1..=one).take_while(|back| are_same(one - back, other - back)).count();
         let on = (0..rows - other).take_while(|on| are_same(one + on, other + on)).count();
         let (from, count) = (one - back, back + on);
-        // What begins and ends at rest is an event that came twice; what overlaps itself, or reaches an end
-        // of the recording, is periodic.
+        // What begins and ends at rest is an event that came twice; what comes more than three times, or
+        // reaches an end of the recording, is periodic.
         let is_cut = is_large(from) || is_large(from + count - 1);
         let is_inside = from > 0 && from + lag + count < rows;
-        if count <= lag && count >= WINDOW && is_cut && is_inside {
+        if count <= 2 * lag && count >= WINDOW && is_cut && is_inside {
             found.push(RepeatedRun { from, copy: from + lag, count });
         }
     }
@@ -166,8 +200,10 @@ fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
         return found;
     }
     let known = channels.iter().map(|channel| Frequencies::of(channel, &large)).collect::<Vec<_>>();
-    let certain = CERTAIN_BITS + 2.0 * as_f64(large.len()).log2();
-    found.retain(|&RepeatedRun { from, count, .. }| {
+    let each = as_f64(large.len()).log2();
+    found.retain(|&RepeatedRun { from, copy, count }| {
+        // What stands right behind its original has one place instead of any.
+        let certain = CERTAIN_BITS + if from + count >= copy { each } else { 2.0 * each };
         let inner = from + 1..from + count - 1;
         let own = known.iter().map(|known| inner.clone().map(|row| known.bits(row)).sum::<f64>());
         own.sum::<f64>() >= certain
@@ -239,7 +275,7 @@ mod tests {
     }
 
     fn factor(samples: Vec<f64>) -> Option<f64> {
-        factor_by_turns(&Samples::F64(samples))
+        turns(&Samples::F64(samples)).map(|turns| turns.factor)
     }
 
     #[test]
@@ -249,6 +285,14 @@ mod tests {
             let found = factor(rows.map(|(i, x)| if i % 2 == 0 { x } else { other * x }).collect());
             let expected = f64::min(other, 1.0 / other);
             assert!((found.unwrap() - expected).abs() < 0.02, "{other}: {found:?}");
+        }
+        for (turn, own) in
+            [(3, &[1.0, 0.8, 1.1][..]), (4, &[1.0, 1.0, 0.8, 0.8]), (5, &[1.0, 0.8, 0.9, 1.1, 0.85])]
+        {
+            let rows = shocks(10.0 * as_f64(turn), 0.3, 1e3).into_iter().enumerate();
+            let found = turns(&Samples::F64(rows.map(|(i, x)| own[i % turn] * x).collect())).unwrap();
+            assert_eq!(found.rows, turn);
+            assert!((found.factor - if turn == 4 { 0.8 } else { 0.8 / 1.1 }).abs() < 0.02, "{found:?}");
         }
         for rate in [1.0, 2.0, 5.0, 10.0, 20.0, 100.0] {
             for (noise, digits) in [(0.0, 1e9), (0.3, 1e3), (30.0, 1e3), (0.3, 0.05)] {
@@ -279,6 +323,15 @@ mod tests {
                 assert!(!is_certain || found(&a, &b) == [run], "{rate} {noise}: {:?}", found(&a, &b));
             }
         }
+        let alone = |samples: &[f64]| runs(&[Centred::of(&Samples::F64(samples.to_vec()))]);
+        let mut once = shocks(10.0, 0.3, 1e3);
+        assert_eq!(alone(&once), []);
+        once.copy_within(502..514, 514);
+        assert_eq!(alone(&once), [RepeatedRun { from: 502, copy: 514, count: 12 }]);
+        let mut thrice = shocks(10.0, 0.3, 1e3);
+        thrice.copy_within(502..508, 508);
+        thrice.copy_within(502..508, 514);
+        assert_eq!(found(&thrice, &thrice), [RepeatedRun { from: 502, copy: 508, count: 12 }]);
         let hum: Vec<f64> = (0..2000).map(|i| (f64::from(i % 200) * 0.0314).sin()).collect();
         assert_eq!(found(&hum, &hum), []);
     }

@@ -161,11 +161,11 @@ pub enum ChannelFinding {
          peak and crush are those of a smoothed pulse (a half sine of {:.1} ms loses {:.0} %, a sharper one \
          more); the velocity stands. Set the low-pass of amplifier or recorder higher",
          1e3 * rise_s, 1e3 * contact_s, 100.0 * lost);
-    /// Rows of two sensors by turns, with the factor between them.
-    ByTurns { factor: f64 } => (Code::Scale, Error, Motion),
-        ("holds the rows of two sensors by turns: throughout the shocks every other row reads {:.2} of its \
-         neighbours; where a column tells them apart take one, `where = {{ column = …, is = … }}`, else \
-         write every other row into a file of its own", factor);
+    /// Rows of several sensors by turns, after how many the first comes again, with the factor between them.
+    ByTurns { rows: usize, factor: f64 } => (Code::Scale, Error, Motion),
+        ("holds the rows of several sensors by turns: throughout the shocks the same pattern returns every \
+         {rows} rows, in which one reads {factor:.2} of another; where a column tells them apart take one, \
+         `where = {{ column = …, is = … }}`, else write the rows of each into a file of its own");
     /// Samples beyond the full scale that the cask file states.
     BeyondFullScale { reads_m_s2: f64, full_scale_m_s2: f64 } => (Code::Clipped, Warning, Nothing),
         ("reads up to {:.0} g and has a `full_scale` of {:.0} g: what it reads beyond its full scale is no \
