@@ -116,12 +116,23 @@ impl Layout {
         })
     }
 
-    /// The column of times of a channel: where several have the header of times, the nearest on its left.
+    /// The column of times of a channel: where several head columns of their own, the nearest on its left.
     pub(super) fn time_of(&self, column: usize) -> Option<usize> {
         let found = self.times.taken.filter(|&found| found != column)?;
         let is_alike =
             |c: &usize| self.columns[*c].is_numeric && self.columns[*c].header == self.columns[found].header;
-        Some((0..column).rev().find(is_alike).unwrap_or(found))
+        let is_it = |c: &usize| is_alike(c) || self.is_clock(*c);
+        Some((0..column).rev().find(is_it).unwrap_or(found))
+    }
+
+    /// Whether a column of times heads columns of its own, as the second one of `Zeit 1, A1, Zeit 2, A2`.
+    fn is_clock(&self, column: usize) -> bool {
+        let is_time = |column: usize| self.times.sure.contains(&column);
+        let is_first = column == 0 || !is_time(column - 1);
+        let mut behind = (column + 1..self.columns.len()).skip_while(|c| is_time(*c));
+        self.times.clocks.contains(&column)
+            && is_first
+            && behind.next().is_some_and(|behind| self.columns[behind].is_numeric)
     }
 
     /// Whether a column is certain to hold times.
@@ -137,14 +148,14 @@ impl Layout {
     /// The other columns of times, which have to bear out those of column `time`; each with whether other
     /// columns stand between.
     ///
-    /// One of the same header with columns between is the clock of those.
+    /// One of the same header, or each at the left of its own columns, is the clock of those.
     pub(super) fn witnesses(&self, time: usize) -> Vec<(usize, bool)> {
         let is_apart =
             |&c: &usize| (c.min(time)..c.max(time)).any(|i| i != time && !self.times.sure.contains(&i));
         let others = self.times.sure.iter().filter(|&&c| c != time).map(|c| (*c, is_apart(c)));
-        others
-            .filter(|&(c, is_apart)| !is_apart || self.columns[c].header != self.columns[time].header)
-            .collect()
+        let is_other = |c: usize| self.is_clock(c) && self.is_clock(time);
+        let is_alike = |c: usize| self.columns[c].header == self.columns[time].header;
+        others.filter(|&(c, is_apart)| !is_apart || !(is_alike(c) || is_other(c))).collect()
     }
 
     /// A column, none of `taken`, by which the rows are of several sensors, with these; `own` is the column

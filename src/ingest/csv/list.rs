@@ -20,6 +20,7 @@ use crate::data::{
 };
 use crate::ingest::ReadRequest;
 use crate::ingest::assemble::shifted;
+use crate::ingest::time_base::Uniform;
 use crate::numerics::{as_f64, extent};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -139,7 +140,16 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let values: Vec<(usize, Option<usize>)> =
         (0..layout.columns.len()).map(|column| (column, time_of(column))).collect();
     let all = Wanted::new(&values, &[]);
-    let plans = [plan(&layout)];
+    let mut clocks = vec![time_column];
+    clocks.extend((0..layout.columns.len()).filter(|column| is_timed(*column)).map(|c| layout.time_of(c)));
+    let mut seen = Vec::new();
+    clocks.retain(|clock| {
+        clock.is_some() == time_column.is_some() && !seen.contains(clock) && {
+            seen.push(*clock);
+            true
+        }
+    });
+    let plans: Vec<ColumnPlan> = clocks.iter().map(|clock| plan(&layout, *clock)).collect();
     let kept = Wanted::of(&plans, &layout);
     let columns = vec![HeldColumn::default(); kept.columns.len()];
     let mut survey = Survey::of(&all, Table::new(&layout, &plans, &kept, columns));
@@ -148,25 +158,29 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         .map_err(|error| row_error(request, (&layout, &all), error))?;
     let Survey { kept: table, ranges, filled: rows, .. } = survey;
     let mut issues = Vec::from_iter(ending.map(Finding::from));
-    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|refusal| {
+    let mut listed_clocks = ListedClock::all(table, &mut issues).unwrap_or_else(|refusal| {
         issues.push(ClockFinding::Refused(refusal.beside("")).into());
-        ListedClock::default()
+        Vec::new()
     });
-    issues.extend(layout.preamble.of_rows(rows, clock.samples));
+    listed_clocks.resize_with(clocks.len(), ListedClock::default);
+    listed_clocks.iter_mut().for_each(|clock| clock.is_one_of_several = clocks.len() > 1);
+    issues.extend(layout.preamble.of_rows(rows, listed_clocks[0].samples));
     let mut channels = Vec::new();
     for (index, column) in layout.columns.iter().enumerate().filter(|(index, _)| Some(*index) != time_column)
     {
+        let own = clocks.iter().position(|clock| *clock == layout.time_of(index)).unwrap_or_default();
+        let clock = &listed_clocks[own];
         let sensors = layout.sensors.first().filter(|it| it.column != index && column.is_numeric);
         let Some(sensors) = sensors else {
             let is_it = layout.sensors.first().is_some_and(|it| it.column == index);
             let unreadable = is_it.then(|| "tells the rows of several sensors apart".to_owned());
-            let listed = listed(column, &ranges[index], 0, &clock, rows);
+            let listed = listed(column, &ranges[index], 0, clock, rows);
             channels.push(if is_it { ListedChannel { unreadable, range: None, ..listed } } else { listed });
             continue;
         };
         for (sensor, is) in sensors.named(None).into_iter().enumerate() {
             let rows_of = RowsOf { column: layout.columns[sensors.column].header.clone(), is: is.to_owned() };
-            let listed = listed(column, &ranges[index], sensor, &clock, rows);
+            let listed = listed(column, &ranges[index], sensor, clock, rows);
             channels.push(ListedChannel { rows: Some(rows_of), ..listed });
         }
     }
@@ -176,17 +190,16 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
             ("columns".into(), layout.columns.len() as u64),
             ("preamble_lines".into(), layout.preamble_lines),
         ]),
-        facts: facts(&layout, encoding),
+        facts: facts(&layout, encoding, &clocks),
         channels,
         issues,
         ..Listing::of(path, bytes, RecordingFormat::Csv)
     })
 }
 
-/// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the
-/// times that were found.
-fn plan(layout: &Layout) -> ColumnPlan {
-    let time_column = layout.times.taken;
+/// What a channel would take whose cask file says nothing but its source: the first column of numbers on
+/// those times.
+fn plan(layout: &Layout, time_column: Option<usize>) -> ColumnPlan {
     let sensors = layout.sensors.first();
     let is_taken =
         |column: usize| layout.holds_times(column) || sensors.is_some_and(|it| it.column == column);
@@ -211,36 +224,47 @@ struct ListedClock {
     times_s: Vec<f64>,
     /// With those that times show to be missing.
     samples: usize,
+    is_one_of_several: bool,
 }
 
 impl ListedClock {
-    /// As reading takes it; what speaks against it goes to `issues`.
-    fn of(mut table: Table, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
-        let plan = &table.plans[0];
+    /// As reading takes them, one a plan; what speaks against them goes to `issues`.
+    fn all(mut table: Table, issues: &mut Vec<Finding>) -> Result<Vec<Self>, Refusal> {
+        let plans = table.plans;
         table.drop_blank()?;
         issues.extend(table.settle_times().map_err(|refused| refused.refusal)?);
         issues.extend(table.place_by_counter().map_err(|refused| refused.refusal)?);
-        if plan.time_column.is_none() && plan.claims.is_empty() {
-            return Ok(Self::default());
+        if plans.iter().any(|plan| plan.time_column.is_none() && plan.claims.is_empty()) {
+            return Ok(Vec::new());
         }
         let own_rows = table.own_rows().map_err(|refused| refused.refusal)?;
-        let slot = |column: usize| table.wanted.slot(column);
-        let times = plan.time_column.map(|time| table.columns[slot(time)].values().into_owned());
-        let (first_s, last_s) = extent(times.iter().flatten().copied());
-        if plan.time_column != Some(plan.column) {
+        let times_of = |plan: &ColumnPlan| {
+            let column = &table.columns[table.wanted.slot(plan.time_column?)];
+            Some(column.values().into_owned())
+        };
+        let times: Vec<Option<Vec<f64>>> = plans.iter().map(times_of).collect();
+        for plan in plans.iter().filter(|plan| plan.time_column != Some(plan.column)) {
             // A value that is missing is no gap of the times.
             let column = &mut table.columns[table.wanted.slot(plan.column)];
             column.each_mut().iter_mut().filter(|value| !is_number(**value)).for_each(|value| *value = 0.0);
         }
-        if own_rows[0].as_ref().map_or(table.rows(), |own| own.iter().filter(|is_own| **is_own).count()) < 2 {
-            return Ok(Self::default());
+        let count = |own: &Option<Vec<bool>>| {
+            own.as_ref().map_or(table.rows(), |own| own.iter().filter(|is_own| **is_own).count())
+        };
+        if own_rows.iter().any(|own| count(own) < 2) {
+            return Ok(Vec::new());
         }
-        let uniform = table.uniforms(&own_rows).remove(0)?;
+        let uniforms = table.uniforms(&own_rows).into_iter().zip(times);
+        uniforms.map(|(uniform, times)| Ok(Self::of(uniform?, times, issues))).collect()
+    }
+
+    fn of(uniform: Uniform, times: Option<Vec<f64>>, issues: &mut Vec<Finding>) -> Self {
+        let (first_s, last_s) = extent(times.iter().flatten().copied());
         let count = uniform.samples.len();
         let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
         issues.extend(uniform.issues.into_iter().map(|issue| shifted(issue, first_s)));
         let of_rate = as_f64(count.saturating_sub(1)) / uniform.sample_rate_hz;
-        Ok(Self {
+        Self {
             sample_rate_hz: Some(uniform.sample_rate_hz),
             start_s: Some(0.0),
             duration_s: Some(if times.is_some() { last_s - first_s } else { of_rate }),
@@ -248,7 +272,8 @@ impl ListedClock {
             samples: count,
             first_s,
             times_s: times.unwrap_or_default(),
-        })
+            is_one_of_several: false,
+        }
     }
 }
 
@@ -263,7 +288,8 @@ fn listed(
 ) -> ListedChannel {
     let (range, own) = (&ranges[0], &ranges[sensor]);
     let is_empty = own.numbers.is_none();
-    let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || own.rows.lie_between());
+    let is_short = clock.is_one_of_several && own.rows.count < rows;
+    let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || own.rows.lie_between() || is_short);
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
     let (first_s, last_s) = (time_s(own.rows.first), time_s(own.rows.last));
     let duration_s = first_s.zip(last_s).map(|(first_s, last_s)| last_s - first_s);
@@ -297,7 +323,7 @@ fn listed(
     }
 }
 
-fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
+fn facts(layout: &Layout, encoding: &str, clocks: &[Option<usize>]) -> BTreeMap<String, String> {
     let delimiter = match layout.dialect.delimiter.0 {
         b';' => "semicolon",
         b'\t' => "tab",
@@ -310,11 +336,9 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         Ok(line) => format!("line {line}"),
         Err(unfit) => format!("none: columns count 1, 2, …{unfit}"),
     };
-    let time = layout
-        .times
-        .taken
-        .and_then(|index| layout.columns.get(index))
-        .map_or_else(|| none_found(layout), |column| column.header.clone());
+    let names = clocks.iter().flatten().map(|clock| layout.columns[*clock].header.clone());
+    let time = Some(names.collect::<Vec<String>>().join(", ")).filter(|names| !names.is_empty());
+    let time = time.unwrap_or_else(|| none_found(layout));
     BTreeMap::from([
         ("delimiter".into(), delimiter.into()),
         ("decimal mark".into(), decimal.into()),

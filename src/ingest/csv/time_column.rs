@@ -21,6 +21,8 @@ pub(super) struct Found {
     pub nanoseconds: Option<usize>,
     /// All that a name, a unit or stamps show to be times.
     pub sure: Vec<usize>,
+    /// Those of them that rise with every row up to their end.
+    pub clocks: Vec<usize>,
 }
 
 /// Finds them; `cells` gives a column's cells of the first rows.
@@ -63,16 +65,27 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
     let mut whole =
         found.iter().filter(|(i, times)| is_in(*i, 1.0) && !times.iter().any(|t| t.fract().abs() > 0.0));
     if let Some((seconds, rest)) = whole.find_map(|(i, _)| Some((*i, rest(*i)?))) {
-        return Found { taken: Some(seconds), nanoseconds: Some(rest), sure: vec![seconds] };
+        return Found {
+            taken: Some(seconds),
+            nanoseconds: Some(rest),
+            sure: vec![seconds],
+            clocks: Vec::new(),
+        };
     }
     let is_known = |i: &usize| matches!(scale(&columns[*i]), Scale::Known(_));
     let is_sure = |i: &usize| is_named(i) || (begins_so(i) && is_known(i)) || columns[*i].is_stamped;
-    let sure = found.iter().map(|it| it.0).filter(is_sure).collect();
+    let sure = || found.iter().filter(|it| is_sure(&it.0));
+    let is_clock = |(_, times): &&(usize, Vec<f64>)| {
+        let last = times.windows(2).rposition(|pair| pair[0] < pair[1]).map_or(0, |at| at + 2);
+        10 * (steps(&times[..last], f64::lt) + 1) >= 9 * last.max(2)
+    };
+    let clocks = sure().filter(is_clock).map(|it| it.0).collect();
+    let sure = sure().map(|it| it.0).collect();
     // Nine of ten: as where the time base takes times for coarse.
     let is_fine = |(_, times): &&(usize, Vec<f64>)| 10 * (steps(times, f64::lt) + 1) >= 9 * times.len();
     let finest = found.iter().rev().max_by_key(|(_, times)| steps(times, f64::lt));
     let taken = found.iter().find(is_fine).or(finest).map(|it| it.0);
-    Found { taken, nanoseconds: None, sure }
+    Found { taken, nanoseconds: None, sure, clocks }
 }
 
 /// Whether a column is headed as one of times.
