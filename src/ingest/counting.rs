@@ -4,6 +4,7 @@
 use super::clock::usual_step;
 use super::refusal::Refusal;
 use crate::numerics::{as_count, as_f64, robust};
+use std::borrow::Cow;
 
 /// Fewer numbers show no pattern.
 const LEAST: usize = 16;
@@ -12,58 +13,98 @@ const MOST_BY_TURNS: usize = 4;
 /// A counter loses at most so many rows as its first wrap ends, where no second wrap confirms it.
 const MOST_LOST_IN_WRAP: f64 = 64.0;
 
-/// A column that counts the rows.
+/// A clock that counts keeps its steps within this part.
+const JITTER: f64 = 0.05;
+
+/// A column that counts the rows, or blocks of as many rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Counter {
     step: f64,
     /// At which it begins anew.
     wrap: Option<f64>,
+    /// So many rows have one number.
+    rows_each: usize,
 }
 
 impl Counter {
-    /// The rule of whole numbers that rise by one step in nine rows of ten, modulo the wrap that they show.
+    /// The rule of numbers that rise, or fall, by one step in nine rows of ten, modulo the wrap that they
+    /// show.
     pub(super) fn of(counts: &[f64]) -> Option<Self> {
-        let are_whole = counts.iter().all(|count| count.fract() == 0.0 && count.abs() < 2_f64.powi(53));
-        if counts.len() < LEAST || !are_whole {
+        if counts.len() < LEAST || !counts.iter().all(|count| count.abs() < 2_f64.powi(53)) {
             return None;
         }
-        let steps: Vec<f64> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let changes = counts.windows(2).filter(|pair| pair[0].total_cmp(&pair[1]).is_ne()).count();
+        // Of single rows two may have one number where as many are missing as the counter has.
+        let (numbers, rows_each) = if 3 * changes > 2 * counts.len() {
+            (Cow::Borrowed(counts), 1)
+        } else {
+            (counts.chunk_by(PartialEq::eq).map(|run| run[0]).collect(), rows_each(counts)?)
+        };
+        let steps: Vec<f64> = numbers.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let step = robust::median(&mut steps.clone());
-        let wraps: Vec<f64> = steps.iter().filter(|d| **d < 0.0).map(|d| step - d).collect();
-        if step < 1.0 || 10 * wraps.len() > counts.len() {
+        let falls = steps.iter().filter(|d| **d * step < 0.0);
+        let wraps: Vec<f64> = falls.map(|d| (step - d).abs()).collect();
+        if numbers.len() < LEAST || step == 0.0 || 3 * wraps.len() > counts.len() {
             return None;
         }
-        let wrap = if wraps.is_empty() { None } else { Some(wrap_of(&wraps, step)?) };
-        let counter = Self { step, wrap };
+        let are_whole = || counts.iter().all(|count| count.fract() == 0.0);
+        let wrap = if wraps.is_empty() { None } else { Some(wrap_of(&wraps, step.abs())?) };
+        let counter = Self { step, wrap, rows_each };
         let lost = || steps.iter().map(|d| counter.lost(*d));
         // One that stands still or rises by less now and then is a clock.
-        let is_clock = lost().any(|lost| lost.fract() != 0.0 || lost < 0.0);
-        let is_steady = 10 * lost().filter(|lost| *lost == 0.0).count() >= 9 * steps.len();
-        (is_steady && !is_clock).then_some(counter)
+        let is_clock =
+            lost().any(|lost| lost < -JITTER || (lost - lost.round()).abs() > JITTER * (lost + 1.0));
+        let is_steady = 10 * lost().filter(|lost| lost.round() == 0.0).count() >= 9 * steps.len();
+        (is_steady && !is_clock && (wrap.is_none() || are_whole())).then_some(counter)
     }
 
+    /// How many numbers a step leaves out.
     fn lost(&self, step: f64) -> f64 {
-        let step = if step < 0.0 { step + self.wrap.unwrap_or_default() } else { step };
+        let step = if step * self.step <= 0.0 {
+            step + self.wrap.unwrap_or_default() * self.step.signum()
+        } else {
+            step
+        };
         step / self.step - 1.0
     }
 
     /// Where rows are missing: the row before, and how many.
     pub(super) fn jumps(&self, counts: &[f64]) -> Vec<(usize, f64)> {
-        let lost = counts.windows(2).enumerate().map(|(row, pair)| (row, self.lost(pair[1] - pair[0])));
-        lost.filter(|(_, lost)| *lost >= 1.0).collect()
+        let (mut row, mut jumps) = (0, Vec::new());
+        let is_one = |one: &f64, other: &f64| self.rows_each > 1 && one.total_cmp(other).is_eq();
+        let runs = counts.chunk_by(is_one);
+        for (at, (run, next)) in runs.clone().zip(runs.skip(1)).enumerate() {
+            row += run.len();
+            let short = if at == 0 { 0 } else { self.rows_each.saturating_sub(run.len()) };
+            let lost = self.lost(next[0] - run[0]).round() * as_f64(self.rows_each) + as_f64(short);
+            jumps.extend((lost >= 1.0).then_some((row - 1, lost)));
+        }
+        jumps
     }
 
     /// The counts without their wraps, where there are any.
     pub(super) fn unwrapped(&self, counts: &[f64]) -> Option<Vec<f64>> {
-        let wrap = self.wrap?;
-        let (mut turns, mut before) = (0.0, f64::NEG_INFINITY);
+        let wrap = self.wrap? * self.step.signum();
+        let (mut turns, mut before) = (0.0, counts[0] - self.step);
         let all = counts.iter().map(|count| {
-            turns += if *count < before { wrap } else { 0.0 };
+            turns += if (*count - before) * self.step <= 0.0 { wrap } else { 0.0 };
             before = *count;
             count + turns
         });
         Some(all.collect())
     }
+}
+
+/// How many rows have one number each time: as many in nine blocks of ten, and none more; the first and the
+/// last may be cut.
+fn rows_each(counts: &[f64]) -> Option<usize> {
+    let runs: Vec<usize> = counts.chunk_by(PartialEq::eq).map(<[f64]>::len).collect();
+    let mut lengths = runs[..runs.len() - 1].to_vec();
+    lengths.sort_unstable();
+    let rows_each = *lengths.get(lengths.len() / 2)?;
+    let even = lengths.iter().filter(|length| **length == rows_each).count();
+    let is_over = runs.iter().any(|length| *length > rows_each);
+    (!is_over && 10 * (even + 1) >= 9 * lengths.len()).then_some(rows_each)
 }
 
 /// The wrap that most falls show; a single one must be that of a converter or of decimal digits, since a
@@ -78,6 +119,84 @@ fn wrap_of(wraps: &[f64], step: f64) -> Option<f64> {
     let least = wraps.iter().copied().fold(0.0, f64::max);
     let fitting = natural.filter(|wrap| (0.0..=MOST_LOST_IN_WRAP * step).contains(&(wrap - least)));
     fitting.min_by(f64::total_cmp)
+}
+
+/// Numbers beside samples as stretches of even steps, as long as these are few: those of a counter or a
+/// constant are, and those of a signal are not kept.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SteadyNumbers {
+    stretches: Vec<EvenSteps>,
+    count: usize,
+}
+
+#[derive(Debug, Clone)]
+struct EvenSteps {
+    first: f64,
+    step: f64,
+    count: usize,
+}
+
+impl SteadyNumbers {
+    pub(super) fn push(&mut self, number: f64) {
+        self.count += 1;
+        match self.stretches.last_mut() {
+            None if self.count > 1 => {}
+            Some(last) if last.count == 1 => (last.step, last.count) = (number - last.first, 2),
+            Some(last) if last.goes_on(number) => last.count += 1,
+            _ => self.stretches.push(EvenSteps { first: number, step: 0.0, count: 1 }),
+        }
+        self.keep_few();
+    }
+
+    /// Moves over those that follow.
+    pub(super) fn append(&mut self, other: &mut Self) {
+        let is_lost = self.is_lost() || other.is_lost();
+        self.count += std::mem::take(&mut other.count);
+        self.stretches.append(&mut other.stretches);
+        if is_lost {
+            self.stretches.clear();
+        }
+        self.keep_few();
+    }
+
+    fn is_lost(&self) -> bool {
+        self.count > 0 && self.stretches.is_empty()
+    }
+
+    fn keep_few(&mut self) {
+        if self.stretches.len() > 64 + self.count / 4 {
+            self.stretches = Vec::new();
+        }
+    }
+
+    /// Each of them; none of a signal.
+    pub(super) fn values(&self) -> Vec<f64> {
+        let each =
+            |it: &EvenSteps| (0..it.count).map(|at| it.first + it.step * as_f64(at)).collect::<Vec<_>>();
+        self.stretches.iter().flat_map(each).collect()
+    }
+
+    /// The one number that all are.
+    pub(super) fn constant(&self) -> Option<f64> {
+        let first = self.stretches.first()?.first;
+        let is_it = |it: &EvenSteps| it.first - first == 0.0 && it.step == 0.0;
+        (self.count > 1 && self.stretches.iter().all(is_it)).then_some(first)
+    }
+}
+
+impl EvenSteps {
+    fn goes_on(&self, number: f64) -> bool {
+        (self.first + self.step * as_f64(self.count) - number).abs() <= 1e-3 * self.step.abs()
+    }
+}
+
+/// The number in a cell of words that may count the rows: `R00535`, `0x217`.
+pub(super) fn of_words(cell: &str) -> Option<f64> {
+    if let Some(digits) = cell.strip_prefix("0x") {
+        return u32::from_str_radix(digits, 16).ok().map(f64::from);
+    }
+    let digits = cell.trim_start_matches(|c: char| !c.is_ascii_digit());
+    digits.parse::<u32>().ok().map(f64::from)
 }
 
 /// Values with rows put in that are missing, so many behind each row that is named.
@@ -166,12 +285,31 @@ mod tests {
     }
 
     #[test]
+    fn numbers_that_fall_and_blocks_and_clocks_of_another_name_count_too() {
+        let lost = |row: &u32| !(535..539).contains(row);
+        let rows = || (0..1000_u32).filter(lost).map(f64::from);
+        let ticks = |row: f64| 100.0 * row + f64::from(u8::from(row % 7.0 == 3.0));
+        for counts in [
+            rows().map(|row| 5000.0 - row).collect::<Vec<f64>>(),
+            rows().map(|row| 255.0 - row % 256.0).collect(),
+            rows().map(|row| row % 8.0).collect(),
+            rows().map(|row| row % 5.0).collect(),
+            rows().map(|row| 1e-4 * row).collect(),
+            rows().map(ticks).collect(),
+        ] {
+            assert_eq!(Counter::of(&counts).unwrap().jumps(&counts), [(534, 4.0)], "{counts:?}");
+        }
+        let blocks: Vec<f64> = rows().map(|row| (row / 4.0).floor()).collect();
+        assert_eq!(Counter::of(&blocks).unwrap().jumps(&blocks), [(534, 1.0), (535, 3.0)]);
+    }
+
+    #[test]
     fn clocks_constants_and_records_that_begin_anew_are_no_counters() {
         let none: [Vec<f64>; 5] = [
             vec![21.0; 100],
             (0..100).map(|i| f64::from(i / 16)).collect(),
             (0..100).map(|i| f64::from(i) + f64::from(u8::from(i % 20 == 7))).collect(),
-            (0..100).map(|i| 0.5 * f64::from(i)).collect(),
+            (0..100).map(|i| f64::from(i * i)).collect(),
             counts(0..859, 1, 600, &[]),
         ];
         assert!(none.iter().all(|counts| Counter::of(counts).is_none()));

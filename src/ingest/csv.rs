@@ -61,12 +61,12 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     issues.extend(table.settle_times().map_err(refused)?);
     issues.extend(table.place_by_counter().map_err(refused)?);
     let own_rows = table.own_rows().map_err(refused)?;
-    let rows = table.rows();
+    let (rows, factors) = (table.rows(), std::mem::take(&mut table.factors));
     let mut channels = Vec::with_capacity(plans.len());
     for (spec, uniform) in table.uniforms(&own_rows).into_iter().enumerate() {
         let uniform = uniform.map_err(|error| error::of_channel(path, name(spec), error))?;
         let unit = layout.columns[plans[spec].column].unit.clone();
-        channels.push(RawChannel { uniform, unit, factors: layout.factors() });
+        channels.push(RawChannel { uniform, unit, factors: [layout.factors(), factors.clone()].concat() });
     }
     let with_missing = channels.iter().map(|channel| channel.uniform.samples.len()).max().unwrap_or_default();
     issues.extend(layout.preamble.of_rows(rows, with_missing));

@@ -95,11 +95,9 @@ fn looks_like_rows(head: &[u8]) -> bool {
 
 /// Number of cells of a line that holds numbers, `None` where it holds none, or words alone.
 fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
-    let cells: Vec<&str> = if delimiter == ' ' {
-        line.split_whitespace().collect()
-    } else {
-        line.split(delimiter).map(|cell| cell.trim().trim_matches('"')).collect()
-    };
+    let blanks = |c: char| if delimiter == ' ' { c.is_whitespace() } else { c == delimiter };
+    let cells = line.split(blanks).map(|cell| cell.trim().trim_matches('"'));
+    let cells: Vec<&str> = cells.filter(|cell| delimiter != ' ' || !cell.is_empty()).collect();
     let is_number = |cell: &str| {
         let cell = cell.replace(',', ".");
         number::of_cell(cell.as_bytes(), b'.').is_some() || cell.parse::<f64>().is_ok()
@@ -186,6 +184,7 @@ mod tests {
             "when,a\n2026-01-01T00:00:00,1\n2026-01-01T00:00:01,2\n",
             "time_s,word\n0,ok\n1,bad\n",
             "t|a\n0|1\n1|2\n",
+            "\"t\" \"a\"\n\"1\" 0 1\n\"2\" 1 2\n",
             "t;a\r0;1\r1;2\r",
             "t;a\n0;−1,5\n1;−2,5\n",
             "t;a\n0;1\n1;2\n\0\0\0\0",

@@ -18,7 +18,9 @@ const OTHERS: &str = "time zeit date datum start begin trigger delay duration da
                       länge laenge width breite angle winkel position distance abstand speed geschw press \
                       druck filter cutoff grenz bandwidth frequ frequenz rate bits latitude longitude \
                       altitude year month page offset min x0 xorg xoff xzero deltax max peak spitze mean \
-                      mittel rms sum std battery sensor device gravity";
+                      mittel rms sum std battery gravity test versuch operator level pegel";
+/// Parts of such names where nothing else explains them.
+const WEAK_FACTORS: &str = "range bereich span bits adc const konst";
 /// Words for stored numbers that are in no unit.
 const COUNTS: [&str; 12] =
     ["lsb", "lsbs", "count", "counts", "cts", "digit", "digits", "raw", "adc", "adu", "bit", "bits"];
@@ -40,45 +42,73 @@ pub(super) fn is_factor(name: &str) -> bool {
     (is_ratio || has_part(FACTORS, &plain)) && !plain.contains("fullscale") && !is_sensor
 }
 
-/// `name = text` where its number may be a factor of the samples beside it, and nothing else explains it.
+/// `name = text` where a number in it may be a factor of the samples beside it, and nothing else explains it.
 pub(super) fn unexplained(name: &str, text: &str) -> Option<String> {
-    let shown = || format!("{} = {}", name.trim(), text.trim());
     if vocabulary::meaning(name).is_some() || vocabulary::is_named_time(name) {
         return None;
     }
-    let is_named = is_factor(name);
-    let Some((number, unit)) = number_and_unit(text) else {
-        // A formula in words: "g = raw * 0.9".
-        let is_formula =
-            is_named || text.contains(['*', '·', '×']) || has_part("raw lsb counts", &text.to_lowercase());
-        let mut words = text.split(|c: char| !c.is_ascii_digit() && c != '.');
-        let has_fraction = words.any(|word| word.parse::<f64>().is_ok_and(|number| number.fract() != 0.0));
-        return (is_formula && has_fraction).then(shown);
+    let line = format!("{name} {text}");
+    let parts = line.split(|c: char| c.is_whitespace() || "=;|()[]{}\"'".contains(c));
+    let words: Vec<&str> =
+        parts.map(|word| word.trim_matches([':', ','])).filter(|word| !word.is_empty()).collect();
+    // What stands before a number explains it, and those that follow at once.
+    let (mut label, mut is_open, mut is_new) = (String::new(), false, false);
+    for (at, word) in words.iter().enumerate() {
+        let Some((number, unit)) = number_of(word) else {
+            label = if is_new { plain(word) } else { label + &plain(word) };
+            is_new = false;
+            continue;
+        };
+        let unit = if unit.is_empty() { words.get(at + 1).copied().unwrap_or_default() } else { unit };
+        let number = if unit == "%" { number / 100.0 } else { number };
+        let is_explained = has_part(OTHERS, &label);
+        let is_named = is_factor(&label) || (has_part(WEAK_FACTORS, &label) && !is_explained);
+        let is_idle = number == 0.0 || number - 1.0 == 0.0 || is_other_unit(unit);
+        is_open |= !is_idle && (is_named || (number.fract() != 0.0 && !is_explained));
+        is_new = true;
+    }
+    let shown = match (name.trim(), text.trim()) {
+        (name, "") => name.to_owned(),
+        (name, text) => format!("{name} = {}", text.chars().take(60).collect::<String>()),
     };
+    is_open.then_some(shown)
+}
+
+/// The number that a word is, with a unit behind it: `0.9g`, `x0.9`, `9/10`, `90%`. A date is none, nor `A1`.
+fn number_of(word: &str) -> Option<(f64, &str)> {
+    if let Some((above, below)) = word.split_once('/')
+        && let (Ok(above), Ok(below)) = (above.parse::<f64>(), below.parse::<f64>())
+    {
+        return Some((above / below, ""));
+    }
+    let (number, unit) = number_and_unit(word.trim_start_matches(['x', '×', '*', '·']))?;
     let number: f64 = number.parse().ok()?;
-    // "12.3.2026" and "4/5" are no numbers.
-    let is_cut = unit.starts_with(['-', '/', '.', ':']) || !number.is_finite();
-    let unit = unit.trim_matches(['[', ']', '(', ')']);
-    let is_of_samples = unit.contains(['/', '*']) && vocabulary::rate_unit_hz(unit).is_none()
-        || acceleration_unit_m_s2(unit).is_some()
-        || COUNTS.contains(&&*unit.to_lowercase())
-        || matches!(&*unit.to_lowercase(), "" | "v" | "mv" | "µv" | "uv" | "volt" | "volts");
-    let is_idle = number == 0.0 || number - 1.0 == 0.0;
-    let is_open = is_named || (number.fract() != 0.0 && !has_part(OTHERS, &plain(name)));
-    (!is_cut && !is_idle && is_of_samples && is_open).then(shown)
+    let is_cut = unit.starts_with(['-', '/', '.', ':', ',']) || !number.is_finite();
+    (!is_cut).then_some((number, unit))
+}
+
+/// Whether a unit is known, and none of samples or of what converts them.
+fn is_other_unit(unit: &str) -> bool {
+    let lower = unit.to_lowercase();
+    let is_of_samples = acceleration_unit_m_s2(unit).is_some()
+        || COUNTS.contains(&lower.as_str())
+        || matches!(&*lower, "v" | "mv" | "µv" | "uv" | "volt" | "volts" | "-" | "–" | "1" | "%")
+        || lower.ends_with("/g");
+    vocabulary::is_unit(unit) && !is_of_samples
 }
 
 /// Refuses stored counts beside which a factor may stand that nobody applied, unless the cask file states its
 /// `scale`.
 pub(super) fn settled(spec: &ChannelSpec, raw: &RawChannel) -> Result<(), Refusal> {
     let unit = raw.recorded_unit().unwrap_or_default();
-    let is_quantity =
-        |unit: &str| unit.is_empty() || acceleration_unit_m_s2(unit).is_some() || vocabulary::is_unit(unit);
     let bare = unit.trim_matches(['[', ']', '(', ')']).to_lowercase();
     let are_counts = COUNTS.contains(&bare.as_str());
-    let has_number = !is_quantity(unit) && unit.contains(|c: char| c.is_ascii_digit());
+    let is_quantity = acceleration_unit_m_s2(unit).is_some()
+        || matches!(&*bare, "" | "-" | "1" | "v" | "mv" | "µv" | "uv" | "volt" | "volts");
     let are_whole = || are_whole(&raw.uniform.samples);
-    let unit_says = (are_counts || has_number && are_whole()).then(|| format!("the unit {unit:?}"));
+    // A unit that is none of acceleration is asked about where the cask file states none.
+    let is_other = spec.unit.is_some() && !is_quantity;
+    let unit_says = (are_counts || is_other && are_whole()).then(|| format!("the unit {unit:?}"));
     let stated: Vec<&String> = raw.factors.iter().filter(|_| are_counts || are_whole()).collect();
     let names: Vec<&str> = unit_says.iter().chain(stated).map(String::as_str).collect();
     if names.is_empty() || spec.scale.is_some() {

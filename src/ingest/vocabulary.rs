@@ -4,16 +4,17 @@
 /// Words that head times, without their unit, in lower case; `X_Value` is that of LabVIEW's files, `__time`
 /// that of PlotJuggler's.
 #[rustfmt::skip]
-const TIMES: [&str; 34] = [
+const TIMES: [&str; 41] = [
     "time", "__time", "t", "zeit", "times", "timestamp", "timestamps", "time stamp", "zeitstempel",
     "messzeit", "abtastzeit", "uhrzeit", "elapsed", "elapsed time", "relative time", "relative zeit",
     "rel. time", "rel. zeit", "datetime", "date/time", "date time", "x_value", "sec", "secs", "seconds", "ms",
     "msec", "us", "µs", "usec", "ns", "temps", "tempo", "tiempo",
+    "micros", "millis", "tid", "tijd", "czas", "时间", "時間",
 ];
 
 /// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an
 /// accelerometer.
-const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"];
+const AXES: [&str; 7] = ["source", "x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"];
 
 /// Names of a rate, in lower case without what parts their words: `Sample Rate` and `sample_rate` are
 /// `samplerate`.

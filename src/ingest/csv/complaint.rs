@@ -54,6 +54,15 @@ pub(super) fn row_error(
                 char::from(layout.dialect.decimal)
             ),
         ),
+        RowError::Short { line, cells } => (
+            line,
+            format!(
+                "it has {cells} of {} cells, and between blanks nothing says which one is missing",
+                layout.columns.len()
+            ),
+            "write NaN for the missing value in a copy, or export with commas or semicolons between the cells"
+                .to_owned(),
+        ),
         RowError::NoTime { line, slot } => (
             line,
             format!("{} holds no time for this row", headed(slot)),

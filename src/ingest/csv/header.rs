@@ -37,9 +37,21 @@ pub(super) struct Header {
 
 /// The header above the rows, with the row of units where there is one; else why the line that looks most
 /// like it is none, in brackets, or nothing.
-pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Result<Header, String> {
+pub(super) fn header(
+    above: &[Line],
+    delimiter: Delimiter,
+    judged: &Judged,
+    has_row_names: bool,
+) -> Result<Header, String> {
     let filled = (0..above.len()).rev().filter(|&line| !above[line].text.trim().is_empty());
-    let cells = |line: usize| (line, header_cells(&above[line].text, delimiter));
+    let cells = |line: usize| {
+        let mut cells = header_cells(&above[line].text, delimiter);
+        // R heads no column of the names of its rows.
+        if has_row_names && cells.len() + 1 == judged.columns {
+            cells.insert(0, String::new());
+        }
+        (line, cells)
+    };
     let mut nearest: Vec<(usize, Vec<String>)> = filled.clone().take(MOST_LINES).map(cells).collect();
     // Rigol's oscilloscopes head "X,CH1,Start,Increment", and below "Sequence,Volt,-0.05,1e-6" stand fewer
     // cells.
@@ -55,7 +67,13 @@ pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> R
     let of_title = titled(vocabulary::titles_units).filter(|(_, cells)| is_units(&cells[1..]));
     let of_title = of_title.map(|(_, cells)| [vec![String::new()], cells[1..].to_vec()].concat());
     let fitting = |cells: &[String]| fitting(cells.to_vec(), judged);
-    let is_names = |cells: &[String]| is_names(cells, judged.columns);
+    // Keysight's oscilloscopes number their channels: `x-axis,1,2` above `second,Volt,Volt`.
+    let is_numbered = |cells: &[String]| {
+        cells.len() > 1
+            && is_names(&cells[..1], 1)
+            && cells.iter().enumerate().skip(1).all(|(at, cell)| *cell == at.to_string())
+    };
+    let is_names = |cells: &[String]| is_names(cells, judged.columns) || is_numbered(cells);
     for pair in nearest.windows(2) {
         let [(_, units), (line, names)] = pair else { continue };
         if is_units(units)

@@ -6,8 +6,8 @@ use super::header::{self, TableColumn};
 use super::preamble::{self, Preamble};
 use super::sensors::{self, Sensors};
 use super::{stamp, time_column};
-use crate::ingest::counting::Counter;
-use crate::ingest::{factors, number, vocabulary};
+use crate::ingest::counting::{self, Counter};
+use crate::ingest::{factors, number};
 
 /// How a text is laid out.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ pub(super) struct Layout {
     pub counter: Option<usize>,
     /// What else is stated above the rows.
     pub preamble: Preamble,
-    /// Columns of one number that may be factors of the samples.
+    /// Columns of one number, or with one in their names, that may be factors of the samples.
     constants: Vec<String>,
     mean_row_bytes: usize,
 }
@@ -48,7 +48,8 @@ impl Layout {
         let first =
             begin + rows.clone().position(|line| dialect.is_row(&delimiter.cells(&line.text), &judged))?;
         let rows: Vec<Vec<&str>> = lines[first..].iter().map(|line| delimiter.cells(&line.text)).collect();
-        let header = header::header(&lines[..first], delimiter, &judged);
+        let has_row_names = delimiter.is_run() && lines[first].text.trim_start().starts_with('"');
+        let header = header::header(&lines[..first], delimiter, &judged, has_row_names);
         let mut columns = header::columns(header.as_ref().ok(), &judged, &rows[0]);
         for (index, column) in columns.iter_mut().enumerate().filter(|(_, column)| !column.is_numeric) {
             let mut cells = rows.iter().filter_map(|cells| cells.get(index));
@@ -83,21 +84,24 @@ impl Layout {
             cells.map(|cell| number::of_cell(cell.as_bytes(), dialect.decimal).unwrap_or(f64::NAN)).collect()
         };
         let sensors = sensors::find(&columns, is_time, &rows, first_rows);
-        let is_open = |column: &usize| {
-            columns[*column].is_numeric && !is_time(*column) && sensors.iter().all(|it| it.column != *column)
+        let is_open = |column: &usize| !is_time(*column) && sensors.iter().all(|it| it.column != *column);
+        let counts = |column: &usize| {
+            let cells = rows.iter().filter_map(|cells| cells.get(*column));
+            let numbers = cells.map(|cell| counting::of_words(cell).unwrap_or(f64::NAN));
+            let is_numeric = columns[*column].is_numeric;
+            let numbers = if is_numeric { first_rows(*column) } else { numbers.collect() };
+            !columns[*column].is_stamped && Counter::of(&numbers).is_some()
         };
-        let counts = |column: &usize| Counter::of(&first_rows(*column)).is_some();
-        let is_named = |column: &usize| vocabulary::is_counter(&columns[*column].name);
         let open = || (0..columns.len()).filter(is_open);
-        let counter = open().find(is_named).or_else(|| open().find(counts));
+        let counter = open().find(counts);
         let constant = |column: usize| {
+            let name = &columns[column].name;
             let cell =
-                rows[0].get(column).filter(|cell| rows.iter().all(|row| row.get(column) == Some(cell)))?;
-            let TableColumn { name, .. } = &columns[column];
-            let is_it = factors::is_factor(name);
-            is_it.then(|| factors::unexplained(name, &cell.replace(',', "."))).flatten()
+                rows[0].get(column).filter(|cell| rows.iter().all(|row| row.get(column) == Some(cell)));
+            let text = cell.map_or_else(String::new, |cell| cell.replace(',', "."));
+            factors::unexplained(name, &text)
         };
-        let constants = open().filter_map(constant).collect();
+        let constants = open().filter(|column| columns[*column].is_numeric).filter_map(constant).collect();
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
         Some(Self {

@@ -11,9 +11,6 @@ use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};
 /// What closes the header of LabVIEW's measurement files, and that of the first segment in it.
 const END_OF_HEADER: &str = "***End_of_Header***";
 
-/// More factors of one line say no more.
-const MOST_FACTORS: usize = 4;
-
 /// What is stated above a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Preamble {
@@ -47,7 +44,7 @@ impl Preamble {
         let intervals = labview_rates(above, delimiter);
         let mut preamble = Self { rates, intervals, starts_s, ..Self::default() };
         for line in above {
-            preamble.factors.extend(factors_in(&line.text, delimiter));
+            preamble.factors.extend(factor_in(&line.text, delimiter));
             let Some((name, value)) = entry(&line.text, delimiter) else { continue };
             let Some((number, unit)) = number_and_unit(&value) else { continue };
             match meaning(&name) {
@@ -141,9 +138,8 @@ fn may_have_thousands(number: &str) -> bool {
     leads && groups.peek().is_some() && groups.all(|group| group.len() == 3 && is_digits(group))
 }
 
-/// The numbers of a line that may be factors of the samples: `Scale factor;0,9;0,8`, `1 LSB = 0.9 g`, `# gain
-/// 2`.
-fn factors_in(line: &str, delimiter: Delimiter) -> Vec<String> {
+/// What a line says that may be a factor of the samples: `Scale factor;0,9;0,8`, `1 LSB = 0.9 g`, `# gain 2`.
+pub(super) fn factor_in(line: &str, delimiter: Delimiter) -> Option<String> {
     // Lines above the rows may be parted otherwise than these.
     let parted_by = [b';', b'\t'].into_iter().find(|mark| line.as_bytes().contains(mark));
     let cells = match parted_by.map(Delimiter) {
@@ -151,27 +147,12 @@ fn factors_in(line: &str, delimiter: Delimiter) -> Vec<String> {
         None if delimiter.is_run() => vec![line.to_owned()],
         None => header_cells(line, delimiter),
     };
-    let Some((first, rest)) = cells.split_first() else { return Vec::new() };
+    let (first, rest) = cells.split_first()?;
     let first = first.trim_start_matches(['#', '%', ' ']);
-    let parted = || first.rsplit_once(' ').filter(|(name, _)| rest.is_empty() && factors::is_factor(name));
-    let (key, value) = first.split_once([':', '=']).or_else(parted).unwrap_or((first, ""));
-    let (name, unit) = name_and_unit(key.trim());
+    let (name, value) = first.split_once([':', '=']).unwrap_or((first, ""));
     let values = [value].into_iter().chain(rest.iter().map(String::as_str)).map(str::trim);
-    let mut values: Vec<String> =
-        values.filter(|value| !value.is_empty()).map(|value| value.replace(',', ".")).collect();
-    // What the first does not hold are units of numbers, or remarks.
-    let is_number = |value: &String| number_and_unit(value).is_some();
-    if values.first().is_some_and(|first| !is_number(first)) && values.len() > 1 {
-        return Vec::new();
-    }
-    let next = values.get(1).filter(|next| !is_number(next)).cloned();
-    let unit = unit.map(str::to_owned).or(next).unwrap_or_default();
-    values.dedup();
-    let with_unit = |value: &String| {
-        let text = if value.parse::<f64>().is_ok() { format!("{value} {unit}") } else { value.clone() };
-        factors::unexplained(name, text.trim())
-    };
-    values.iter().filter_map(with_unit).take(MOST_FACTORS).collect()
+    let values: Vec<&str> = values.filter(|value| !value.is_empty()).collect();
+    factors::unexplained(name.trim(), &values.join(" ").replace(',', "."))
 }
 
 /// Whether a unit stands in a name: `sample_rate_hz`.

@@ -39,6 +39,8 @@ pub(super) trait Sink {
     /// Takes over the rows of `parts`, which follow those taken so far in their order, and leaves them
     /// without rows.
     fn append(&mut self, parts: &mut [RowsPart]);
+    /// Takes a line among the rows that is none.
+    fn remark(&mut self, _line: &str) {}
     /// Memory that the rows taken so far hold.
     fn held_bytes(&self) -> u64;
 }
@@ -52,6 +54,7 @@ pub(super) enum RowError {
     Io(std::io::Error),
     Word { line: u64, slot: usize, cell: String },
     NoTime { line: u64, slot: usize },
+    Short { line: u64, cells: usize },
     TooLong { line: u64 },
     TooMany,
 }
@@ -109,6 +112,7 @@ pub(super) fn read(
             }
             let last = &batch.text[cut.end..];
             let cut_line = reader.last_line(last, &mut parts[0], &mut |slot, cell| sink.word(slot, cell))?;
+            reader.remarks.iter().for_each(|line| sink.remark(line));
             sink.append(&mut parts[..1]);
             return Ok(cut_line.map(|line| TableFinding::CutLine { line }));
         }
@@ -119,7 +123,7 @@ pub(super) fn read(
 
 /// How many lines the pieces have; their rows in the parts of the same number.
 ///
-/// `None` where a piece holds a word or a row at fault: only row by row can tell what comes of it.
+/// `None` where a piece holds a word, a remark or a row at fault: only row by row can tell what comes of it.
 fn side_by_side(
     text: &[u8],
     pieces: &[Range<usize>],
@@ -127,8 +131,9 @@ fn side_by_side(
     parts: &mut [RowsPart],
 ) -> Option<u64> {
     let lines = pieces.par_iter().zip(parts).map(|(piece, part)| {
-        let mut own = RowReader { line: 0, values: reader.values.clone(), ..*reader };
-        own.lines(&text[piece.clone()], part, &mut |_, _| None).ok().map(|()| own.line)
+        let mut own = RowReader { line: 0, values: reader.values.clone(), remarks: Vec::new(), ..*reader };
+        let read = own.lines(&text[piece.clone()], part, &mut |_, _| None);
+        read.ok().filter(|()| own.remarks.is_empty()).map(|()| own.line)
     });
     lines.sum()
 }
@@ -139,6 +144,10 @@ impl Sizes {
     }
 }
 
+/// So many remarks are looked into, each so far.
+const MOST_REMARKS: usize = 16;
+const LONGEST_REMARK: usize = 200;
+
 struct RowReader<'a> {
     layout: &'a Layout,
     delimiter: Delimiter,
@@ -148,7 +157,11 @@ struct RowReader<'a> {
     is_dense: bool,
     /// Whether a line without any value is a sample that is missing: no times tell that it is.
     keeps_empty: bool,
+    /// The last column of numbers, from 0.
+    least_columns: usize,
     values: Vec<f64>,
+    /// The first lines among the rows that are none.
+    remarks: Vec<String>,
     line: u64,
 }
 
@@ -162,7 +175,9 @@ impl<'a> RowReader<'a> {
             wanted,
             is_dense: wanted.columns.iter().copied().eq(0..wanted.columns.len()),
             keeps_empty: !wanted.is_time.contains(&true),
+            least_columns: layout.columns.iter().rposition(|column| column.is_numeric).unwrap_or_default(),
             values: vec![f64::NAN; wanted.columns.len()],
+            remarks: Vec::new(),
             line: layout.data_line - 1,
         }
     }
@@ -176,6 +191,7 @@ impl<'a> RowReader<'a> {
                 part.push(&self.values);
                 at = next;
             } else if self.is_remark(text, at) {
+                self.take_remark(text, at);
                 at = skip(text, at, |byte| byte != b'\n') + 1;
             } else {
                 let next = self.any_line(text, at, word)?;
@@ -214,6 +230,7 @@ impl<'a> RowReader<'a> {
     /// The values of the line at `at`; where the next begins.
     fn any_line(&mut self, text: &[u8], at: usize, word: Word) -> Result<usize, RowError> {
         self.values.fill(f64::NAN);
+        let from = at;
         let (mut at, mut column) = (self.delimiter.first(text, at), 0);
         'row: for slot in 0..self.wanted.columns.len() {
             while column < self.wanted.columns[slot] {
@@ -223,12 +240,38 @@ impl<'a> RowReader<'a> {
             }
             at = self.cell(text, at, slot, word)?;
         }
+        // Between blanks nothing says which cell is missing.
+        let has_value = self.values.iter().any(|value| !value.is_nan());
+        if self.delimiter.is_run() && has_value && column < self.least_columns {
+            let cells = self.cells_from(text, from);
+            if cells <= self.least_columns {
+                return Err(RowError::Short { line: self.line, cells });
+            }
+        }
         let no_time =
             |slot: &usize| self.wanted.is_time[*slot] && self.wanted.lacks_time(*slot, &self.values);
         match (0..self.values.len()).find(no_time) {
             Some(slot) => Err(RowError::NoTime { line: self.line, slot }),
             None => Ok(skip(text, at, |byte| byte != b'\n') + 1),
         }
+    }
+
+    /// Keeps the line at `at` for who looks into remarks.
+    fn take_remark(&mut self, text: &[u8], at: usize) {
+        let end = skip(text, at, |byte| byte != b'\n');
+        if self.remarks.len() < MOST_REMARKS {
+            self.remarks.push(lines::text(&text[at..end.min(at + LONGEST_REMARK)]).into_owned());
+        }
+    }
+
+    /// How many cells the line at `at` has.
+    fn cells_from(&self, text: &[u8], at: usize) -> usize {
+        let mut at = self.delimiter.first(text, at);
+        let mut cells = 1;
+        while let Some(next) = self.delimiter.next(text, self.delimiter.end(text, at)) {
+            (at, cells) = (next, cells + 1);
+        }
+        cells
     }
 
     /// Whether the line at `at` is no row: where a number should begin it stands a remark, a sum, or the
@@ -275,7 +318,11 @@ impl<'a> RowReader<'a> {
 
     /// What stands after the last line break: a row, or one that broke off, whose line is given.
     fn last_line(&mut self, text: &[u8], part: &mut RowsPart, word: Word) -> Result<Option<u64>, RowError> {
-        if text.trim_ascii().is_empty() || self.is_remark(text, 0) {
+        if text.trim_ascii().is_empty() {
+            return Ok(None);
+        }
+        if self.is_remark(text, 0) {
+            self.take_remark(text, 0);
             return Ok(None);
         }
         let is_short = self.delimiter.cells(&lines::text(text)).len() < self.layout.columns.len();

@@ -4,6 +4,7 @@ use super::columns::HeldColumn;
 use super::even::Even;
 use super::layout::Layout;
 use super::plan::{self, ColumnPlan};
+use super::preamble;
 use super::rows::{RowsPart, Sink};
 use super::sensors;
 use super::stamp::Stamps;
@@ -12,10 +13,11 @@ use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
 use crate::ingest::clock::Clock;
 use crate::ingest::counting::{self, Counter};
+use crate::ingest::lines;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, robust};
 use rayon::prelude::*;
 
 /// The wanted columns of a table, kept whole, with what is said of them.
@@ -26,6 +28,8 @@ pub(super) struct Table<'a> {
     pub wanted: &'a Wanted,
     pub columns: Vec<HeldColumn>,
     pub stamps: Stamps,
+    /// What remarks among the rows say that may be a factor of the samples.
+    pub factors: Vec<String>,
     /// Of columns that bear out others.
     other_stamps: Stamps,
 }
@@ -48,6 +52,9 @@ impl Sink for Table<'_> {
         if self.wanted.is_sensor[slot] {
             return Some(sensors::value(cell, b'.'));
         }
+        if self.wanted.counter == Some(self.wanted.columns[slot]) {
+            return Some(counting::of_words(&lines::text(cell)).unwrap_or(f64::NAN));
+        }
         if self.wanted.is_witness[slot] {
             return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
         }
@@ -57,6 +64,10 @@ impl Sink for Table<'_> {
     fn append(&mut self, parts: &mut [RowsPart]) {
         self.extend(parts, |slot| slot);
         parts.iter_mut().for_each(RowsPart::clear);
+    }
+
+    fn remark(&mut self, line: &str) {
+        self.factors.extend(preamble::factor_in(line, self.layout.dialect.delimiter));
     }
 
     fn held_bytes(&self) -> u64 {
@@ -73,7 +84,7 @@ impl<'a> Table<'a> {
         columns: Vec<HeldColumn>,
     ) -> Self {
         let (stamps, other_stamps) = (Stamps::default(), Stamps::default());
-        Self { layout, plans, wanted, columns, stamps, other_stamps }
+        Self { layout, plans, wanted, columns, stamps, factors: Vec::new(), other_stamps }
     }
 
     /// Takes over the rows of `parts`, in which the values of a slot lie at its `place`.
@@ -130,13 +141,20 @@ impl<'a> Table<'a> {
             seconds.iter_mut().zip(nanoseconds).for_each(|(s, ns)| *s = *s - zero_s + 1e-9 * ns);
         }
         let header = self.layout.columns[time].header.as_str();
+        if let Some((row, [problem, mend])) = odd_fall(&column.each) {
+            let line = self.layout.data_line + row as u64;
+            let problem = format!("the times in column {header:?} fall back at line {line}: {problem}");
+            return Err(refused(Refusal::new(problem, mend)));
+        }
         if !self.stamps.are_in(self.wanted.slot(time)) {
             let mut users = self.plans.iter().filter(|plan| is_user(plan));
             let stated_hz = users.find_map(|plan| plan.claims.cask_hz);
             let scale = time_column::scale(&self.layout.columns[time]);
             // A clock or a counter of few bits begins anew at a number that shows it.
             let each = column.each.as_slice();
-            if let Some(each) = Counter::of(each).and_then(|counter| counter.unwrapped(each)) {
+            let falls = each.windows(2).any(|pair| pair[1] < pair[0]);
+            let counter = if falls { Counter::of(each) } else { None };
+            if let Some(each) = counter.and_then(|counter| counter.unwrapped(each)) {
                 column.each = each;
             }
             let unit_s =
@@ -352,6 +370,38 @@ fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
 
 /// Times that fall in fewer rows than this tell no order.
 const LEAST_FALLING: usize = 4;
+
+/// Where numbers fall back that were written wrongly, why, and what to do: those of a fraction without its
+/// leading zeros, of which the steps become ten times as short, and those of two units.
+fn odd_fall(times: &[f64]) -> Option<(usize, [&'static str; 2])> {
+    if times.windows(2).all(|pair| pair[1] >= pair[0]) {
+        return None;
+    }
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let falls: Vec<usize> = (1..times.len().saturating_sub(1)).filter(|&at| steps[at - 1] < 0.0).collect();
+    let &first = falls.first()?;
+    let is_ratio = |one: f64, other: f64, ratio: f64| (one / other / ratio - 1.0).abs() < 0.01;
+    let is_unpadded = |&at: &usize| {
+        let (before, after) = (times[at - 1], times[at]);
+        at > 1
+            && before.trunc().total_cmp(&after.trunc()).is_eq()
+            && before.fract() > 0.89
+            && (0.1..0.2).contains(&after.fract())
+            && is_ratio(steps[at - 2], steps[at], 10.0)
+    };
+    if falls.iter().all(is_unpadded) {
+        let why = "the fraction of a second stands without its leading zeros, as `%d.%d` prints it";
+        return Some((first, [why, "write it with all its digits in a copy: 0.000100 for 100 µs"]));
+    }
+    let mut finite: Vec<f64> = steps.iter().copied().filter(|step| step.is_finite()).collect();
+    let usual = robust::median(&mut finite);
+    let of_unit = |unit: f64| steps.iter().filter(|step| is_ratio(**step, usual, unit)).count();
+    let counts = [1.0, 1e-3, 1e3, 1e-6, 1e6].map(of_unit);
+    let others: usize = counts[1..].iter().sum();
+    let is_of_two = others >= LEAST_FALLING && 50 * (steps.len() - others - counts[0]) < steps.len();
+    let why = "their steps become a thousand times as long or short there, as where the unit changes";
+    is_of_two.then_some((first, [why, "write all of them in one unit in a copy"]))
+}
 
 /// Where times, within the first four rows, fall back to the first of them.
 fn begins_anew(times: &[f64]) -> Option<usize> {
