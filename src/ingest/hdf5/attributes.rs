@@ -11,6 +11,9 @@ use crate::ingest::refusal::Refusal;
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::Meaning;
 
+/// More numbers of one attribute are no factors.
+const MOST_NUMBERS: usize = 16;
+
 /// What the recording says of a column.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Attributes {
@@ -61,8 +64,8 @@ impl Attributes {
         let said = said(column);
         let mut attributes = Self::of_said(&said, column)?;
         if attributes.scale.is_none() {
-            let near = said.iter().filter(|said| said.distance < 2 && said.role.is_none());
-            attributes.factors = near.filter_map(Said::as_factor).collect();
+            let open = said.iter().filter(|said| said.role.is_none());
+            attributes.factors = open.filter_map(Said::as_factor).collect();
         }
         let are_counts = column.number.is_whole();
         let undone = said.iter().filter(|said| said.is_undone(are_counts));
@@ -236,7 +239,7 @@ fn said(column: &DatasetColumn) -> Vec<Said> {
             distance,
             value: column.own_of(held),
             bounds: match held {
-                Held::Numbers(numbers) if numbers.len() < 3 => numbers.clone(),
+                Held::Numbers(numbers) if numbers.len() <= MOST_NUMBERS => numbers.clone(),
                 _ => Vec::new(),
             },
         }));
@@ -296,9 +299,15 @@ impl Said {
     /// `counts_to_g = 0.9`, where that may be a factor of the samples.
     fn as_factor(&self) -> Option<String> {
         let is_rate = names::rate_meaning(&self.name).is_some();
-        let is_factor = factors::is_factor(&self.name) && !is_rate && !names::ends_in_unit(&self.name);
-        let Some(value) = &self.value else { return is_factor.then(|| self.shown()) };
-        is_factor.then(|| factors::unexplained(&self.name, value)).flatten()
+        if is_rate || names::ends_in_unit(&self.name) {
+            return None;
+        }
+        let Some(value) = &self.value else {
+            let is_open = |number: &f64| factors::unexplained(&self.name, &number.to_string()).is_some();
+            let is_factor = factors::is_factor(&self.name) || self.bounds.iter().any(is_open);
+            return is_factor.then(|| self.shown());
+        };
+        factors::unexplained(&self.name, value)
     }
 
     /// `scale = 0.5`.

@@ -61,38 +61,40 @@ pub(super) fn places(column: &DatasetColumn) -> impl Iterator<Item = String> {
     records.into_iter().chain([format!("{}/", column.group())])
 }
 
-/// What says of which sensor each sample of a channel is, by its name.
+/// What says of which sensor each sample of a channel is: by its name, or whole numbers beside it.
 pub(super) fn sensors_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
-    /// Fields of other names are looked at in records of so many samples at most: each is read.
-    const MOST_SAMPLES: usize = 1 << 22;
-    let of_names = |is_named: fn(&str) -> bool| {
-        let named = places(column).flat_map(move |place| sources(&place, column, is_named));
-        named.filter_map(|source| find::find(&column.file, &source).ok()?)
-    };
-    let is_open = |ids: &DatasetColumn| {
-        let is_field = ids.is_field() && ids.number.is_whole() && ids.source != column.source;
-        is_field && ids.length < MOST_SAMPLES && !vocabulary::may_count(&ids.bare_name())
-    };
-    let unnamed = of_names(|name| !names::is_sensor(name)).filter(is_open).take(4);
-    of_names(names::is_sensor).chain(unnamed).filter(|ids| ids.length == column.length).collect()
+    let is_open = |name: &str| !names::is_sensor(name) && !vocabulary::may_count(name);
+    beside(column, names::is_sensor).chain(few(column, is_open)).collect()
 }
 
-/// What may count the samples of a channel: by its name, or a field of its records in whole numbers of 32
-/// bits and more.
+/// What may count the samples of a channel: by its name, or whole numbers beside it.
 pub(super) fn counters_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
-    /// More counters have no records.
-    const MOST: usize = 4;
-    let may_be = |other: &DatasetColumn| {
-        let is_named = vocabulary::may_count(&other.bare_name());
-        let is_wide = column.is_field() && other.number.bytes() > 2;
-        other.length == column.length
-            && other.source != column.source
-            && other.number.is_whole()
-            && (is_named || is_wide)
-    };
-    let all = places(column).flat_map(|place| sources(&place, column, |_| true));
+    let is_open = |name: &str| !names::is_time(name) && !vocabulary::may_count(name);
+    let named = beside(column, vocabulary::may_count);
+    let named = named.filter(|other| other.number.is_whole() && other.source != column.source);
+    named.chain(few(column, is_open)).collect()
+}
+
+/// What is named so beside a channel, itself among them, of as many samples.
+fn beside(
+    column: &DatasetColumn,
+    is_named: impl Fn(&str) -> bool + Copy,
+) -> impl Iterator<Item = DatasetColumn> {
+    let all = places(column).flat_map(move |place| sources(&place, column, is_named));
     let found = all.filter_map(|source| find::find(&column.file, &source).ok()?);
-    found.filter(may_be).take(MOST).collect()
+    found.filter(|other| other.length == column.length)
+}
+
+/// Whole numbers that are named so, as many as may be read beside each channel.
+fn few(
+    column: &DatasetColumn,
+    is_named: impl Fn(&str) -> bool + Copy,
+) -> impl Iterator<Item = DatasetColumn> {
+    /// Of all together.
+    const MOST_SAMPLES: usize = 1 << 22;
+    let most = (MOST_SAMPLES / column.length.max(1)).min(MOST_TIMES);
+    let is_it = |other: &DatasetColumn| other.number.is_whole() && other.source != column.source;
+    beside(column, is_named).filter(is_it).take(most)
 }
 
 /// Why a channel has no times: what is named as times beside it, and is none of its own.
@@ -108,7 +110,7 @@ pub(super) fn why_none(column: &DatasetColumn) -> String {
 
 /// What is named so in a group (`/daq/`) or in records (`/daq/table.`), likeliest first; what MATLAB's cells
 /// hold is named by chance.
-fn sources(place: &str, column: &DatasetColumn, is_named: fn(&str) -> bool) -> Vec<String> {
+fn sources(place: &str, column: &DatasetColumn, is_named: impl Fn(&str) -> bool) -> Vec<String> {
     let path = place.trim_end_matches(['/', '.']);
     let mut names = match &*column.file.object(if path.is_empty() { "/" } else { path }) {
         Object::Group { times, .. } if !path.ends_with("/#refs#") => times.clone(),

@@ -222,8 +222,8 @@ fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Store
 fn attributes_of(place: &Location) -> Vec<(String, AttributeValue)> {
     // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at them.
     let names = place.attr_names().unwrap_or_default().into_iter().map(String::into_bytes);
-    let names = names.filter_map(|name| String::from_utf8(name).ok()).filter(|name| names::is_read(name));
-    let held = names.filter_map(|name| {
+    let names = names.filter_map(|name| String::from_utf8(name).ok()).collect();
+    let held = names::likeliest(names).into_iter().filter_map(|name| {
         let attribute = place.attr(&name).ok()?;
         Some((name, value(&attribute)?))
     });

@@ -103,6 +103,15 @@ pub(super) fn is_read(name: &str) -> bool {
         || factors::is_factor(name)
 }
 
+/// Those names first that say something of samples; a number of any other name may be a factor of them.
+pub(super) fn likeliest(mut names: Vec<String>) -> Vec<String> {
+    /// No place says more of its samples.
+    const MOST: usize = 256;
+    names.sort_by_key(|name| !is_read(name));
+    names.truncate(MOST);
+    names
+}
+
 /// Whether a dataset or field of this name is one of times; `axis1` is the index of a pandas frame.
 pub(super) fn is_time(name: &str) -> bool {
     let last = name.rsplit_once('.').map_or(name, |(_, last)| last);

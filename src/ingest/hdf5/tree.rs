@@ -26,6 +26,9 @@ const MATLAB_OTHER: &[u8] = b"text or cells of MATLAB";
 /// No group has more datasets of one value that say something of samples.
 const MOST_ONES: usize = 64;
 
+/// Names of a group that are looked at beside its samples.
+const MOST_BESIDE: usize = 256;
+
 pub(super) const ELSEWHERE: &str = "a link into another file, which is not followed";
 const UNNAMED: &str =
     "its name is not UTF-8, and the HDF5 library is asked by names in UTF-8: rename it in a copy";
@@ -140,7 +143,9 @@ impl<S: Store> Tree<S> {
                 let is_beside = |name: &&String| {
                     names::is_time(name) || names::is_sensor(name) || vocabulary::may_count(name)
                 };
-                let times = self.members(&group).keys().filter(is_beside).cloned().collect();
+                let mut times: Vec<String> = self.members(&group).keys().cloned().collect();
+                times.sort_by_key(|name| !is_beside(&name));
+                times.truncate(MOST_BESIDE);
                 Object::Group { attributes, times }
             }
             Ok(Object::Dataset(mut told)) => {
@@ -168,8 +173,8 @@ impl<S: Store> Tree<S> {
         if let Object::Group { attributes, .. } = &mut object
             && !group.ends_with("/#refs#")
         {
-            let names = self.members(group).keys().filter(|name| names::is_read(name)).take(MOST_ONES);
-            for name in names.cloned().collect::<Vec<String>>() {
+            let names = names::likeliest(self.members(group).keys().cloned().collect());
+            for name in names.into_iter().take(MOST_ONES) {
                 let path = format!("{group}/{name}");
                 if let Object::Dataset(told) = self.object(&path)
                     && told.type_name != MATLAB_OTHER
@@ -198,7 +203,8 @@ impl<S: Store> Tree<S> {
 
 /// Whether a dataset holds a factor for each of some channels: `channel_bit_volts`.
 fn may_be_factors(name: &str, shape: &[usize]) -> bool {
-    names::role(name, 1).is_none()
+    names::is_read(name)
+        && names::role(name, 1).is_none()
         && names::rate_meaning(name).is_none()
         && shape.iter().product::<usize>() <= MOST_ONES
 }

@@ -14,14 +14,17 @@ pub(super) fn held(
     raw: &[RawAttribute],
 ) -> Result<Vec<(String, AttributeValue)>, Vec<Bytes>> {
     let mut held = Vec::new();
-    for attribute in raw.iter().filter(|attribute| names::is_read(attribute.name())) {
+    let names = names::likeliest(raw.iter().map(|attribute| attribute.name().to_owned()).collect());
+    for attribute in raw.iter().filter(|attribute| names.iter().any(|name| name == attribute.name())) {
         let (message, space) = (attribute.message(), &attribute.message().dataspace);
         let count = match space.dataspace_type {
             DataspaceType::Null => 0,
             DataspaceType::Scalar => 1,
             DataspaceType::Simple => space.dims.iter().fold(1, |all: u64, size| all.saturating_mul(*size)),
         };
-        if let Some(value) = value(file, attribute.raw_datatype(), &message.raw_data, count)? {
+        let value = value(file, attribute.raw_datatype(), &message.raw_data, count);
+        let is_read = names::is_read(attribute.name());
+        if let Some(value) = if is_read { value? } else { value.unwrap_or_default() } {
             held.push((message.name.clone(), value));
         }
     }
