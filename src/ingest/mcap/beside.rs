@@ -16,6 +16,8 @@ pub(super) struct SaidBeside<'a> {
     pub(super) unit: Option<&'a str>,
     /// The nearest first, whatever their values.
     pub(super) rates: Vec<StatedRate>,
+    /// The time of each of their array, and its field.
+    times: Option<(&'a Samples, &'a Beside)>,
     /// What else is said by a number, the nearest first.
     numbers: Vec<(f64, &'a Beside)>,
 }
@@ -46,8 +48,12 @@ impl Slots {
                     let (name, unit) = (beside.field.as_str().into(), unit.and_then(words).cloned());
                     said.rates.push(StatedRate { name, meaning, level, value, unit });
                 }
+                (Says::Time | Says::Times, Some(Value::Array(all))) => {
+                    said.times.get_or_insert((all, beside));
+                }
                 (Says::Factor, Some(Value::Array(all))) if !all.is_empty() => {
-                    said.numbers.push((all.get(0), beside));
+                    let fraction = (0..all.len()).map(|at| all.get(at)).find(|x| x.fract() != 0.0);
+                    said.numbers.push((fraction.unwrap_or_else(|| all.get(0)), beside));
                 }
                 (_, Some(Value::Number { value, .. })) => said.numbers.push((*value, beside)),
                 _ => {}
@@ -67,6 +73,16 @@ impl SaidBeside<'_> {
     pub(super) fn factors(&self) -> impl Iterator<Item = (f64, &Beside)> {
         let is_scaled = self.nearest(|says| says == Says::Scale).is_some();
         self.numbers.iter().filter(move |(_, beside)| beside.says == Says::Factor && !is_scaled).copied()
+    }
+
+    /// The times of so many samples in an array, and their field.
+    pub(super) fn times(&self, count: usize) -> Option<(&Samples, &Beside)> {
+        self.times.filter(|(times, _)| times.len() == count)
+    }
+
+    /// Numbers of whose names nothing is known.
+    pub(super) fn others(&self) -> impl Iterator<Item = (f64, &Beside)> {
+        self.numbers.iter().filter(|(_, beside)| beside.says == Says::Other).copied()
     }
 
     fn nearest(&self, is_it: impl Fn(Says) -> bool) -> Option<(f64, &Beside)> {

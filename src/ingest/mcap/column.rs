@@ -3,6 +3,7 @@
 use super::numbers::{Extent, append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
+use crate::ingest::counting::SteadyNumbers;
 use crate::ingest::factors;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::PREFIX;
@@ -56,6 +57,8 @@ pub(super) struct Column {
     rates: Vec<StatedRate>,
     /// Numbers that may be factors of the samples, with their fields.
     factors: Vec<(String, f64)>,
+    /// Numbers of other fields beside the samples, by their slots and names.
+    others: Vec<(usize, String, SteadyNumbers)>,
     /// Which sample or block came last with a stamp of exactly zero.
     zero_stamp: Option<usize>,
     /// Numbers that are the times of messages, where these carry such.
@@ -76,6 +79,9 @@ struct SentTimes {
     /// One a message, NaN where it carries none.
     each: Vec<f64>,
 }
+
+/// What the number of a message in its own record is called.
+pub(super) const SEQUENCE: &str = "sequence";
 
 /// Of so many messages the log times are kept: enough to tell how they run against the stamps.
 const MOST_LOGGED: usize = 512;
@@ -182,10 +188,24 @@ impl Column {
         }
     }
 
-    /// Those numbers, for people.
+    /// Takes a number that stands beside the samples of a message.
+    pub(super) fn see_other(&mut self, slot: usize, field: &str, number: f64) {
+        let known = self.others.iter().position(|other| other.0 == slot);
+        let at = known.unwrap_or_else(|| {
+            self.others.push((slot, field.to_owned(), SteadyNumbers::default()));
+            self.others.len() - 1
+        });
+        self.others[at].2.push(number);
+    }
+
+    /// Numbers that may be factors of the samples, for people.
     pub(super) fn factors(&self) -> Vec<String> {
         let shown = |(field, factor): &(String, f64)| factors::unexplained(field, &factor.to_string());
-        self.factors.iter().filter_map(shown).collect()
+        let constant = self
+            .others
+            .iter()
+            .filter_map(|(_, field, numbers)| factors::unexplained(field, &numbers.constant()?.to_string()));
+        self.factors.iter().filter_map(shown).chain(constant).collect()
     }
 
     /// Takes a rate that a message states.
@@ -248,6 +268,12 @@ impl Column {
         self.next_logged = self.next_logged.max(before + std::mem::take(&mut other.next_logged));
         for (field, factor) in other.factors.drain(..) {
             self.state_factor(&field, factor);
+        }
+        for (slot, field, mut numbers) in other.others.drain(..) {
+            match self.others.iter_mut().find(|own| own.0 == slot) {
+                Some(own) => own.2.append(&mut numbers),
+                None => self.others.push((slot, field, numbers)),
+            }
         }
         self.refused = self.refused.take().or(other.refused.take());
         self.good_stamps += std::mem::take(&mut other.good_stamps);

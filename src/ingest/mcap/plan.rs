@@ -97,6 +97,8 @@ pub(super) enum Says {
     Stamp,
     /// Their time, as a number.
     Time,
+    /// The time of each of an array of samples.
+    Times,
     /// By what they are to be multiplied.
     Scale,
     /// What is to be added to them.
@@ -115,6 +117,8 @@ pub(super) enum Says {
     Rate { meaning: Meaning, level: usize, unit: Option<usize> },
     /// Their unit, or that of a rate.
     Unit,
+    /// Nothing by its name; its numbers may count them, or be one factor of all.
+    Other,
 }
 
 /// A field that says something of the samples beside it.

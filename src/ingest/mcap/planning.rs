@@ -9,12 +9,10 @@ use crate::ingest::vocabulary::{self, Meaning};
 /// So many fields are heeded for one signal besides stamps, units and rates: no message says more of its
 /// samples.
 const MOST_BESIDE: usize = 32;
+/// Of those whose names say nothing.
+const MOST_OTHERS: usize = 8;
 /// So many fields of a message type are heeded: no sensor's message says more of its samples.
 const MOST_TELLING: usize = 64;
-
-/// Fields whose own say something of the samples beside them.
-const META: [&str; 8] =
-    ["meta", "metadata", "info", "config", "settings", "calibration", "cal", "attributes"];
 
 impl Plan {
     /// The plan for what is asked of messages with such `leaves`, as far as these are known; other fields are
@@ -75,8 +73,10 @@ impl BesideField<'_> {
         let is_new = self.all.iter().all(|known| (known.slot, known.says) != (slot, says));
         // The paths of others are said in refusals.
         let has_path = |says: Says| !matches!(says, Says::Stamp | Says::Unit | Says::Rate { .. });
-        let with_path = self.all.iter().filter(|known| has_path(known.says)).count();
-        if is_new && (!has_path(says) || with_path < MOST_BESIDE) {
+        let is_other = says == Says::Other;
+        let is_alike = |known: &&Beside| has_path(known.says) && (known.says == Says::Other) == is_other;
+        let (alike, most) = (self.all.iter().filter(is_alike).count(), [MOST_BESIDE, MOST_OTHERS]);
+        if is_new && (!has_path(says) || alike < most[usize::from(is_other)]) {
             let name = || path.last_name().unwrap_or_default().to_owned();
             let field = if has_path(says) { path.to_string() } else { name() };
             self.all.push(Beside { slot, says, field });
@@ -114,12 +114,23 @@ impl BesideField<'_> {
     /// something of them.
     fn others(&mut self, message: &FieldPath, level: usize) {
         let asked = self.asked;
-        let is_beside = |t: &&Telling| t.message == *message && t.path != asked.path;
-        for Telling { path, says, .. } in self.telling.iter().filter(is_beside) {
+        // A number within a structure beside them may be of them too.
+        let is_inner = |t: &Telling| {
+            matches!(t.says, Says::Scale | Says::Conversion | Says::Factor | Says::Other)
+                && t.message.0.len() == message.0.len() + 1
+                && t.message.0.starts_with(&message.0)
+        };
+        let is_beside = |t: &&Telling| (t.message == *message || is_inner(t)) && t.path != asked.path;
+        for telling in self.telling.iter().filter(is_beside) {
+            let Telling { path, says, .. } = telling;
             match says {
+                Says::Scale | Says::Conversion if telling.message != *message => {
+                    self.say(path, Want::Numbers, Says::Factor);
+                }
                 Says::Sensor if asked.may_be_sensor(path) => self.sensor(path),
                 Says::Time if asked.times.is_none() => self.time(path),
                 Says::Rate { meaning, .. } => self.rate(path, *meaning, level),
+                Says::Times if asked.times.is_some() => {}
                 Says::Sensor | Says::Time | Says::Unit => {}
                 says => self.say(path, Want::Numbers, *says),
             }
@@ -137,13 +148,16 @@ struct Telling {
 impl Telling {
     /// Those among the leaves of a message type, the first of them.
     fn among(leaves: &[Leaf]) -> Vec<Self> {
-        leaves.iter().filter_map(Self::of).take(MOST_TELLING).collect()
+        let mut all: Vec<Self> = leaves.iter().filter_map(Self::of).collect();
+        all.sort_by_key(|telling| telling.says == Says::Other);
+        all.truncate(MOST_TELLING);
+        all
     }
 
     fn of(leaf: &Leaf) -> Option<Self> {
         let path = FieldPath::parse(&leaf.path)?;
         let (Step::Name(name), mut message) = path.0.split_last()? else { return None };
-        let mut says = Says::of(name, leaf.is_signal);
+        let mut says = Some(Says::of(name, leaf.is_signal));
         match message.split_last() {
             Some((Step::Name(header), outer)) if header == "header" => message = outer,
             // `std_msgs/MultiArrayLayout`, which stands beside its array.
@@ -155,13 +169,8 @@ impl Telling {
             _ => {}
         }
         if leaf.is_array {
-            says = says.filter(|says| *says == Says::Factor);
-        }
-        if let (Some(Says::Scale | Says::Factor), Some((Step::Name(inner), outer))) =
-            (says, message.split_last())
-            && META.contains(&inner.as_str())
-        {
-            (message, says) = (outer, Some(Says::Factor));
+            says = says.map(|says| if says == Says::Time { Says::Times } else { says });
+            says = says.filter(|says| matches!(says, Says::Factor | Says::Times));
         }
         // The stamp of a header is known by its name.
         says = says.filter(|says| *says != Says::Time || message.len() + 1 == path.0.len());
@@ -171,8 +180,8 @@ impl Telling {
 
 impl Says {
     /// What a field of this name says; words and single bytes are no signal.
-    fn of(name: &str, is_signal: bool) -> Option<Self> {
-        Some(match (role(name, 1), vocabulary::meaning(name)) {
+    fn of(name: &str, is_signal: bool) -> Self {
+        match (role(name, 1), vocabulary::meaning(name)) {
             _ if vocabulary::is_sensor(name) => Self::Sensor,
             _ if !is_signal && (name.ends_with("_unit") || name.ends_with("_units")) => Self::Unit,
             _ if is_signal && vocabulary::is_named_time(name) && !STAMP_NAMES.contains(&&[name][..]) => {
@@ -186,7 +195,7 @@ impl Says {
             (_, Some(Meaning::Count)) => Self::Count,
             (_, Some(meaning)) if !RATE_NAMES.contains(&name) => Self::Rate { meaning, level: 0, unit: None },
             _ if is_signal && factors::is_factor(name) => Self::Factor,
-            _ => return None,
-        })
+            _ => Self::Other,
+        }
     }
 }

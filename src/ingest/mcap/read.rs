@@ -11,6 +11,7 @@ use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{RawChannel, RawRecording, ReadRequest};
+use crate::numerics::as_f64;
 use std::path::Path;
 
 /// Reads the channels that `cask_file` names.
@@ -35,6 +36,10 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
             return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
     }
+    let messages = as_f64(usize::try_from(scanned.counts.messages()).unwrap_or(usize::MAX));
+    let others_messages = |one: &TopicSeries| {
+        messages - as_f64(usize::try_from(one.channel.gathered.messages).unwrap_or_default())
+    };
     let spans = || chosen.iter().filter_map(|&at| series[at].column.span_ns());
     let zero_ns = spans().map(|(from, _)| from).min().unwrap_or(0);
     let last_ns = spans().map(|(_, to)| to).max().unwrap_or(0);
@@ -46,7 +51,12 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         if let Some(change) = of_channel.column.unit_change() {
             issues.push(complaint::unit_change(spec, change).map_err(|refusal| refused(spec, refusal))?);
         }
-        let (unit, factors) = (of_channel.unit(), of_channel.column.factors());
+        let is_named = cask_file.time_of(spec).is_some();
+        let counted = of_channel.column.held_against_counter(is_named, others_messages(of_channel));
+        issues.extend(counted.map_err(|refusal| refused(spec, refusal))?.map(|found| found.on(&spec.name)));
+        let mut factors = of_channel.column.factors();
+        factors.extend(of_channel.channel.gathered.factors.iter().chain(&scanned.factors).cloned());
+        let unit = of_channel.unit();
         // A second channel on the same field gets its own copy.
         let column = if chosen[position + 1..].contains(&at) {
             of_channel.column.clone()

@@ -12,6 +12,8 @@ pub(super) struct Scanned {
     pub(super) profile: String,
     pub(super) library: String,
     pub(super) compressions: BTreeSet<String>,
+    /// What metadata records state that may be factors of samples.
+    pub(super) factors: Vec<String>,
     /// Number of messages that the file's own statistics claim.
     pub(super) claimed_messages: Option<u64>,
     /// What could not be read, in the order of the file.

@@ -1,6 +1,7 @@
 //! The messages of a topic with the fields that are asked for, and what they gave for each.
 
-use super::column::{Column, MessageTime};
+use super::beside::SaidBeside;
+use super::column::{Column, MessageTime, SEQUENCE};
 use super::json;
 use super::message_type::MessageType;
 use super::plan::{Beside, Decode, Field, Leaf, Plan, Slots, Value};
@@ -45,6 +46,7 @@ impl Topic {
 /// A message of a channel.
 pub(super) struct Message<'a> {
     pub(super) channel: u16,
+    sequence: u32,
     log_time_ns: i64,
     pub(super) data: &'a [u8],
 }
@@ -53,9 +55,11 @@ impl<'a> Message<'a> {
     /// From its record: channel, sequence (4 bytes), log time, publish time (8 bytes), data.
     pub(super) fn parse(body: &'a [u8]) -> Option<Self> {
         let (&channel, rest) = body.split_first_chunk()?;
-        let (&log_time, rest) = rest.get(4..)?.split_first_chunk()?;
+        let (&sequence, rest) = rest.split_first_chunk()?;
+        let (&log_time, rest) = rest.split_first_chunk()?;
         let log_time_ns = i64::try_from(u64::from_le_bytes(log_time)).unwrap_or(i64::MAX);
-        Some(Self { channel: u16::from_le_bytes(channel), log_time_ns, data: rest.get(8..)? })
+        let (channel, sequence) = (u16::from_le_bytes(channel), u32::from_le_bytes(sequence));
+        Some(Self { channel, sequence, log_time_ns, data: rest.get(8..)? })
     }
 }
 
@@ -116,6 +120,8 @@ pub(super) struct Gathered {
     has_further: bool,
     /// The numeric fields of a message in JSON that lacks one that is asked for.
     pub(super) leaves: Vec<Leaf>,
+    /// What the channel's own record states that may be a factor of its samples.
+    pub(super) factors: Vec<String>,
 }
 
 impl Gathered {
@@ -142,8 +148,13 @@ impl Gathered {
             said.rates.iter().for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(said.stamp, message.log_time_ns);
             said.factors().for_each(|(factor, beside)| column.state_factor(&beside.field, factor));
+            if !is_listed {
+                said.others()
+                    .for_each(|(number, beside)| column.see_other(beside.slot, &beside.field, number));
+                column.see_other(usize::MAX, SEQUENCE, f64::from(message.sequence));
+            }
             match said.applied(value, field.asked.is_scaled) {
-                Ok(value) => column.take(value, time, said.tick()),
+                Ok(value) => take_each(column, value, time, &said),
                 Err(refusal) => column.refuse(refusal),
             }
         }
@@ -242,6 +253,20 @@ impl Gathered {
     /// The columns of all sensors.
     fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
         self.sensors.iter_mut().flat_map(|sensor| &mut sensor.columns)
+    }
+}
+
+/// Takes what one message gave, samples with times of their own each at its time.
+fn take_each(column: &mut Column, value: Value, time: MessageTime, said: &SaidBeside) {
+    if let Value::Array(samples) = &value
+        && let Some((times, beside)) = said.times(samples.len())
+    {
+        for at in 0..samples.len() {
+            let sample = Value::Number { value: samples.get(at), is_narrow: false };
+            column.take(sample, time, Some((times.get(at), beside)));
+        }
+    } else {
+        column.take(value, time, said.tick());
     }
 }
 

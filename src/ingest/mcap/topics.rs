@@ -9,7 +9,7 @@ use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Scanned;
 use super::topic::{Gathered, Message, Part, Topic, TopicSeries};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
-use crate::ingest::Limits;
+use crate::ingest::{Limits, factors};
 use mcap::Schema;
 use mcap::records::{Channel, Record, SchemaHeader, op};
 use std::collections::hash_map::Entry;
@@ -26,6 +26,9 @@ pub(super) const LOG_TIME: &str = "log_time";
 /// Why a topic of such messages cannot be read.
 pub(super) const LISTS_OF_RECORDS: &str =
     "its messages hold lists of records: a message a record is read, or an array of numbers for each field";
+
+/// So many entries of one metadata are looked at.
+pub(super) const MOST_METADATA: usize = 64;
 
 /// What may still be listed, and what was left out.
 #[derive(Default)]
@@ -65,6 +68,8 @@ pub(super) struct Topics<'a> {
     pub(super) by_channel: HashMap<u16, Option<(usize, usize)>>,
     /// The topic and the number of each channel that is asked for, in the order of the file.
     channels: Vec<(usize, u16)>,
+    /// What the record of each channel states that may be a factor of its samples.
+    factors: HashMap<u16, Vec<String>>,
     room: Room,
     /// Memory of the names and schemas.
     pub(super) held_bytes: u64,
@@ -104,6 +109,10 @@ impl<'a> Topics<'a> {
                 if is_complete || !is_ahead {
                     self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
                     let topic = self.topic(&channel);
+                    let stated = channel.metadata.iter().take(MOST_METADATA);
+                    let factors =
+                        stated.filter_map(|(name, text)| factors::unexplained(name, text)).collect();
+                    self.factors.insert(channel.id, factors);
                     self.by_channel.insert(channel.id, topic.map(|topic| (topic, self.channels.len())));
                     self.channels.extend(topic.map(|topic| (topic, channel.id)));
                 }
@@ -267,8 +276,10 @@ impl<'a> Topics<'a> {
     pub(super) fn finish(self, taken: Part) -> Vec<TopicSeries> {
         let is_listed = self.asked.is_none();
         let mut channels: Vec<Vec<(u16, Gathered)>> = self.all.iter().map(|_| Vec::new()).collect();
-        for ((topic, number), gathered) in self.channels.into_iter().zip(taken.gathered) {
+        let mut factors = self.factors;
+        for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
             if gathered.messages > 0 {
+                gathered.factors = factors.remove(&number).unwrap_or_default();
                 channels[topic].push((number, gathered));
             }
         }

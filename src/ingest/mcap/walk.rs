@@ -6,10 +6,11 @@ use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary, Summed};
 use super::topic::{Part, TopicSeries};
-use super::topics::Topics;
+use super::topics::{MOST_METADATA, Topics};
 use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::factors;
 use mcap::records::{Record, op};
 use rayon::prelude::*;
 use std::io::{BufReader, Read};
@@ -22,6 +23,9 @@ const MOST_PACKED_BYTES: u64 = 16 << 20;
 /// The chunks of a batch unpack to at most so many bytes, by their own word; a larger chunk is a batch by
 /// itself.
 const MOST_UNPACKED_BYTES: u64 = 64 << 20;
+
+/// A longer metadata record holds files, not what a sensor's samples are multiplied by.
+const MOST_METADATA_BYTES: u64 = 1 << 16;
 
 /// A walk through a file: where it stands, and what it found.
 pub(super) struct Walk<'a> {
@@ -179,8 +183,9 @@ impl<'a> Walk<'a> {
     fn whole_record(&mut self, opcode: u8, length: u64) -> Result<ControlFlow<()>, IngestError> {
         let (start, is_behind_data) = (self.at, self.is_behind_data());
         self.at += RECORD_HEADER_BYTES + length;
-        let is_data =
-            matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE) && !is_behind_data;
+        let is_short = opcode == op::METADATA && length <= MOST_METADATA_BYTES;
+        let is_data = (is_short || matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE))
+            && !is_behind_data;
         if !is_behind_data {
             self.scanned.counts.add(opcode);
         }
@@ -204,6 +209,13 @@ impl<'a> Walk<'a> {
             _ => match mcap::parse_record(opcode, body) {
                 Ok(Record::Header(header)) => {
                     (scanned.profile, scanned.library) = (header.profile, header.library);
+                    Ok(())
+                }
+                Ok(Record::Metadata(stated)) => {
+                    let factors = stated.metadata.iter().take(MOST_METADATA);
+                    let factors = factors.filter_map(|(name, text)| factors::unexplained(name, text));
+                    scanned.factors.extend(factors);
+                    scanned.factors.truncate(MOST_METADATA);
                     Ok(())
                 }
                 Ok(Record::Statistics(statistics)) => {

@@ -1,10 +1,12 @@
 //! What a column's messages gave, and what they say of its rate and times, to samples on a uniform base;
 //! their log times to how their pace differs from that of the stamps.
 
-use super::{Column, SentTimes, StatedRate, seconds_from};
-use crate::data::{Finding, ListedChannel, McapFinding};
+use super::{Column, SEQUENCE, SentTimes, StatedRate, seconds_from};
+use crate::data::{Finding, ListedChannel, McapFinding, TableFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
+use crate::ingest::counting::{self, Counter};
 use crate::ingest::mcap::path::FieldPath;
+use crate::ingest::mcap::topics::LOG_TIME;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, Uniform};
@@ -123,6 +125,47 @@ impl Column {
         self.times_ns.iter_mut().zip(&each).for_each(|(time_ns, tick)| *time_ns = ns(*tick));
         (self.good_stamps, self.bad_stamps) = (count as u64, 0);
         Ok(())
+    }
+
+    /// What a counter beside the samples says against the times of its messages; `is_named` where the cask
+    /// file names those, and `messages` have other channels, which may share a counter.
+    ///
+    /// # Errors
+    /// Messages are missing over which times go on that nobody named.
+    pub(crate) fn held_against_counter(
+        &self,
+        is_named: bool,
+        messages: f64,
+    ) -> Result<Option<Finding>, Refusal> {
+        let Some((from_ns, _)) = self.span_ns() else { return Ok(None) };
+        let times_s: Vec<f64> = self.times_ns.iter().map(|time| seconds_from(*time, from_ns)).collect();
+        for (_, header, numbers) in &self.others {
+            let counts = numbers.values();
+            let jumps = Counter::of(&counts).map_or(Vec::new(), |counter| counter.jumps(&counts));
+            let lost: f64 = jumps.iter().map(|jump| jump.1).sum();
+            let is_shared = header == SEQUENCE && lost <= messages;
+            let is_room = |(row, lost): &(usize, f64)| counting::is_room(&times_s, *row, *lost);
+            if counts.len() != times_s.len() || is_shared || lost > as_f64(counts.len()) {
+                continue;
+            }
+            let Some(&(row, first)) = jumps.first().filter(|_| !jumps.iter().all(is_room)) else { continue };
+            let times = if self.good_stamps > 0 { "stamp" } else { LOG_TIME }.to_owned();
+            if is_named {
+                let header = header.clone();
+                return Ok(Some(
+                    TableFinding::CounterBesideTimes { header, lost, row: row + 1, times }.into(),
+                ));
+            }
+            let mut refusal = counting::contradiction(header, lost, (row, first), &times);
+            if header == SEQUENCE {
+                refusal.remedy = "where messages were lost measure again, or cut the recording before them; \
+                    where they count something else write time = \"log_time\" under [recording] of the \
+                    cask file"
+                    .into();
+            }
+            return Err(refusal);
+        }
+        Ok(None)
     }
 
     /// That the log times of its messages run at another pace than their stamps.
