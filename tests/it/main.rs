@@ -8,6 +8,7 @@ mod check;
 mod command_line;
 mod csv_times;
 mod damage;
+mod dialects;
 mod documents;
 mod filter;
 mod first_look;
