@@ -19,6 +19,10 @@ const LEAST_ROWS: f64 = 12.0;
 const LEAST_DIFFERENCE: f64 = 0.04;
 /// The parts keep to the whole's difference within this part of it.
 const ALIKE: f64 = 0.35;
+/// Large samples of nearly one size are of no shock.
+const MOST_LEVEL: f64 = 0.95;
+/// What the factors of more than two sensors leave of the rows' differences.
+const MOST_LEFT: f64 = 0.25;
 /// Rows that are compared at first.
 const WINDOW: usize = 4;
 /// Bits by which a run must be less likely than chance among all pairs of rows.
@@ -89,13 +93,14 @@ fn factor_of(centred: &Centred, large: &[usize], turn: usize) -> Option<f64> {
     let rows: Vec<(usize, f64)> = rows.filter(|(_, mean)| mean.is_finite()).collect();
     let energy: f64 = rows.iter().map(|(_, mean)| mean * mean).sum();
     let fourth: f64 = rows.iter().map(|(_, mean)| mean.powi(4)).sum();
-    if energy * energy < as_f64(turn) * LEAST_ROWS * fourth || energy <= 0.0 {
+    let is_level = energy * energy > MOST_LEVEL * as_f64(rows.len()) * fourth;
+    if energy * energy < as_f64(turn) * LEAST_ROWS * fourth || energy <= 0.0 || (turn > 2 && is_level) {
         return None;
     }
     // Of each part, of each sensor: the products and the squares.
     let mut sums = vec![vec![[0.0; 2]; turn]; PARTS];
     let mut before = 0.0;
-    for (row, mean) in rows {
+    for &(row, mean) in &rows {
         let part = (0..PARTS - 1).find(|part| before < energy * as_f64(part + 1) / as_f64(PARTS));
         let [products, squares] = &mut sums[part.unwrap_or(PARTS - 1)][row % turn];
         (*products, *squares) = (*products + centred.at(row) * mean, *squares + mean * mean);
@@ -110,6 +115,13 @@ fn factor_of(centred: &Centred, large: &[usize], turn: usize) -> Option<f64> {
     let off = |other: &[f64]| whole.iter().zip(other).map(|(own, other)| (own - other).powi(2)).sum::<f64>();
     let (least, most) = extent(whole.iter().copied());
     let size = off(&vec![1.0; turn]);
+    // Ringing of as many rows a period adds to the samples, and the sensors' factors explain them.
+    let left = |factor: &dyn Fn(usize) -> f64| -> f64 {
+        rows.iter().map(|(row, mean)| (centred.at(*row) - factor(row % turn) * mean).powi(2)).sum()
+    };
+    if turn > 2 && left(&|sensor| whole[sensor]) > MOST_LEFT * left(&|_| 1.0) {
+        return None;
+    }
     let is_alike = |part: &Vec<[f64; 2]>| off(&pattern(&|sensor| part[sensor])) <= ALIKE * ALIKE * size;
     (most - least >= LEAST_DIFFERENCE && sums.iter().all(is_alike)).then_some(least / most)
 }
