@@ -2,7 +2,7 @@
 //! shows.
 
 use super::flight_search::{self, Patience};
-use super::{missing_end, rest};
+use super::{missing_end, rest, skin};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop,
     DropFinding, Effect, End, Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity,
@@ -47,6 +47,8 @@ pub(super) struct Impact {
     pub goes_on: bool,
     /// How long the flight after it is sought.
     pub patience: Patience,
+    /// What pairs of sensors on the skin read across the plane of the drop.
+    pub across: Vec<Signal>,
     /// The channels beside the accelerometers.
     pub others: Arc<OtherChannels>,
 }
@@ -94,6 +96,7 @@ impl Impact {
         let left_out = silent.iter().filter(|f| f.effect == Effect::Channel).chain(&copied);
         signals.retain(|signal| left_out.clone().all(|f| f.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
+        let across = skin::turn_into_plane(&mut signals, &file.channels);
         let Some(contact) = first_contact(&file.cask, &signals, &event) else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), Some(&event)));
             return None;
@@ -108,7 +111,8 @@ impl Impact {
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (own_rests, fall_s) = before(recording, drop, contact.time_s);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
-        let rests = if own_rests.is_empty() { of_file() } else { own_rests };
+        let mut rests = if own_rests.is_empty() { of_file() } else { own_rests };
+        skin::turn_rests(&mut rests, &signals, &file.channels);
         let impact = Self {
             signals,
             contact,
@@ -120,6 +124,7 @@ impl Impact {
             is_record_end: recording.end_s() <= sought_to_s,
             goes_on,
             patience: seek.patience,
+            across,
             others: Arc::clone(&recording.others),
         };
         findings.extend(judge::judge_fall(drop, &impact.events()));

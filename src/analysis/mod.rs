@@ -29,6 +29,7 @@ mod second_look;
 mod setup;
 mod shocks;
 mod simulation;
+mod skin;
 
 pub use check::check;
 pub use first_look::look_at_each;
@@ -193,6 +194,7 @@ fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> A
     findings.extend(judge::judge_jumps(impact.recorded(), events));
     let filtered = judge::judge_bandwidth(impact.recorded(), events, cutoff_hz, &findings);
     findings.extend(filtered);
+    findings.extend(skin::judge_across(impact, events, file));
     let judged = |flown: &FlightResult| Measured::of(flown, impact, events, file, &mut findings);
     let measured = flown.as_ref().and_then(judged);
     if measured.is_none() {

@@ -48,7 +48,8 @@ pub(super) fn of(
     let signals = impact.recorded();
     let recorded = signals.len();
     let mut result = result(recording, file, findings, events, quantities);
-    for ((summary, signal), smooth) in result.channels.iter_mut().zip(signals).zip(&shown.smooth) {
+    for (signal, smooth) in signals.iter().zip(&shown.smooth) {
+        let Some(summary) = result.channels.iter_mut().find(|c| c.name == signal.name) else { continue };
         let peak = |of: &Signal| peak(&of.force_m_s2[motion::shown(of, &events)]);
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);

@@ -54,6 +54,44 @@ pub enum Axis {
     Axial,
 }
 
+/// Which way a sensor on the skin reads: away from the axis of the cask, towards a growing angle around it, or
+/// along it from L to R.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the words above")]
+pub enum SkinDirection {
+    Radial,
+    Tangential,
+    Axial,
+}
+
+/// Where around the skin a sensor sits, and which way it reads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SkinPlace {
+    /// From the lowest line (0) by the side (π/2) to the uppermost (π), rad.
+    pub around_rad: f64,
+    /// Which way it reads.
+    pub direction: SkinDirection,
+}
+
+impl SkinPlace {
+    /// What the sensor reads of an acceleration away from the target (along the axis, of an axial one), and of
+    /// one across the plane of the drop, as shares of each   (51)
+    pub fn shares(self) -> [f64; 2] {
+        let (sin, cos) = self.around_rad.sin_cos();
+        match self.direction {
+            SkinDirection::Radial => [-cos, sin],
+            SkinDirection::Tangential => [sin, cos],
+            SkinDirection::Axial => [1.0, 0.0],
+        }
+    }
+
+    /// True if the sensor reads across the plane of the drop, within 6° of it: of the motion in the plane it
+    /// shows next to nothing.
+    pub fn is_across(self) -> bool {
+        self.shares()[0].abs() < 0.1
+    }
+}
+
 /// How the first end meets the target tangentially.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Contact {
@@ -323,11 +361,19 @@ pub struct ChannelSpec {
     pub reference: Option<String>,
     /// Place off the plane of the drop, m.
     pub lateral_m: f64,
+    /// Where around the skin it sits and which way it reads, where the file states that in place of an axis.
+    pub skin: Option<SkinPlace>,
     /// Which sensor it is.
     pub sensor: SensorRecord,
 }
 
 impl ChannelSpec {
+    /// What the sensor reads of an acceleration along its axis, as a share with its sign; 1 of one that reads
+    /// across the plane of the drop.
+    pub fn axis_share(&self) -> f64 {
+        self.skin.filter(|skin| !skin.is_across()).map_or(1.0, |skin| skin.shares()[0])
+    }
+
     /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else
     /// is stated.
     pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {

@@ -202,13 +202,18 @@ CHANNEL {
     "name": REQUIRED, Text, ask r#""A1""#, "";
     "end": REQUIRED, Text, ask r#""first""#,
         r#""first" (low, touches first), "second", or "none": no part in the motion"#;
-    "axis": REQUIRED, Text, ask r#""transverse""#,
+    "axis": "required, but beside `around_deg`", Text, ask r#""transverse""#,
         r#""transverse" (across the cask, in the plane of the drop), "axial", or "rate" (its rotation)"#;
     "source": REQUIRED, TextOrTable, ask r#""/daq/a1.samples""#, "";
     "unit": "the recording's", Text, r#""g""#, "left out: the recording says so itself";
     "position_m": REQUIRED, ANY, ask "0.15", "along the axis, from the first end";
     "offset_m": "0", ANY, "0.0",
         "across the axis, positive away from the target: half the section on the upper skin";
+    "around_deg": "–", within(-180.0, 360.0, "around the skin, in degrees: 0 is the lowest line, 90 the side, \
+         180 the uppermost line"), "180.0",
+        "around the skin from the lowest line (0) to the uppermost (180); gives `offset_m` and `lateral_m`";
+    "direction": "–", Text, r#""radial""#,
+        r#"beside `around_deg`: "radial" (positive outwards), "tangential" (towards a larger angle), "axial""#;
     "polarity": "1", ANY, "1", "-1: mounted the other way round";
     "sensitivity": "", ABOVE_ZERO, "10.0", r#"mV per g, with "V" and "mV""#;
     "scale": "1", ABOVE_ZERO, "0.9", "what is read times this is in `unit`";

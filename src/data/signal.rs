@@ -50,6 +50,8 @@ pub struct Signal {
     pub noise_spectrum: Vec<(f64, f64)>,
     /// Length of the free fall that offset and noise were taken from, s; 0 where there was too little.
     pub free_fall_s: f64,
+    /// Standard uncertainty of its scale by the angle at which a sensor alone on the skin sits, as a share.
+    pub u_around: f64,
     /// Samples that stand at a limit, of their size or of their slope.
     pub clipped: Vec<Span>,
     /// Stretches without samples.

@@ -462,6 +462,7 @@ impl InputList {
 fn scale(measured: &FitData, channel: usize) -> (f64, Shift) {
     let own = measured.spec(channel).and_then(|spec| spec.calibration);
     let share = own.unwrap_or(measured.tolerances.calibration) / 2.0;
+    let share = share.hypot(measured.signals[channel].u_around);
     let step_m_s = measured.flight.plateaus[channel].velocity_step_m_s;
     let shift = move |inputs: &mut Inputs, by: f64| {
         inputs.step(channel, by * share * step_m_s);

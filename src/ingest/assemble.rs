@@ -132,7 +132,7 @@ fn channel(
         start_s: raw.uniform.start_s - first_s,
         sample_rate_hz: raw.uniform.sample_rate_hz,
         samples: raw.uniform.samples,
-        scale_m_s2: scale.m_s2 * spec.polarity * spec.scale.unwrap_or(1.0),
+        scale_m_s2: scale.m_s2 * spec.polarity * spec.scale.unwrap_or(1.0) / spec.axis_share(),
         unit: scale.unit,
         unit_origin: scale.origin,
         is_unit_recorded: raw.unit.is_some() && scale.contradiction.is_none(),

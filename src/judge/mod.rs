@@ -1,5 +1,6 @@
 //! Everything found on the way to findings and a verdict: what speaks against the result.
 
+mod across;
 mod at_rest;
 mod bandwidth;
 mod blows;
@@ -22,6 +23,7 @@ mod skew;
 mod taps;
 mod turned;
 
+pub use across::{judge_across, judge_alone};
 pub use at_rest::{
     LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
 };

@@ -274,6 +274,16 @@ pub enum ChannelFinding {
     AnswersAsAWave { delay_s: f64, u_s: f64 } => (Code::Skew, Note, Nothing),
         ("answers the first impact {} after the first end is struck: a bending wave may take as long, or the \
          channels' clocks are apart; check that one trigger starts both", size_ms(*delay_s, *u_s));
+    /// A mounting block shows a motion across the plane of the drop.
+    MovesAcross { velocity_m_s: f64, u_m_s: f64 } => (Code::NotPlanar, Warning, Nothing),
+        ("moves across the plane of the drop at {:+.2} ± {:.2} m/s through the flight, and the analysis is \
+         that of a motion in this plane: the speed across it is not in the results; check how the cask hung",
+         velocity_m_s, 2.0 * u_m_s);
+    /// A sensor on the skin has none at its side that tells a motion across the plane.
+    AloneOnSkin { u_share: f64 } => (Code::NotPlanar, Note, Nothing),
+        ("stands alone at its place on the skin: its part in the plane of the drop is determined as if the \
+         cask did not move across it, and 1° of `around_deg` is {:.1} % of it; mount a radial and a \
+         tangential sensor together", 200.0 * u_share);
     /// A channel that takes no part in the motion stands at a limit.
     OtherClipped { limit: f64, samples: usize, unit: String } => (Code::Clipped, Warning, Nothing),
         ("stands at its limit of {} {unit} for {samples} samples: its true extreme lies beyond; use a range \

@@ -57,7 +57,7 @@ impl Section<'_> {
         let is = |key: &str, word: &str| self.value(key).and_then(|v| v.get_ref().as_str()) == Some(word);
         let is_spared = match key.name {
             "height_m" => self.value("impact_velocity_m_s").is_some(),
-            "axis" => is("end", "none"),
+            "axis" => is("end", "none") || self.value("around_deg").is_some(),
             "position_m" => is("end", "none") || is("axis", "rate"),
             _ => false,
         };

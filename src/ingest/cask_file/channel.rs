@@ -2,8 +2,8 @@
 
 use super::section::Section;
 use crate::data::{
-    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RateSpec, RowsOf, SensorRecord, Source,
-    Unit, rate_unit_rad_s,
+    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, OtherSpec, RateSpec, RowsOf, SensorRecord,
+    SkinDirection, SkinPlace, Source, Unit, rate_unit_rad_s,
 };
 use crate::ingest::IngestError;
 use toml::de::DeValue;
@@ -12,7 +12,7 @@ const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivit
                      what the recording says";
 
 /// Keys that say something of the motion, and how many of them of an acceleration alone.
-const OF_MOTION: [&str; 10] = [
+const OF_MOTION: [&str; 12] = [
     "sensitivity",
     "coupling",
     "time_constant_s",
@@ -23,6 +23,8 @@ const OF_MOTION: [&str; 10] = [
     "polarity",
     "calibration_percent",
     "lateral_m",
+    "around_deg",
+    "direction",
 ];
 const OF_ACCELERATION: usize = 4;
 
@@ -59,8 +61,11 @@ pub(super) fn channels(
             return Err(table.refuse("source", message, mend));
         }
         let rate = rate(table)?;
-        if rate.is_some() || end_or_none(table)?.is_none() {
-            others.push(OtherSpec { read: channel.clone(), unit: table.text("unit")?, rate });
+        let is_across = channel.skin.is_some_and(SkinPlace::is_across);
+        if rate.is_some() || is_across || end_or_none(table)?.is_none() {
+            // Shown as recorded.
+            let read = ChannelSpec { polarity: 1.0, ..channel.clone() };
+            others.push(OtherSpec { read, unit: table.text("unit")?, rate });
         }
         channels.push(channel);
     }
@@ -88,16 +93,25 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
     if rate(table)?.is_some() {
         return Ok(plain);
     }
+    let skin = skin(table, cask)?;
+    let (sin, cos) = skin.map_or((0.0, 0.0), |skin| skin.around_rad.sin_cos());
+    let axis = match skin {
+        Some(skin) if skin.direction == SkinDirection::Axial => Axis::Axial,
+        Some(_) => Axis::Transverse,
+        None => axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?,
+    };
     Ok(ChannelSpec {
-        axis: axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?,
+        axis,
+        skin,
         unit: unit(table)?,
         position_m: position_m(table, cask)?,
-        offset_m: table.given("offset_m")?.unwrap_or(0.0),
+        // Without a place on the skin both are 0.
+        offset_m: table.given("offset_m")?.unwrap_or(-cos * cask.height_m / 2.0),
         polarity: polarity(table)?,
         coupling: coupling(table)?,
         calibration: calibration(table)?,
         reference: table.text("reference")?,
-        lateral_m: table.given("lateral_m")?.unwrap_or(0.0),
+        lateral_m: table.given("lateral_m")?.unwrap_or(sin * cask.width_m.unwrap_or(cask.height_m) / 2.0),
         ..plain
     })
 }
@@ -143,7 +157,7 @@ fn rate(table: &Section) -> Result<Option<RateSpec>, IngestError> {
         return Err(table.refuse("unit", format!("\"{unit}\" is no unit of a rate of turn"), mend));
     }
     // A rigid body turns alike everywhere, so that its place says nothing.
-    for key in ["position_m", "offset_m", "lateral_m"] {
+    for key in ["position_m", "offset_m", "lateral_m", "around_deg"] {
         table.given(key)?;
     }
     Ok(Some(RateSpec { polarity: polarity(table)?, calibration: calibration(table)? }))
@@ -177,6 +191,31 @@ const AXIS: &str = "axis = \"transverse\" (across the cask, in the plane of the 
 pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, IngestError> {
     let words = [("transverse", Some(Axis::Transverse)), ("axial", Some(Axis::Axial)), ("rate", None)];
     Ok(table.word("axis", &words, AXIS)?.flatten())
+}
+
+/// Where around the skin the channel sits; `None` where the table states an axis instead.
+fn skin(table: &Section, cask: &Cask) -> Result<Option<SkinPlace>, IngestError> {
+    const AROUND: &str = "around_deg counts from the lowest line (0) by the side (90) to the uppermost (180); \
+                          direction = \"radial\" (positive outwards), \"tangential\" (positive towards a \
+                          larger angle) or \"axial\"";
+    const BESIDE: [&str; 2] = ["around_deg", "around_deg and direction state both place and axis"];
+    let Some(around_deg) = table.given("around_deg")? else {
+        without_meaning(table, &["direction"], ["axis, without around_deg", AROUND])?;
+        return Ok(None);
+    };
+    without_meaning(table, &["axis", "offset_m", "lateral_m"], BESIDE)?;
+    if cask.height_m <= 0.0 {
+        let mend = "state `height_m` under [cask], or place the sensor by `axis` and `offset_m`";
+        return Err(table.refuse("around_deg", "a thin rod (height_m = 0) has no skin", mend));
+    }
+    let words = [
+        ("radial", SkinDirection::Radial),
+        ("tangential", SkinDirection::Tangential),
+        ("axial", SkinDirection::Axial),
+    ];
+    let direction = table.word("direction", &words, AROUND)?;
+    let direction = direction.ok_or_else(|| table.missing("direction", AROUND))?;
+    Ok(Some(SkinPlace { around_rad: around_deg.to_radians(), direction }))
 }
 
 fn source(table: &Section) -> Result<Source, IngestError> {

@@ -1,0 +1,57 @@
+//! What sensors of the skin read across the plane of the drop, and what one alone cannot tell, to findings.
+
+use crate::data::{ChannelFinding, Events, Finding, Signal};
+use crate::numerics::as_f64;
+
+/// Velocity across the plane that a planar motion does not hold any more, m/s: 2 % of a slap-down's.
+const NOT_PLANAR_M_S: f64 = 0.3;
+
+/// Sensors alone are named from this uncertainty of their scale on: 3° off the line that they should be on.
+const LEAST_U_AROUND: f64 = 5e-4;
+
+/// The mean velocity across the plane through the flight, where it is beyond what a planar drop has.
+pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
+    let (contact_s, left_s, struck_s) =
+        (events.first_contact_s()?, events.separation_s()?, events.slap_down_s()?);
+    let is_lost = [&signal.clipped, &signal.gaps].iter().any(|s| signal.touches(s, contact_s, struck_s));
+    let [from, left, to] = [contact_s, left_s, struck_s].map(|at_s| signal.index_from(at_s));
+    let mut velocity_m_s = 0.0;
+    let mut flight_m_s = Vec::new();
+    for (index, force) in signal.force_m_s2.iter().enumerate().take(to).skip(from) {
+        velocity_m_s += force / signal.sample_rate_hz;
+        flight_m_s.extend((index >= left).then_some(velocity_m_s));
+    }
+    let mean_m_s = flight_m_s.iter().sum::<f64>() / as_f64(flight_m_s.len().max(1));
+    let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
+    let found = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
+    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.on(&signal.name))
+}
+
+/// A sensor alone, off the lines where it reads in the plane of the drop only.
+pub fn judge_alone(signal: &Signal) -> Option<Finding> {
+    let found = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
+    (signal.u_around > LEAST_U_AROUND).then(|| found.on(&signal.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{At, example};
+
+    #[test]
+    fn a_velocity_across_the_plane_through_the_flight_is_named_and_a_blow_that_ends_is_not() {
+        let events = Events { separation: Some(At::exactly(0.03)), ..example::events(0.02, 0.06) };
+        // 1 kHz; 10 ms of contact, in which the cask gains a velocity across the plane.
+        let gaining = |contact: f64, flight: f64| {
+            let force = |i: u32| if (20..30).contains(&i) { contact } else { flight };
+            let signal = example::signal(1e3, (0..80).map(force).collect());
+            judge_across(&signal, &events).map(|found| found.message)
+        };
+        let named = gaining(50.0, 0.0).expect("0.5 m/s are named");
+        assert!(named.contains("0.50 m/s"), "{named}");
+        assert!(gaining(-50.0, 0.0).is_some());
+        assert_eq!(gaining(25.0, 0.0), None, "0.25 m/s are not");
+        // Contact and flight make up for one another: 0.9 m/s at the beginning of the flight, 0.3 on the mean.
+        assert_eq!(gaining(50.0, -20.0), None);
+    }
+}
