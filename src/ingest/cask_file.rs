@@ -4,6 +4,7 @@ mod blanks;
 mod body;
 pub(crate) mod channel;
 pub(super) mod fault;
+mod list;
 mod overrides;
 mod range;
 mod record;
@@ -23,6 +24,8 @@ use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::WrongLine;
+use list::ExpandedCaskFile;
+pub use list::delimiter;
 pub use overrides::{key_of_column, with_columns};
 pub use section::with_ascii_minus;
 use section::{CASK_FILE, Document, Kind, Section};
@@ -71,9 +74,14 @@ pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, IngestError> {
 }
 
 fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, IngestError> {
-    let sha256 = super::unchanged::hexadecimal(&Sha256::digest(bytes));
-    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
-    Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
+    let stated = text(path, bytes, &CASK_FILE)?;
+    let expanded = ExpandedCaskFile::read(path, stated)?;
+    let cask_file = checked(path, stated, photos, expanded.as_ref())?;
+    // With a sensor list it is the text with its tables: what a result is made again from.
+    let text = expanded.map_or_else(|| String::from_utf8_lossy(bytes).into_owned(), |expanded| expanded.text);
+    let whole = if text.len() > bytes.len() { text.as_bytes() } else { bytes };
+    let sha256 = super::unchanged::hexadecimal(&Sha256::digest(whole));
+    Ok(CaskFile { sha256, text, ..cask_file })
 }
 
 /// Whether the file has any channel, as `analyze` needs.
@@ -136,9 +144,15 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
     Ok(text)
 }
 
-/// The checked file of this text; its photographs are looked for in the folder `photos`, if any.
-pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, IngestError> {
-    let document = Document::new(&CASK_FILE, path, text);
+/// The checked file of this text, or of that with the tables of its sensor list; its photographs are looked
+/// for in the folder `photos`, if any.
+fn checked(
+    path: &Path,
+    text: &str,
+    photos: Option<&Path>,
+    expanded: Option<&ExpandedCaskFile>,
+) -> Result<CaskFile, IngestError> {
+    let document = Document::with_list(&CASK_FILE, path, text, expanded);
     let root = document.root()?;
     blanks::require_no_blanks(&root)?;
     let cask_table = root.required_table("cask")?;

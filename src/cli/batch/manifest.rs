@@ -4,7 +4,8 @@
 use super::super::output::note;
 use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
-use crate::ingest::{bytes_of, cask_file::key_of_column, in_utf8};
+use crate::ingest::cask_file::{delimiter, key_of_column};
+use crate::ingest::{bytes_of, in_utf8};
 use miette::{ensure, miette};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -106,13 +107,6 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
         key_of_column(head).map_err(|problem| miette!(help = mend, "{name}, line 1: {problem}"))?;
     }
     Ok(())
-}
-
-/// What separates the cells: what the first line has most of.
-fn delimiter(text: &str) -> u8 {
-    let first = text.lines().next().unwrap_or_default();
-    let count = |delimiter: &u8| first.bytes().filter(|byte| byte == delimiter).count();
-    [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
 }
 
 /// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs

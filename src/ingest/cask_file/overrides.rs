@@ -75,7 +75,7 @@ fn set(document: &mut DocumentMut, column: &str, words: &str) -> Result<(), Stri
 }
 
 /// A cell as the value that its key takes, where it can be; else a text, which is refused as that of a file.
-fn value(key: &Key, words: &str) -> Value {
+pub(super) fn value(key: &Key, words: &str) -> Value {
     #[allow(clippy::cast_possible_truncation, reason = "whole and small, tested before")]
     let number = || {
         let number: f64 = words.replace(',', ".").parse().ok()?;

@@ -1,6 +1,7 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
 use super::fault::WrongLine;
+use super::list::{ExpandedCaskFile, ListPlace, SENSORS};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use crate::data::keys::{self, Key, KeyTable};
 use crate::ingest::IngestError;
@@ -20,7 +21,7 @@ pub(crate) struct Kind {
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[], tables: &keys::TABLES };
+pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[SENSORS], tables: &keys::TABLES };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
@@ -47,6 +48,8 @@ pub(crate) struct Document<'a> {
     kind: &'static Kind,
     path: &'a Path,
     text: Cow<'a, str>,
+    /// The sensor list whose tables stand at the end of the text.
+    expanded: Option<&'a ExpandedCaskFile>,
 }
 
 /// The text with U+2212, which reports print before numbers, as the minus that TOML knows. Every other byte
@@ -75,7 +78,24 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Document<'a> {
     pub(crate) fn new(kind: &'static Kind, path: &'a Path, text: &'a str) -> Self {
-        Self { kind, path, text: with_ascii_minus(text) }
+        Self { kind, path, text: with_ascii_minus(text), expanded: None }
+    }
+
+    /// The file with the tables of its sensor list, where it has one.
+    pub(super) fn with_list(
+        kind: &'static Kind,
+        path: &'a Path,
+        text: &'a str,
+        expanded: Option<&'a ExpandedCaskFile>,
+    ) -> Self {
+        let text = expanded.map_or(text, |expanded| &expanded.text);
+        Self { expanded, ..Self::new(kind, path, text) }
+    }
+
+    /// The cell of the sensor list that a place in the text comes from.
+    fn in_list(&self, at: usize) -> Option<(&'a ExpandedCaskFile, ListPlace)> {
+        let expanded = self.expanded?;
+        Some((expanded, expanded.list.place(at.checked_sub(expanded.from)?)))
     }
 
     /// The file's top level.
@@ -104,6 +124,18 @@ impl<'a> Document<'a> {
 
     fn wrong(&self, span: Range<usize>, message: String, mend: String) -> IngestError {
         let start = span.start.min(self.text.len());
+        if let Some((ExpandedCaskFile { list, .. }, place)) = self.in_list(start) {
+            let path = list.path.display().to_string();
+            return Box::new(WrongLine {
+                text: NamedSource::new(&path, list.text.clone()),
+                path,
+                line: place.line,
+                message: place.words + &message,
+                span: place.span.into(),
+                mend,
+            })
+            .into();
+        }
         let end = span.end.clamp(start, self.text.len());
         let line = line_of(self.text.as_bytes(), start);
         let path = self.path.display().to_string();
@@ -180,7 +212,9 @@ impl<'a> Section<'a> {
 
     /// The line of a key.
     pub(crate) fn line(&self, key: &str) -> usize {
-        line_of(self.document.text.as_bytes(), self.place(key).start)
+        let at = self.place(key).start;
+        let in_list = self.document.in_list(at).map(|(_, place)| place.line);
+        in_list.unwrap_or_else(|| line_of(self.document.text.as_bytes(), at))
     }
 
     pub(crate) fn missing(&self, key: &str, mend: &str) -> IngestError {
