@@ -5,8 +5,8 @@ use super::flight_search::{self, Patience};
 use super::{missing_end, rest, skin};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop,
-    DropFinding, Effect, End, Events, Finding, FindingKind, OtherChannels, Recording, RestLevel, Severity,
-    Signal, transverse,
+    DropFinding, Effect, End, Events, Finding, FindingKind, JoinedRecording, OtherChannels, Recording,
+    RestLevel, Severity, Signal, transverse,
 };
 use crate::events::Hiding;
 use crate::{condition, events, judge};
@@ -107,12 +107,13 @@ impl Impact {
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
-        let u_skew_s = align(file, &mut signals, contact.time_s, seek.waves_s, findings);
+        let u_joined_s = u_joined_s(recording, &signals);
+        let u_skew_s = align(file, &mut signals, contact.time_s, seek.waves_s, findings).hypot(u_joined_s);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (own_rests, fall_s) = before(recording, drop, contact.time_s);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
         let mut rests = if own_rests.is_empty() { of_file() } else { own_rests };
-        skin::turn_rests(&mut rests, &signals, &file.channels);
+        skin::turn_rests(&mut rests, &across, &file.channels);
         let impact = Self {
             signals,
             contact,
@@ -145,6 +146,35 @@ impl Impact {
     pub fn recorded(&self) -> &[Signal] {
         &self.signals[..self.signals.len() - usize::from(self.stand_in.is_some())]
     }
+}
+
+/// The signals of one recorder about its first contact, and when that is on its clock.
+pub(super) struct OwnContact {
+    pub signals: Vec<Signal>,
+    pub at: At,
+}
+
+/// The first contact as the channels of a recorder show it by themselves.
+pub(super) fn own_contact(recording: &Recording, file: &CaskFile) -> Option<OwnContact> {
+    let least_m_s = file.drop.least_impact_m_s();
+    let event = events::Changes::of(&recording.channels).locate(missing_end::least_step_m_s(file, recording));
+    let event = event.filter(|event| event.velocity_step_m_s.abs() > least_m_s)?;
+    let reach = condition::Reach::of(&file.cask, &file.drop);
+    let (mut signals, _) = conditioned(recording, file, &event, &reach);
+    skin::turn_into_plane(&mut signals, &file.channels);
+    let at = first_contact(&file.cask, &signals, &event)?;
+    Some(OwnContact { signals, at })
+}
+
+/// What the clocks of two recorders that show one end each leave open of R's times, as a standard
+/// uncertainty, s.
+fn u_joined_s(recording: &Recording, signals: &[Signal]) -> f64 {
+    let ends = [End::First, End::Second].map(|end| transverse(signals, end));
+    let is_of = |joined: &JoinedRecording| {
+        let own = |signal: &Signal| joined.channels.contains(&signal.name);
+        ends[0].is_some_and(own) != ends[1].is_some_and(own)
+    };
+    recording.joined.iter().filter(|joined| is_of(joined)).map(|joined| joined.u_s).fold(0.0, f64::hypot)
 }
 
 /// The signals about the event, and what is to be said of them.

@@ -21,6 +21,7 @@ mod impacts;
 pub mod missing_end;
 mod others;
 mod plan;
+mod recorders;
 mod rest;
 mod result;
 mod rotation;
@@ -34,7 +35,7 @@ mod skin;
 pub use check::check;
 pub use first_look::look_at_each;
 pub use plan::study;
-pub use rest::{read, read_files_beside, read_within};
+pub use recorders::{complete, read, read_within};
 pub use setup::sticking;
 
 use crate::data::{
@@ -194,7 +195,8 @@ fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> A
     findings.extend(judge::judge_jumps(impact.recorded(), events));
     let filtered = judge::judge_bandwidth(impact.recorded(), events, cutoff_hz, &findings);
     findings.extend(filtered);
-    findings.extend(skin::judge_across(impact, events, file));
+    let across = [&impact.across, impact.recorded()];
+    findings.extend(skin::judge_across(across, &impact.others.channels, events, file));
     let judged = |flown: &FlightResult| Measured::of(flown, impact, events, file, &mut findings);
     let measured = flown.as_ref().and_then(judged);
     if measured.is_none() {

@@ -1,7 +1,6 @@
 //! A recording and the file with the rest before the drop to the recording whose channels know what they
 //! read at rest.
 
-use super::simulation;
 use crate::data::shown;
 use crate::data::{
     CaskFile, Channel, Coupling, Finding, Recording, RestFile, RestFinding, RestLevel, RestReading, Signal,
@@ -9,57 +8,22 @@ use crate::data::{
 };
 use crate::events;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::{self, IngestError, Limits, Progress, RecordingFile, error};
+use crate::ingest::{self, IngestError, Limits, error};
 use std::path::Path;
 use std::sync::Arc;
 
 /// Rates that recordings of one recorder tell of themselves differ by less than this share.
 const SAME_RATE: f64 = 0.01;
 
-/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content,
-/// and from the file with the rest before the drop where `[recording] rest` names one.
-///
-/// # Errors
-/// [`IngestError`] where a file, a source or its content is at fault.
-pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
-    read_within(path, cask_file, Limits::default(), progress)
-}
-
-/// As [`read`], within other limits than the usual ones.
-///
-/// # Errors
-/// As [`read`]; also where a file would pass a limit.
-pub fn read_within<'a>(
-    recording: impl Into<RecordingFile<'a>>,
-    cask_file: &CaskFile,
-    limits: Limits,
-    progress: Progress,
-) -> Result<Recording, IngestError> {
-    let mut recording = ingest::read_within(recording, cask_file, limits, progress)?;
-    read_files_beside(&mut recording, cask_file, limits)?;
-    Ok(recording)
-}
-
-/// Reads the files that the cask file names beside the recording, if any: the rest before the drop and the
-/// calculation.
-///
-/// # Errors
-/// [`IngestError`] where one cannot be read, or the rest is none of the same sensors.
-pub fn read_files_beside(
-    recording: &mut Recording,
-    file: &CaskFile,
-    limits: Limits,
-) -> Result<(), IngestError> {
-    take_rest(recording, file, limits)?;
-    recording.calculation = simulation::calculation(file, limits)?;
-    Ok(())
-}
-
 /// Gives the channels what they read at rest in the file that the cask file names, if it names one.
 ///
 /// # Errors
 /// [`IngestError`] where that file cannot be read, or is none of the same sensors at rest.
-fn take_rest(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
+pub(super) fn take_rest(
+    recording: &mut Recording,
+    file: &CaskFile,
+    limits: Limits,
+) -> Result<(), IngestError> {
     let Some(path) = &file.rest else { return Ok(()) };
     let rest = ingest::read_within(path, file, limits, &|_| ())?;
     if rest.sha256 == recording.sha256 {

@@ -6,8 +6,8 @@ use super::setup::sticking;
 use super::{AfterImpact, impacts};
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropFinding, DropResult, End,
-    Estimate, Events, Finding, FindingKind, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice,
-    Prediction, Quantities, Recording, Rung, Setting, Severity, Signal, SlapDown, Untested,
+    Estimate, Events, Finding, FindingKind, FirstImpact, ImpactTable, Input, JoinedRecording, LazyCurves,
+    ModelChoice, Prediction, Quantities, Recording, Rung, Setting, Severity, Signal, SlapDown, Untested,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -182,7 +182,11 @@ fn result(
         verdict,
         events,
         channels,
-        settings: of_cask_file(file, &events).into_iter().chain(of_rest(recording, &events)).collect(),
+        settings: of_cask_file(file, &events)
+            .into_iter()
+            .chain(of_rest(recording, &events))
+            .chain(of_recorders(recording))
+            .collect(),
         cask_text: file.text.clone(),
         ..DropResult::default()
     }
@@ -294,6 +298,16 @@ fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
         )
     }));
     settings
+}
+
+/// The recordings of other recorders, and how their clocks were joined.
+fn of_recorders(recording: &Recording) -> impl Iterator<Item = Setting> {
+    recording.joined.iter().map(|joined| {
+        let JoinedRecording { file, sha256, shift_s, u_s, .. } = joined;
+        let by_ms = format!("{:+.3} ± {:.3} ms", 1e3 * shift_s, 2e3 * u_s);
+        let value = format!("{by_ms}, by the first contact; SHA-256 {sha256}");
+        setting(&format!("shift of the times of {file}"), value, "from the data")
+    })
 }
 
 /// Where the rest before the drop is from, where it is a file of its own.

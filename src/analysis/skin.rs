@@ -1,6 +1,5 @@
 //! Sensors of the skin to what each place reads in the plane of the drop, and across it   (51)
 
-use super::impact::Impact;
 use crate::data::{
     CaskFile, Channel, ChannelSpec, Events, Finding, RestLevel, Signal, SkinDirection, SkinPlace, Span,
     acceleration_unit_m_s2,
@@ -30,17 +29,18 @@ fn pairs(specs: &[ChannelSpec]) -> impl Iterator<Item = [&ChannelSpec; 2]> {
             reads(other, SkinDirection::Tangential).is_some_and(|beside| {
                 other.end == radial.end
                     && (other.position_m - radial.position_m).abs() < SAME_PLACE_M
-                    && (beside.around_rad - at.around_rad).abs() < SAME_PLACE_RAD
+                    && (beside.around_rad - at.around_rad).cos() > SAME_PLACE_RAD.cos()
             })
         };
         Some([radial, specs.iter().find(is_beside)?])
     })
 }
 
-/// The weight of a sensor in the acceleration in the plane of its place: the square of its share, since its
-/// signal is what it reads over that share.
-fn weight(spec: &ChannelSpec) -> f64 {
-    spec.axis_share().powi(2)
+/// The weights of a pair in the plane: the squares of their shares, since a signal is what the sensor reads
+/// over its share. Of one angle they add up to 1.
+fn weights(pair: [&ChannelSpec; 2]) -> [f64; 2] {
+    let squares = pair.map(|spec| spec.axis_share().powi(2));
+    squares.map(|square| square / (squares[0] + squares[1]))
 }
 
 /// Puts in place of the radial and the tangential signal of a place the one in the plane of the drop, under
@@ -52,9 +52,12 @@ pub(super) fn turn_into_plane(signals: &mut Vec<Signal>, specs: &[ChannelSpec]) 
         let places = pair.map(|spec| signals.iter().position(|signal| signal.name == spec.name));
         let [Some(radial), Some(tangential)] = places else { continue };
         let both = [&signals[radial], &signals[tangential]];
+        if !are_of_same_times(both) {
+            continue;
+        }
         let [share, other] = pair.map(ChannelSpec::axis_share);
         across.push(combined(both, [share * other, -share * other]));
-        signals[radial] = combined(both, pair.map(weight));
+        signals[radial] = combined(both, weights(pair));
         signals.remove(tangential);
     }
     let is_paired = |signal: &Signal| across.iter().any(|of_pair| of_pair.name == signal.name);
@@ -69,74 +72,75 @@ pub(super) fn turn_into_plane(signals: &mut Vec<Signal>, specs: &[ChannelSpec]) 
     across
 }
 
-/// Puts the levels at rest of a place into the plane of the drop, likewise.
-pub(super) fn turn_rests(rests: &mut Vec<RestLevel>, signals: &[Signal], specs: &[ChannelSpec]) {
-    for pair in pairs(specs) {
-        let places = pair.map(|spec| rests.iter().position(|rest| rest.channel == spec.name));
-        let is_combined = signals.iter().all(|signal| signal.name != pair[1].name);
-        let ([Some(radial), Some(tangential)], true) = (places, is_combined) else { continue };
-        let [one, other] = pair.map(weight);
-        let beside = rests[tangential].clone();
-        let rest = &mut rests[radial];
-        rest.rest_m_s2 = one * rest.rest_m_s2 + other * beside.rest_m_s2;
-        rest.u_m_s2 = (one * rest.u_m_s2).hypot(other * beside.u_m_s2);
-        rests.remove(tangential);
+/// Puts the levels at rest of a place into the plane of the drop, likewise; without both there is none.
+pub(super) fn turn_rests(rests: &mut Vec<RestLevel>, across: &[Signal], specs: &[ChannelSpec]) {
+    for pair in pairs(specs).filter(|[radial, _]| across.iter().any(|of_pair| of_pair.name == radial.name)) {
+        let is_of_pair = |rest: &mut RestLevel| pair.iter().any(|spec| rest.channel == spec.name);
+        let both: Vec<RestLevel> = rests.extract_if(.., is_of_pair).collect();
+        let find = |spec: &ChannelSpec| both.iter().find(|rest| rest.channel == spec.name);
+        let ([Some(radial), Some(tangential)], [one, other]) = (pair.map(find), weights(pair)) else {
+            continue;
+        };
+        rests.push(RestLevel {
+            rest_m_s2: one * radial.rest_m_s2 + other * tangential.rest_m_s2,
+            u_m_s2: (one * radial.u_m_s2).hypot(other * tangential.u_m_s2),
+            ..radial.clone()
+        });
     }
 }
 
-/// The sum of two signals by their weights, on the time base of the first.
+/// True if the samples of both are of the same times, but for a part of a step.
+fn are_of_same_times([one, other]: [&Signal; 2]) -> bool {
+    let is_shifted = (one.start_s - other.start_s).abs() * one.sample_rate_hz >= 1.0;
+    !is_shifted && (one.sample_rate_hz / other.sample_rate_hz - 1.0).abs() < 1e-9
+}
+
+/// The spans of either, each once.
+fn united(one: &[Span], other: &[Span]) -> Vec<Span> {
+    let mut all = [one, other].concat();
+    all.sort_by_key(|span| span.from);
+    all.dedup_by(|next, span| {
+        let is_joined = next.from <= span.to;
+        span.to = if is_joined { span.to.max(next.to) } else { span.to };
+        is_joined
+    });
+    all
+}
+
+/// The sum of two signals of the same times by their weights.
 fn combined([one, other]: [&Signal; 2], [first, second]: [f64; 2]) -> Signal {
     let sum = |a: f64, b: f64| first * a + second * b;
     let u = |a: f64, b: f64| (first * a).hypot(second * b);
-    let at = |index: usize| other.position_at(one.time_s(index));
-    let value = |position: f64| {
-        let before = position.floor();
-        let [low, high] = [before, before + 1.0].map(|at| {
-            let index = other.index_from(other.start_s + at / other.sample_rate_hz);
-            other.force_m_s2.get(index).copied().unwrap_or(0.0)
-        });
-        low + (position - before) * (high - low)
-    };
-    let indices = 0..one.force_m_s2.len();
-    let force_m_s2 = indices.map(|index| sum(one.force_m_s2[index], value(at(index)))).collect();
-    let own_base = |spans: &[Span]| -> Vec<Span> {
-        let index = |at: usize| one.index_from(other.time_s(at));
-        spans.iter().map(|span| Span { from: index(span.from), to: index(span.to) }).collect()
-    };
-    // What is recorded by one of the two alone is missing.
-    let last = one.index_from(other.end_s());
-    let beyond = [
-        Span { from: 0, to: one.index_from(other.start_s) },
-        Span { from: last + 1, to: one.force_m_s2.len() },
-    ];
-    let beyond = beyond.into_iter().filter(|span| span.from < span.to);
-    let spectrum = one.noise_spectrum.iter().enumerate().map(|(bin, (hz, density))| {
-        let beside = other.noise_spectrum.get(bin).map_or(*density, |(_, density)| *density);
-        (*hz, first * first * density + second * second * beside)
-    });
+    let bins = one.noise_spectrum.iter().zip(&other.noise_spectrum);
     Signal {
-        force_m_s2,
+        force_m_s2: one.force_m_s2.iter().zip(&other.force_m_s2).map(|(a, b)| sum(*a, *b)).collect(),
         removed_offset_m_s2: sum(one.removed_offset_m_s2, other.removed_offset_m_s2),
         u_offset_m_s2: u(one.u_offset_m_s2, other.u_offset_m_s2),
         noise_m_s2: u(one.noise_m_s2, other.noise_m_s2),
-        noise_spectrum: spectrum.collect(),
+        noise_spectrum: bins.map(|(a, b)| (a.0, sum(first * a.1, second * b.1))).collect(),
         free_fall_s: one.free_fall_s.min(other.free_fall_s),
-        clipped: [&one.clipped[..], &own_base(&other.clipped)].concat(),
-        gaps: one.gaps.iter().copied().chain(own_base(&other.gaps)).chain(beyond).collect(),
+        clipped: united(&one.clipped, &other.clipped),
+        gaps: united(&one.gaps, &other.gaps),
         ..one.clone()
     }
 }
 
-/// What the skin's sensors say of a motion across the plane of the drop, and which of them cannot tell.
-pub(super) fn judge_across(impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
+/// What pairs of the skin, and the channels beside the motion, say of a motion across the plane of the drop,
+/// and which of the recorded signals cannot tell.
+pub(super) fn judge_across(
+    [pairs, recorded]: [&[Signal]; 2],
+    channels: &[Channel],
+    events: &Events,
+    file: &CaskFile,
+) -> Vec<Finding> {
     let of_other = |channel: &Channel| {
         let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
         spec.read.skin.and_then(|_| across(channel, events))
     };
-    let others: Vec<Signal> = impact.others.channels.iter().filter_map(of_other).collect();
-    let moving = impact.across.iter().chain(&others);
+    let others: Vec<Signal> = channels.iter().filter_map(of_other).collect();
+    let moving = pairs.iter().chain(&others);
     let moving = moving.filter_map(|signal| judge::judge_across(signal, events));
-    let alone = impact.recorded().iter().filter_map(judge::judge_alone);
+    let alone = recorded.iter().filter_map(judge::judge_alone);
     moving.chain(alone).collect()
 }
 

@@ -6,7 +6,7 @@ use super::output::{Folder, JsonTarget, columns, note, print};
 use super::pdf;
 use super::progress::with_progress;
 use super::rerun::{self, EarlierResult};
-use crate::analysis::{read_files_beside, read_within};
+use crate::analysis::{complete, read_within};
 use crate::data::keys::CORRECTIONS;
 use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, Setting, Verdict};
 use crate::{ingest, report};
@@ -115,7 +115,7 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
         Some(held) => ingest::read_arrays(held, &cask_file)?,
         None => ingest::read_within(&arguments.recording, &cask_file, limits, &|_| ())?,
     };
-    read_files_beside(&mut recording, &cask_file, limits)?;
+    complete(&mut recording, &cask_file, limits)?;
     let mut analysis = crate::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
     Ok(analysis)

@@ -54,8 +54,8 @@ pub enum Axis {
     Axial,
 }
 
-/// Which way a sensor on the skin reads: away from the axis of the cask, towards a growing angle around it, or
-/// along it from L to R.
+/// Which way a sensor on the skin reads: away from the axis of the cask, towards a growing angle around it,
+/// or along it from L to R.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the words above")]
 pub enum SkinDirection {
@@ -74,7 +74,7 @@ pub struct SkinPlace {
 }
 
 impl SkinPlace {
-    /// What the sensor reads of an acceleration away from the target (along the axis, of an axial one), and of
+    /// What the sensor reads of an acceleration away from the target (an axial one: along the axis), and of
     /// one across the plane of the drop, as shares of each   (51)
     pub fn shares(self) -> [f64; 2] {
         let (sin, cos) = self.around_rad.sin_cos();
@@ -349,6 +349,8 @@ pub struct ChannelSpec {
     pub full_scale: Option<f64>,
     /// Overrides what the recording says, Hz.
     pub sample_rate_hz: Option<f64>,
+    /// The recording beside the cask file that holds it, where it is of another recorder.
+    pub file: Option<String>,
     /// Which rows of the source are this sensor's, where it holds those of several.
     pub rows: Option<RowsOf>,
     /// This channel's own times: a CSV column, an HDF5 dataset, a field of the messages.

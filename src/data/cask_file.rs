@@ -73,6 +73,22 @@ impl CaskFile {
         Cow::Owned(all)
     }
 
+    /// The file as of one recorder: the channels of the recording that this key `file` names, of `None` those
+    /// of the recording that is analysed.
+    pub fn of_recorder(&self, file: Option<&str>) -> Cow<'_, Self> {
+        let others = self.others.iter().map(|other| &other.read);
+        if file.is_none() && self.channels.iter().chain(others).all(|spec| spec.file.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let mut of_one = self.clone();
+        of_one.channels.retain(|spec| spec.file.as_deref() == file);
+        of_one.others.retain(|other| other.read.file.as_deref() == file);
+        for spec in of_one.channels.iter_mut().chain(of_one.others.iter_mut().map(|other| &mut other.read)) {
+            spec.file = None;
+        }
+        Cow::Owned(of_one)
+    }
+
     /// Whether the impulse ratio of L lies anywhere up to a bound: its friction is not stated, or without its
     /// tolerance.
     pub fn has_open_friction(&self) -> bool {

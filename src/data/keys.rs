@@ -209,11 +209,11 @@ CHANNEL {
     "position_m": REQUIRED, ANY, ask "0.15", "along the axis, from the first end";
     "offset_m": "0", ANY, "0.0",
         "across the axis, positive away from the target: half the section on the upper skin";
-    "around_deg": "–", within(-180.0, 360.0, "around the skin, in degrees: 0 is the lowest line, 90 the side, \
-         180 the uppermost line"), "180.0",
+    "around_deg": "–", within(-180.0, 360.0, "around the skin, in degrees: 0 is the lowest line, 90 the \
+         side, 180 the uppermost line"), "180.0",
         "around the skin from the lowest line (0) to the uppermost (180); gives `offset_m` and `lateral_m`";
     "direction": "–", Text, r#""radial""#,
-        r#"beside `around_deg`: "radial" (positive outwards), "tangential" (towards a larger angle), "axial""#;
+        r#"beside `around_deg`: "radial" (outwards), "tangential" (to a larger angle), "axial""#;
     "polarity": "1", ANY, "1", "-1: mounted the other way round";
     "sensitivity": "", ABOVE_ZERO, "10.0", r#"mV per g, with "V" and "mV""#;
     "scale": "1", ABOVE_ZERO, "0.9", "what is read times this is in `unit`";
@@ -223,6 +223,8 @@ CHANNEL {
         "overrides what the recording says";
     "time": "`[recording] time`", Text, r#""/daq/time_s""#,
         "this channel's own times (CSV column, HDF5 dataset, field of messages)";
+    "file": "–", Text, r#""logger2.h5""#,
+        "another recorder's recording, beside this file: the clocks are joined at first contact";
     "where": "–", Table, r#"{ column = "Sensor", is = "left" }"#,
         "its rows, where the source holds those of several sensors";
     "coupling": "`\"dc\"`", Text, r#""dc""#, r#"or "ac", then also time_constant_s = 0.3"#;

@@ -45,14 +45,33 @@ pub struct Recording {
     pub others: Arc<OtherChannels>,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
+    /// Time of its first sample by its own times, s; of the one since 1970 where it knows that.
+    pub first_s: f64,
     /// How long before zero the recording's own times begin, s, where they count from a trigger.
     pub before_trigger_s: Option<f64>,
     /// The rest before the drop, where it is a file of its own.
     pub rest: Option<RestFile>,
     /// The calculation beside the test, where the cask file names one.
     pub calculation: Option<Box<Recording>>,
+    /// The recordings of other recorders whose channels are among these.
+    pub joined: Vec<JoinedRecording>,
     /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
     pub issues: Vec<Finding>,
+}
+
+/// A recording of another recorder, with a clock of its own.
+#[derive(Debug, Clone)]
+pub struct JoinedRecording {
+    /// The file, as the cask file names it.
+    pub file: String,
+    /// Its SHA-256, lower-case hexadecimal.
+    pub sha256: String,
+    /// What was added to its times so that both show the first contact at one time, s.
+    pub shift_s: f64,
+    /// Standard uncertainty of that, s.
+    pub u_s: f64,
+    /// Its accelerometers.
+    pub channels: Vec<String>,
 }
 
 impl Recording {

@@ -21,6 +21,7 @@ const NAME: &str = "samples in memory";
 /// [`IngestError`] where a channel has no samples, or nothing says its rate or its unit.
 pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recording, IngestError> {
     let path = Path::new(NAME);
+    let cask_file = &*cask_file.of_recorder(None);
     cask_file::require_channels(cask_file, path)?;
     let (stated_file, cask_file) = (cask_file, &*cask_file.to_be_read());
     let mut channels = Vec::with_capacity(cask_file.channels.len());

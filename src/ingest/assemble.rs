@@ -57,9 +57,11 @@ pub(crate) fn recording(
         channels,
         others: others.into(),
         start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
+        first_s,
         before_trigger_s: (raw.zero_unix_ns.is_none() && first_s < 0.0).then_some(-first_s),
         rest: None,
         calculation: None,
+        joined: Vec::new(),
         issues,
     })
 }

@@ -2,6 +2,7 @@
 
 mod blanks;
 mod body;
+mod cells;
 pub(crate) mod channel;
 pub(super) mod fault;
 mod list;
@@ -23,8 +24,8 @@ use super::shown::bare;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
+use cells::ExpandedCaskFile;
 pub use fault::WrongLine;
-use list::ExpandedCaskFile;
 pub use list::delimiter;
 pub use overrides::{key_of_column, with_columns};
 pub use section::with_ascii_minus;
@@ -74,13 +75,11 @@ pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, IngestError> {
 }
 
 fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, IngestError> {
-    let stated = text(path, bytes, &CASK_FILE)?;
-    let expanded = ExpandedCaskFile::read(path, stated)?;
-    let cask_file = checked(path, stated, photos, expanded.as_ref())?;
+    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
     // With a sensor list it is the text with its tables: what a result is made again from.
-    let text = expanded.map_or_else(|| String::from_utf8_lossy(bytes).into_owned(), |expanded| expanded.text);
-    let whole = if text.len() > bytes.len() { text.as_bytes() } else { bytes };
+    let whole = if cask_file.text.is_empty() { bytes } else { cask_file.text.as_bytes() };
     let sha256 = super::unchanged::hexadecimal(&Sha256::digest(whole));
+    let text = String::from_utf8_lossy(whole).into_owned();
     Ok(CaskFile { sha256, text, ..cask_file })
 }
 
@@ -144,15 +143,11 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
     Ok(text)
 }
 
-/// The checked file of this text, or of that with the tables of its sensor list; its photographs are looked
-/// for in the folder `photos`, if any.
-fn checked(
-    path: &Path,
-    text: &str,
-    photos: Option<&Path>,
-    expanded: Option<&ExpandedCaskFile>,
-) -> Result<CaskFile, IngestError> {
-    let document = Document::with_list(&CASK_FILE, path, text, expanded);
+/// The checked file of this text, which it holds only where a sensor list adds tables; its photographs are
+/// looked for in the folder `photos`, if any.
+pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, IngestError> {
+    let expanded = ExpandedCaskFile::read(path, text)?;
+    let document = Document::with_list(&CASK_FILE, path, text, expanded.as_ref());
     let root = document.root()?;
     blanks::require_no_blanks(&root)?;
     let cask_table = root.required_table("cask")?;
@@ -181,8 +176,10 @@ fn checked(
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
     }
+    let text = expanded.as_ref().map_or_else(String::new, |expanded| expanded.text.clone());
     Ok(CaskFile {
         path: path.to_owned(),
+        text,
         scale,
         contact_duration_s,
         filter,

@@ -118,6 +118,7 @@ pub fn read_within<'a>(
 ) -> Result<Recording, IngestError> {
     let recording = recording.into();
     let path = recording.path;
+    let cask_file = &*cask_file.of_recorder(None);
     cask_file::require_channels(cask_file, path)?;
     let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
     // The hash takes as long as the reading: it runs beside it.

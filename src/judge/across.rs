@@ -51,7 +51,7 @@ mod tests {
         assert!(named.contains("0.50 m/s"), "{named}");
         assert!(gaining(-50.0, 0.0).is_some());
         assert_eq!(gaining(25.0, 0.0), None, "0.25 m/s are not");
-        // Contact and flight make up for one another: 0.9 m/s at the beginning of the flight, 0.3 on the mean.
+        // The flight makes up for the contact: 0.5 m/s in its beginning, 0.2 on the mean.
         assert_eq!(gaining(50.0, -20.0), None);
     }
 }

@@ -64,8 +64,8 @@ issue_codes! {
     Scale, "Channels together": "units, sensitivities or rest levels contradict each other";
     NotRigid, "Channels together": "channels cannot belong to one rigid body, or the rotation does not \
                                     follow from the impact";
-    NotPlanar, "Channels together": "the cask moves across the plane of the drop, or a sensor alone on the skin \
-                                     cannot tell";
+    NotPlanar, "Channels together": "the cask moves across the plane of the drop, or a sensor alone on the \
+                                     skin cannot tell";
     Skew, "Channels together": "a channel responds to the first impact too early or too late";
     BeginsLate, "Channel": "the free fall is too short for an offset, or the recording begins in the impact";
     EndsEarly, "Drop": "the recording ends before the slap-down";

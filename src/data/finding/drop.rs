@@ -42,6 +42,11 @@ pub enum DropFinding of Drop {
     /// Of the file with the calculation.
     InCalculation { file: String, found: String } => (Code::Simulation, Note, Nothing),
         ("in the calculation, {file}: {found}");
+    /// A recording of another recorder, whose times were shifted by so much.
+    Joined { file: String, shift_s: f64, u_s: f64 } => (Code::Skew, Note, Nothing),
+        ("{file} is of another recorder: {:+.3} ± {:.3} ms were added to its times, so that both recordings \
+         show the first contact at one time; one trigger for both would determine the times better",
+         1e3 * shift_s, 2e3 * u_s);
     /// The flight is too short to be fitted.
     ShortFlight => (Code::FlightFit, Error, Motion),
         ("the free flight between the impacts is too short to be separated from them and from ringing");

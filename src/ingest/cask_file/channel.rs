@@ -54,7 +54,9 @@ pub(super) fn channels(
             let mend = "name each channel as the test's documents do, each name once";
             return Err(table.refuse("name", message, mend));
         }
-        let is_read = |other: &&ChannelSpec| other.source == channel.source && other.rows == channel.rows;
+        let is_read = |other: &&ChannelSpec| {
+            (&other.source, &other.rows, &other.file) == (&channel.source, &channel.rows, &channel.file)
+        };
         if let Some(first) = channels.iter().find(is_read) {
             let message = format!("{name} reads the same source as {}, {}", first.name, channel.source);
             let mend = "`dropcheck inspect RECORDING` lists the sources: name each sensor's own";
@@ -81,6 +83,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
         scale: table.given("scale")?,
         full_scale: table.given("full_scale")?,
         sample_rate_hz: table.given("sample_rate_hz")?,
+        file: table.text("file")?,
         rows: rows(table)?,
         time: table.text("time")?,
         sensor: sensor(table)?,
@@ -94,7 +97,10 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
         return Ok(plain);
     }
     let skin = skin(table, cask)?;
-    let (sin, cos) = skin.map_or((0.0, 0.0), |skin| skin.around_rad.sin_cos());
+    let around_rad = skin.map(|skin| skin.around_rad);
+    let offset_m = around_rad.map_or(0.0, |around| -around.cos() * cask.height_m / 2.0);
+    let lateral_m =
+        around_rad.map_or(0.0, |around| around.sin() * cask.width_m.unwrap_or(cask.height_m) / 2.0);
     let axis = match skin {
         Some(skin) if skin.direction == SkinDirection::Axial => Axis::Axial,
         Some(_) => Axis::Transverse,
@@ -105,13 +111,12 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
         skin,
         unit: unit(table)?,
         position_m: position_m(table, cask)?,
-        // Without a place on the skin both are 0.
-        offset_m: table.given("offset_m")?.unwrap_or(-cos * cask.height_m / 2.0),
+        offset_m: table.given("offset_m")?.unwrap_or(offset_m),
         polarity: polarity(table)?,
         coupling: coupling(table)?,
         calibration: calibration(table)?,
         reference: table.text("reference")?,
-        lateral_m: table.given("lateral_m")?.unwrap_or(sin * cask.width_m.unwrap_or(cask.height_m) / 2.0),
+        lateral_m: table.given("lateral_m")?.unwrap_or(lateral_m),
         ..plain
     })
 }
@@ -195,9 +200,9 @@ pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, IngestError> {
 
 /// Where around the skin the channel sits; `None` where the table states an axis instead.
 fn skin(table: &Section, cask: &Cask) -> Result<Option<SkinPlace>, IngestError> {
-    const AROUND: &str = "around_deg counts from the lowest line (0) by the side (90) to the uppermost (180); \
-                          direction = \"radial\" (positive outwards), \"tangential\" (positive towards a \
-                          larger angle) or \"axial\"";
+    const AROUND: &str = "around_deg counts from the lowest line (0) by the side (90) to the uppermost \
+                          (180); direction = \"radial\" (positive outwards), \"tangential\" \
+                          (positive towards a larger angle) or \"axial\"";
     const BESIDE: [&str; 2] = ["around_deg", "around_deg and direction state both place and axis"];
     let Some(around_deg) = table.given("around_deg")? else {
         without_meaning(table, &["direction"], ["axis, without around_deg", AROUND])?;

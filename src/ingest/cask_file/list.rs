@@ -1,6 +1,7 @@
 //! A sensor list, a CSV with a row a channel, to the `[[channel]]` tables that say the same; each of their
 //! lines knows its cell.
 
+use super::cells::{ExpandedCaskFile, SENSORS, SensorList};
 use super::overrides::value;
 use super::wording::{line_of, nearest};
 use super::{LARGEST_MIB, bytes, no_cask_file};
@@ -10,13 +11,9 @@ use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, in_utf8};
 use std::ffi::OsStr;
 use std::fmt::Write;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::Spanned;
-use toml::de::DeTable;
-
-/// The key of the cask file that names the list.
-pub(super) const SENSORS: &str = "sensors";
+use toml::de::{DeFloat, DeInteger, DeTable};
 
 /// The column of a key that a list calls otherwise, as measuring plans do.
 const PLANE: [&str; 2] = ["plane_m", "position_m"];
@@ -24,32 +21,8 @@ const PLANE: [&str; 2] = ["plane_m", "position_m"];
 /// What a list has of a channel that takes no part in the motion, and its table does not: where it sits.
 const OF_PLACE: [&str; 4] = ["position_m", "around_deg", "direction", "polarity"];
 
-/// A sensor list, read.
-pub(super) struct SensorList {
-    pub path: PathBuf,
-    pub text: String,
-    /// The tables of its rows.
-    pub tables: String,
-    cells: Vec<ListCell>,
-}
-
-/// A line of those tables with the cell that it comes from; without a column it is a row.
-struct ListCell {
-    begins: usize,
-    span: Range<usize>,
-    column: String,
-}
-
-/// A cask file that names a sensor list, with the tables of the list behind its own.
-pub(super) struct ExpandedCaskFile {
-    pub text: String,
-    /// Where the tables of the list begin in it.
-    pub from: usize,
-    pub list: SensorList,
-}
-
 impl ExpandedCaskFile {
-    /// The cask file at `path` of this text with its list beside it; `None` where it names none, or is no TOML.
+    /// The cask file at `path` of this text with its list; `None` where it names none, or is no TOML.
     pub fn read(path: &Path, text: &str) -> Result<Option<Self>, IngestError> {
         let Ok(root) = DeTable::parse(text) else { return Ok(None) };
         let Some((key, named)) = root.get_ref().get_key_value(SENSORS) else { return Ok(None) };
@@ -64,7 +37,8 @@ impl ExpandedCaskFile {
         let of_cask = root.get_ref().get("cask").and_then(|cask| cask.get_ref().as_table());
         let length_m = of_cask.and_then(|cask| cask.get("length_m")).and_then(|length| {
             let length = length.get_ref();
-            let digits = length.as_float().map(|f| f.as_str()).or(length.as_integer().map(|i| i.as_str()));
+            let digits =
+                length.as_float().map(DeFloat::as_str).or(length.as_integer().map(DeInteger::as_str));
             digits?.replace('_', "").parse::<f64>().ok()
         });
         let list = SensorList::read(&path.parent().unwrap_or(Path::new("")).join(name), length_m)?;
@@ -90,7 +64,7 @@ impl SensorList {
                 )
             })?;
         let text = text.trim_start_matches('\u{feff}').to_owned();
-        let mut list = Self { path: path.to_owned(), text, tables: String::new(), cells: Vec::new() };
+        let mut list = Self::new(path, text);
         let text = list.text.clone();
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter(&text))
@@ -103,7 +77,7 @@ impl SensorList {
             if row.iter().all(|cell| cell.trim().is_empty()) {
                 continue;
             }
-            let begins = row.position().map_or(0, |position| position.byte());
+            let begins = row.position().map_or(0, csv::Position::byte);
             let begins = usize::try_from(begins).unwrap_or(0);
             let begins =
                 begins + text[begins..].len() - text[begins..].trim_start_matches(['\r', '\n']).len();
@@ -114,7 +88,7 @@ impl SensorList {
         }
         let mend =
             "write the columns' names in its first line, name and source among them, and a row a channel";
-        if list.cells.is_empty() {
+        if list.tables.is_empty() {
             return Err(no_cask_file(path, "the sensor list has no row", mend));
         }
         Ok(list)
@@ -167,9 +141,10 @@ impl SensorList {
         let end = match (cell("end"), cell("position_m"), place.zip(length_m)) {
             (Some(stated), ..) => Some(stated),
             (None, None, _) => Some("none"),
-            (None, _, Some((place, length_m))) if place < length_m / 2.0 => Some("first"),
+            // Half-way there is no nearer end.
+            (None, _, Some((place, length_m))) if place - length_m / 2.0 == 0.0 => None,
             (None, _, Some((place, length_m))) if place > length_m / 2.0 => Some("second"),
-            (None, Some(_), _) => None,
+            (None, ..) => Some("first"),
         };
         self.push("[[channel]]", begins..ends, "");
         if let Some(end) = end.filter(|_| cell("end").is_none()) {
@@ -187,29 +162,6 @@ impl SensorList {
         self.tables.push('\n');
         Ok(())
     }
-
-    fn push(&mut self, line: &str, span: Range<usize>, column: &str) {
-        self.cells.push(ListCell { begins: self.tables.len(), span, column: column.to_owned() });
-        self.tables.push_str(line);
-        self.tables.push('\n');
-    }
-
-    /// The line of the list, its column as words for a message, and the span of the cell that a byte of the
-    /// tables comes from.
-    pub fn place(&self, at: usize) -> ListPlace {
-        let next = self.cells.partition_point(|cell| cell.begins <= at);
-        let cell = &self.cells[next.saturating_sub(1)];
-        let words = if cell.column.is_empty() { String::new() } else { format!("column {}: ", cell.column) };
-        ListPlace { line: line_of(self.text.as_bytes(), cell.span.start), words, span: cell.span.clone() }
-    }
-}
-
-/// A cell of a list.
-pub(super) struct ListPlace {
-    pub line: usize,
-    /// "column plane_m: ".
-    pub words: String,
-    pub span: Range<usize>,
 }
 
 /// What a list calls a key.

@@ -1,7 +1,7 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
+use super::cells::{ExpandedCaskFile, ListPlace, SENSORS};
 use super::fault::WrongLine;
-use super::list::{ExpandedCaskFile, ListPlace, SENSORS};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use crate::data::keys::{self, Key, KeyTable};
 use crate::ingest::IngestError;

@@ -39,6 +39,7 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
         let name = table.get("name").and_then(toml::Value::as_str);
         let mut all = recording.channels.iter().chain(&recording.others.channels);
         let read = all.find(|c| Some(c.name.as_str()) == name);
+        let spec = file.channels.iter().find(|spec| Some(&*spec.name) == name);
         let is_other = |other: &OtherSpec| other.rate.is_none() && Some(&*other.read.name) == name;
         let is_other = file.others.iter().any(is_other);
         let default = |key: &Key| match key.name {
@@ -47,7 +48,8 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
             "time" => (json!(file.time), "default"),
             // No key of the motion has a value.
             _ if is_other => (Value::Null, "default"),
-            "offset_m" | "lateral_m" => (json!(0.0), "default"),
+            "offset_m" => (json!(spec.map_or(0.0, |spec| spec.offset_m)), "default"),
+            "lateral_m" => (json!(spec.map_or(0.0, |spec| spec.lateral_m)), "default"),
             "polarity" => (json!(1), "default"),
             "scale" => (json!(1.0), "default"),
             "coupling" => (json!("dc"), "default"),

@@ -57,7 +57,7 @@ const SHORT: &str =
     "[cask]\nmass_kg = 120\nlength_m = 2.0\nheight_m = 0\n[drop]\nheight_m = 9\nangle_deg = 30\n";
 
 fn of(text: &str) -> Result<CaskFile, IngestError> {
-    checked(Path::new("box.toml"), text, None, None)
+    checked(Path::new("box.toml"), text, None)
 }
 
 /// The whole diagnostic as one line of text: message, label and help.

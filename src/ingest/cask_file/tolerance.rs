@@ -45,7 +45,7 @@ mod tests {
         "[cask]\nmass_kg = 1000\nlength_m = 5\nheight_m = 0.8\n[drop]\nheight_m = 9\nangle_deg = 15\n";
 
     fn parsed(more: &str) -> Result<crate::data::CaskFile, String> {
-        checked(Path::new("c.toml"), &format!("{CASK}{more}"), None, None).map_err(|e| e.to_string())
+        checked(Path::new("c.toml"), &format!("{CASK}{more}"), None).map_err(|e| e.to_string())
     }
 
     #[test]
