@@ -7,6 +7,8 @@ use super::output::print_plain;
 use super::progress::with_progress;
 use crate::{ingest, report};
 use clap::Args;
+use miette::miette;
+use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -16,6 +18,9 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content; or a folder of them, for a manifest
     recording: PathBuf,
+    /// Write the channels into a sensor list, a CSV with a row a channel, which the cask file names
+    #[arg(long, value_name = "LIST")]
+    sensors: Option<PathBuf>,
     #[command(flatten)]
     bounds: Bounds,
 }
@@ -28,6 +33,17 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
-    print_plain(report::cask_file_template(&listing)?.as_bytes())?;
+    let Some(list) = &arguments.sensors else {
+        print_plain(report::cask_file_template(&listing)?.as_bytes())?;
+        return Ok(Ending::Clear);
+    };
+    let rows = report::sensor_list(&listing)?;
+    let shown = list.display();
+    let mend = "name another file, or delete this one: it may be filled in already";
+    let mut file = std::fs::File::create_new(list)
+        .map_err(|why| miette!(help = mend, "{shown} cannot be written: {why}"))?;
+    file.write_all(&rows).map_err(|why| miette!("{shown} cannot be written: {why}"))?;
+    let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
+    print_plain(report::cask_file_with_list(&listing, &name).as_bytes())?;
     Ok(Ending::Clear)
 }

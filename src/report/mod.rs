@@ -59,7 +59,7 @@ pub use json::{in_a_line, pretty as pretty_json};
 pub use listing::table as listing_table;
 pub use pictures::setup_picture;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
-pub use template::cask_file as cask_file_template;
+pub use template::{cask_file as cask_file_template, cask_file_with_list, sensor_list};
 pub use text::printable;
 
 use crate::data::{Analysis, ChannelCurve};

@@ -4,7 +4,7 @@ use super::acceleration_sources::{self, VOLTAGES, has_word, is_time};
 use super::rounding::{plain, significant};
 use super::text::{is_hidden, lines, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
-use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, Source, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, MOST_CHANNELS, RowsOf, Severity, Source, acceleration_unit_m_s2};
 
 /// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value,
 /// forgotten, would pass for a known one.
@@ -47,6 +47,67 @@ pub fn cask_file(listing: &Listing) -> miette::Result<String> {
         out.extend(shown.into_iter().flat_map(other_channel));
     }
     Ok(lines(out))
+}
+
+/// The columns of a sensor list, in the order of a measuring plan.
+const LIST: &str = "name source end plane_m around_deg direction unit full_scale polarity serial certificate \
+                    calibrated file";
+
+/// A sensor list with a row a source, to be filled in: accelerations first, all others with `end = "none"`.
+///
+/// # Errors
+/// Where nothing that looks like an acceleration can be read.
+pub fn sensor_list(listing: &Listing) -> miette::Result<Vec<u8>> {
+    let accelerations = acceleration_sources::accelerations(listing);
+    if accelerations.is_empty() {
+        return Err(acceleration_sources::none(listing));
+    }
+    let is_other = |c: &&ListedChannel| c.unreadable.is_none() && is_shown(c);
+    let is_taken = |c: &&ListedChannel| accelerations.iter().any(|taken| taken.source == c.source);
+    let others = listing.channels.iter().filter(|c| is_other(c) && !is_taken(c));
+    let rows: Vec<(&ListedChannel, &str)> =
+        accelerations.iter().map(|c| (&**c, "")).chain(others.map(|c| (c, "none"))).collect();
+    let has_rows = rows.iter().any(|(c, _)| c.rows.is_some());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let fault = |error: csv::Error| miette::miette!("the sensor list could not be written: {error}");
+    let heads: Vec<&str> = LIST.split(' ').chain(has_rows.then_some("where")).collect();
+    writer.write_record(&heads).map_err(fault)?;
+    let labels: Vec<String> = rows.iter().map(|(listed, _)| label(listed).0).collect();
+    for ((listed, end), short) in rows.into_iter().zip(&labels) {
+        let is_alone = labels.iter().filter(|other| *other == short).count() == 1;
+        let name = if is_alone { short.clone() } else { super::listing::named(listed) };
+        let source = match listed.origin() {
+            Source::Path(path) => path,
+            source @ Source::TopicField { .. } => source_value(&source),
+        };
+        let picked =
+            |rows: &RowsOf| format!("{{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is));
+        let mut cells = vec![name, source, end.to_owned()];
+        cells.resize(LIST.split(' ').count(), String::new());
+        cells[6] = if listed.unit.is_none() { label(listed).1 } else { String::new() };
+        cells.extend(has_rows.then(|| listed.rows.as_ref().map(picked).unwrap_or_default()));
+        writer.write_record(&cells).map_err(fault)?;
+    }
+    writer.into_inner().map_err(|error| fault(error.into_error().into()))
+}
+
+/// What the recording calls a channel, the last part of its source, and the unit that stands in brackets
+/// behind it.
+fn label(listed: &ListedChannel) -> (String, String) {
+    let last = listed.source.rsplit('/').next().unwrap_or(&listed.source);
+    let split = last.split_once(['[', '(']).filter(|(name, _)| !name.trim().is_empty());
+    let (name, unit) = split.unwrap_or((last, ""));
+    let (name, unit) = (name.trim(), unit.trim_end_matches([']', ')', ' ']).to_owned());
+    (listed.rows.as_ref().map_or_else(|| name.to_owned(), |rows| format!("{name} {}", rows.is)), unit)
+}
+
+/// The cask file to fill in beside a sensor list of this name.
+pub fn cask_file_with_list(listing: &Listing, list: &str) -> String {
+    let mut out = head(listing);
+    // A key of no table stands before all tables.
+    out.insert(3, entry(&format!("sensors = {}", quoted(list)), "a row a channel, in this folder"));
+    out.insert(4, String::new());
+    lines(out)
 }
 
 /// What stands above the channels that are no accelerations.
