@@ -38,6 +38,7 @@ mod run;
 mod safety;
 mod same;
 mod scale_model;
+mod sensor_list;
 mod sentences;
 mod shocks;
 mod short_flights;
