@@ -48,7 +48,7 @@ mod tests {
             judge_across(&signal, &events).map(|found| found.message)
         };
         let named = gaining(50.0, 0.0).expect("0.5 m/s are named");
-        assert!(named.contains("0.50 m/s"), "{named}");
+        assert!(named.contains("+0.50 ±"), "{named}");
         assert!(gaining(-50.0, 0.0).is_some());
         assert_eq!(gaining(25.0, 0.0), None, "0.25 m/s are not");
         // The flight makes up for the contact: 0.5 m/s in its beginning, 0.2 on the mean.
