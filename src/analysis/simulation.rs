@@ -179,7 +179,7 @@ impl<'a> Overlay<'a> {
         Ok(overlay)
     }
 
-    /// The shift by the channel that the first impact shows best.   (52)
+    /// The shift by the channel that the first impact shows best.   (55)
     fn aligning_shift_s(&self) -> Result<f64, String> {
         let first_peak = |pair: &CurvePair| peak(&pair.smooth, self.first_s);
         let best = self.pairs.iter().max_by(|a, b| first_peak(a).total_cmp(&first_peak(b)));
@@ -229,7 +229,7 @@ impl<'a> Overlay<'a> {
         pair.measured.velocity_m_s.get(at).copied().unwrap_or_default()
     }
 
-    /// The ratings of acceleration and velocity.   (51)
+    /// The ratings of acceleration and velocity.   (54)
     fn rows(&self, pair: &CurvePair) -> impl Iterator<Item = SimulationRow> {
         let rated = [RatedQuantity::Acceleration, RatedQuantity::Velocity].into_iter();
         rated.zip(self.stretches(pair)).filter_map(|(quantity, [measured, calculated])| {

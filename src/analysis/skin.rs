@@ -1,4 +1,4 @@
-//! Sensors of the skin to what each place reads in the plane of the drop, and across it   (51)
+//! Sensors of the skin to what each place reads in the plane of the drop, and across it   (53)
 
 use crate::data::{
     CaskFile, Channel, ChannelSpec, Events, Finding, RestLevel, Signal, SkinDirection, SkinPlace, Span,

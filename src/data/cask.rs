@@ -75,7 +75,7 @@ pub struct SkinPlace {
 
 impl SkinPlace {
     /// What the sensor reads of an acceleration away from the target (an axial one: along the axis), and of
-    /// one across the plane of the drop, as shares of each   (51)
+    /// one across the plane of the drop, as shares of each   (53)
     pub fn shares(self) -> [f64; 2] {
         let (sin, cos) = self.around_rad.sin_cos();
         match self.direction {

@@ -41,7 +41,7 @@ impl CurveRating {
 }
 
 /// Rates `curve` against `reference`, both of one length on steps of [`RATING_STEP_S`]; `None` where they are
-/// too short for a slope, or the reference is constant.   (51)
+/// too short for a slope, or the reference is constant.   (54)
 pub fn rate(reference: &[f64], curve: &[f64]) -> Option<CurveRating> {
     let count = reference.len();
     // What the largest shift leaves must have a slope.
