@@ -288,7 +288,7 @@ mod tests {
     fn numbers_that_fall_and_blocks_and_clocks_of_another_name_count_too() {
         let lost = |row: &u32| !(535..539).contains(row);
         let rows = || (0..1000_u32).filter(lost).map(f64::from);
-        let ticks = |row: f64| 100.0 * row + f64::from(u8::from(row % 7.0 == 3.0));
+        let ticks = |row: f64| 100.0 * row + f64::from(u8::from(row % 7.0 > 5.0));
         for counts in [
             rows().map(|row| 5000.0 - row).collect::<Vec<f64>>(),
             rows().map(|row| 255.0 - row % 256.0).collect(),

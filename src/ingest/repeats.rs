@@ -144,7 +144,9 @@ pub(super) fn drop_repeated(channels: &mut [Channel], issues: &mut Vec<Finding>)
         lose_repeated(&mut together, issues);
         // A driver of its own may have written one of them.
         if together.len() > 1 {
-            together.into_iter().for_each(|channel| lose_repeated(&mut [channel], issues));
+            for channel in together {
+                lose_repeated(&mut [channel], issues);
+            }
         }
     }
 }

@@ -5,6 +5,9 @@ use crate::run::{Answer, analyze, fixture, number};
 use std::fmt::Write as _;
 use std::fs;
 
+/// The number in a row, as a recorder writes it.
+type RowCounter = fn(usize) -> String;
+
 /// 12.5 kHz.
 const STEP_S: f64 = 8e-5;
 
@@ -71,7 +74,7 @@ fn rows_of_several_sensors_in_any_order_give_no_k() {
 fn rows_that_a_counter_of_any_kind_shows_to_be_missing_give_no_k() {
     let rows = sound();
     let at = impact(&rows);
-    let counters: [(&str, fn(usize) -> String); 7] = [
+    let counters: [(&str, RowCounter); 7] = [
         ("Lfd", |i| (i % 60).to_string()),
         ("rest", |i| (9000 - i).to_string()),
         ("q", |i| (i % 8).to_string()),

@@ -163,7 +163,9 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         Vec::new()
     });
     listed_clocks.resize_with(clocks.len(), ListedClock::default);
-    listed_clocks.iter_mut().for_each(|clock| clock.is_one_of_several = clocks.len() > 1);
+    for clock in &mut listed_clocks {
+        clock.is_one_of_several = clocks.len() > 1;
+    }
     issues.extend(layout.preamble.of_rows(rows, listed_clocks[0].samples));
     let mut channels = Vec::new();
     for (index, column) in layout.columns.iter().enumerate().filter(|(index, _)| Some(*index) != time_column)
