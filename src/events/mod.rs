@@ -41,13 +41,14 @@ pub fn without_first_mode(
     let other = transverse(signals, if end == End::First { End::Second } else { End::First });
     let shape = |s: &Signal| 1.0 - END_SLOPE * s.position_m.min(length_m - s.position_m).max(0.0) / length_m;
     let from = own.index_from(from_s);
-    let mut free = own.cut(from, usize::MAX);
     let mut parts = vec![(own.name.clone(), 1.0)];
     let of_same_times = other.filter(|o| {
         (o.sample_rate_hz / own.sample_rate_hz - 1.0).abs() < 1e-9
             && (o.start_s - own.start_s).abs() * own.sample_rate_hz < 1.0
             && shape(o).min(shape(own)) > LEAST_SHAPE
     });
+    // Where the other end's signal ends, the mode would come back as a jump.
+    let mut free = own.cut(from, of_same_times.map_or(usize::MAX, |other| other.force_m_s2.len()));
     if let Some(other) = of_same_times {
         let ratio = shape(own) / shape(other);
         // f − Y(d)/Y(d′) f′, Y = 1 − 4.65 d/l   (37)
