@@ -132,7 +132,7 @@ tolerances! {
         "base strain of a sensor", "of its peak in a contact, heat and cable included";
     /// Place of a sensor along the axis, m.
     position_m: "position_m" in Metres, 0.01,
-        "position of a sensor", "place of a sensor along the axis";
+        "position of a sensor", "place of a sensor along the axis, of an axial one off it";
     /// Length between the ends that strike, as a share of it.
     length: "length_m" in MetresOf(|cask| cask.length_m), 1.0 ("1 % of `length_m`", "0.05"),
         "length", "between the ends that strike; left out: 1 % of it";

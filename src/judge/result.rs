@@ -175,8 +175,8 @@ struct Pull {
 }
 
 impl Pull {
-    /// The stated offset of a transverse channel, and the one that a shift of its level would show: −ω² η  (14);
-    /// `None` beyond the cask.
+    /// The stated offset of a transverse channel, and the one that a shift of its level would show: −ω² η,
+    /// (14); `None` beyond the cask.
     fn offsets_m(&self, signal: &Signal, shift_m_s2: f64, section_m: f64) -> Option<[f64; 2]> {
         let explains_m = signal.offset_m - shift_m_s2 / self.rotation_rad2_s2;
         let is_on_cask = signal.axis == Axis::Transverse && explains_m.abs() < ON_SKIN * section_m / 2.0;

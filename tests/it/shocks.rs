@@ -90,8 +90,7 @@ fn rows<'a>(result: &'a Value, name: &str) -> &'a Vec<Value> {
 
 #[test]
 fn every_channel_has_its_shocks_and_every_low_pass_its_peak() {
-    let (recording, cask) =
-        ["anf18-json.mcap", "anf18-json.toml"].map(|name| fixture(&format!("examples/{name}"))).into();
+    let (recording, cask) = ["anf18-json.mcap", "anf18-json.toml"].map(fixture).into();
     let bench = Bench::new();
     let out = bench.0.path().join("out");
     assert_eq!(dropcheck(words!["analyze", recording, "--cask", cask, "--out", out]).status, 0);

@@ -118,11 +118,8 @@ fn a_usual_slip_is_named_first() {
 
 #[test]
 fn what_no_single_slip_explains_or_the_file_contradicts_names_none() {
-    let changes: [(&str, Change); 10] = [
+    let changes: [(&str, Change); 7] = [
         ("10 ms early", |r, _| moved(&mut r.channels[1], -0.01)),
-        ("20 ms early", |r, _| moved(&mut r.channels[1], -0.02)),
-        ("20 ms late", |r, _| moved(&mut r.channels[1], 0.02)),
-        ("50 ms late", |r, _| moved(&mut r.channels[1], 0.05)),
         ("an angle 6° off", |_, f| f.drop.angle_rad += 6_f64.to_radians()),
         ("two polarities and the vertical", |r, f| {
             r.channels[1].scale_m_s2 *= -1.0;
@@ -150,6 +147,22 @@ fn what_no_single_slip_explains_or_the_file_contradicts_names_none() {
     for (name, change) in changes {
         let named = cures(change).0.into_iter().find(|f| f.code == IssueCode::UsualSlip);
         assert!(named.is_none(), "{name}: {}", named.expect("some").message);
+    }
+}
+
+#[test]
+fn the_clock_of_the_second_end_is_named_with_what_it_is_off() {
+    let changes: [(&str, bool, Change); 3] = [
+        ("20.00 ms later", true, |r, _| moved(&mut r.channels[1], -0.02)),
+        // A late clock is not always found, and no other cause is.
+        ("20.00 ms earlier", false, |r, _| moved(&mut r.channels[1], 0.02)),
+        ("50.00 ms earlier", false, |r, _| moved(&mut r.channels[1], 0.05)),
+    ];
+    for (right, is_always, change) in changes {
+        let named = cures(change).0.into_iter().find(|f| f.code == IssueCode::UsualSlip);
+        assert!(named.is_some() || !is_always, "{right}: nothing is named");
+        let is_right = |found: &Finding| found.message.contains(&format!("`time` of A2 {right}"));
+        assert!(named.as_ref().is_none_or(is_right), "{right}: {named:?}");
     }
 }
 

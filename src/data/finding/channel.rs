@@ -203,7 +203,9 @@ pub enum ChannelFinding {
     /// The offset in the flight is another than before the impact; taken off.
     ///
     /// Or its offset from the axis, stated and as it would have to be, makes it.
-    ZeroShift { shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, offsets_m: Option<[f64; 2]>, severity: Severity }
+    ZeroShift {
+        shift_m_s2: f64, u_m_s2: f64, effect_m_s: f64, offsets_m: Option<[f64; 2]>, severity: Severity
+    }
         => (Code::ZeroShift, *severity, if offsets_m.is_some() { DoubtfulPlace } else { Nothing }),
         ("reads {:+.2} ± {:.2} g more between the impacts than before the first (zero shift or droop{}); it \
          was taken off, which moves the velocity by up to {effect_m_s:.2} m/s",
