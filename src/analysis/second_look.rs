@@ -69,10 +69,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
         let analysis = analyse_once(&others, file, Patience::OneBeginning);
-        let mut doubt = Doubt::of(&analysis);
-        // The only channel of its end is a candidate, too: that the mass properties replace it is no error.
-        doubt.errors -= analysis.result.quality.iter().filter(|f| lacks_end(f)).count();
-        (doubt, (*name).to_owned(), analysis)
+        (Doubt::of(&analysis), (*name).to_owned(), analysis)
     };
     let mut tried: Vec<_> = spare.iter().map(without).collect();
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
@@ -128,8 +125,11 @@ fn is_alone_at_its_end(recording: &Recording, name: &str) -> bool {
 /// Whether the other channels contradict one another without the one that is left out: where they do not, or
 /// are too few to say, that one may be at fault as well.
 fn is_refuted(without: &Analysis) -> bool {
-    let contradicts = |f: &Finding| matches!(f.code, IssueCode::NotRigid | IssueCode::Geometry);
-    without.result.quality.iter().any(|f| f.severity > Severity::Note && contradicts(f))
+    let contradicts = |f: &Finding| match f.severity {
+        Severity::Error => !lacks_end(f),
+        severity => severity > Severity::Note && matches!(f.code, IssueCode::NotRigid | IssueCode::Geometry),
+    };
+    without.result.quality.iter().any(contradicts)
 }
 
 pub(super) fn is_too_large(recording: &Recording) -> bool {

@@ -219,7 +219,11 @@ fn runs(channels: &[Centred]) -> Vec<RepeatedRun> {
         // What stands right behind its original has one place instead of any.
         let certain = CERTAIN_BITS + if from + count >= copy { each } else { 2.0 * each };
         let inner = from + 1..from + count - 1;
-        let own = known.iter().map(|known| inner.clone().map(|row| known.bits(row)).sum::<f64>());
+        // A value that merely stays, as coarse steps make it, repeats by itself.
+        let own = known.iter().map(|known| {
+            let changed = inner.clone().filter(|row| known.value(*row) != known.value(*row - 1));
+            changed.map(|row| known.bits(row)).sum::<f64>()
+        });
         own.sum::<f64>() >= certain
     });
     found.sort_unstable();

@@ -1,7 +1,7 @@
 //! Samples from the first contact to the slap-down to jumps of one channel from one sample to the next, as an
 //! electric contact makes them and no force behind a recorder's filter.
 
-use crate::data::{Axis, ChannelFinding, Events, Finding, Signal};
+use crate::data::{At, Axis, ChannelFinding, Events, Finding, Signal};
 use crate::numerics::{reduce, robust};
 use std::ops::Range;
 
@@ -17,6 +17,8 @@ const LASTS: f64 = 0.3;
 /// struck as well, as all places of a rigid body are.
 const ELSEWHERE: f64 = 0.1;
 const STRUCK: f64 = 1.5;
+/// A jump this near to the separation, over the contact, is the end of the contact.
+const LETS_GO: f64 = 0.1;
 /// Looked at from so long before the first contact, and until so long before the slap-down, s.
 const BEFORE_S: f64 = 1e-3;
 /// Where no slap-down is found: so long after the first contact, s.
@@ -30,13 +32,19 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let jumps = across().filter_map(|signal| {
         let within = signal.index_from(contact_s - BEFORE_S)..signal.index_from(to_s);
         let at = largest_jump(signal, within, |size, at_s| {
-            across().filter(|other| other.name != signal.name).all(|other| !is_struck(other, at_s, size))
+            !events.separation.is_some_and(|left| is_end(left, at_s, contact_s))
+                && across().filter(|o| o.name != signal.name).all(|other| !is_struck(other, at_s, size))
         })?;
         let size_m_s2 = signal.force_m_s2[at + 1] - signal.force_m_s2[at];
         let found = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
         Some(found.on(&signal.name).between(signal.time_s(at), signal.time_s(at + 1)))
     });
     jumps.collect()
+}
+
+/// Whether a jump is the end of the contact: a stiff end that keeps nothing lets go within a sample.
+fn is_end(left: At, at_s: f64, contact_s: f64) -> bool {
+    (at_s - left.time_s).abs() < LETS_GO * (left.time_s - contact_s) + 2.0 * left.u_s
 }
 
 /// The sample before the largest jump within a range, of those whose size and time are `alone`.
