@@ -1,7 +1,7 @@
 //! Sensors of the skin, in tables and in lists, and of two recorders, to the same numbers.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{analyze, dropcheck, number, read_json, words};
+use crate::run::{analyze, dropcheck, fixture, number, read_json, words};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -238,6 +238,19 @@ fn what_is_wrong_in_a_list_is_named_by_file_line_and_column() {
     );
     let missing = drop.bench.put("missing.toml", format!("sensors = \"no.csv\"\n{}", drop.cask));
     at_fault(&analyze(&recording, &missing), &["no.csv", "cannot be read"]);
+}
+
+#[test]
+fn an_axial_sensor_of_a_list_needs_no_angle() {
+    let bench = Bench::new();
+    let stated = fs::read_to_string(fixture("vhlw-rest.toml")).expect("a cask file");
+    let (cask, _) = stated.split_once("[[channel]]").expect("channels");
+    let cask = bench.put("cask.toml", format!("sensors = \"list.csv\"\n{cask}"));
+    let list = "name,source,plane_m,around_deg,direction,unit\nA1,/daq/A1,0.15,90,tangential,g\n\
+                A2,/daq/A2,4.336,90,tangential,g\nA3,/daq/A3,0.15,,axial,g\n";
+    bench.put("list.csv", list);
+    let result = analyze(&fixture("vhlw-rest.h5"), &cask).json();
+    assert_eq!(result["channels"][2]["axis"], "axial", "{result}");
 }
 
 #[test]

@@ -150,12 +150,16 @@ impl SensorList {
         if let Some(end) = end.filter(|_| cell("end").is_none()) {
             self.push(&format!("end = \"{end}\""), begins..ends, "end");
         }
-        for (key, cell) in cells {
+        // Along the axis it reads wherever around the skin it sits.
+        let is_axial = ["around_deg", "axis"].iter().all(|name| cell(name).is_none());
+        for (key, cell) in cells.iter().copied() {
             let found = self.text[at..ends].find(cell).map(|found| at + found);
             let span = found.map_or(begins..ends, |from| from..from + cell.len());
             at = found.map_or(at, |from| from + cell.len());
             let is_left_out = end == Some("none") && OF_PLACE.contains(&key.name);
-            if !cell.is_empty() && !is_left_out {
+            if key.name == "direction" && cell == "axial" && is_axial && !is_left_out {
+                self.push("axis = \"axial\"", span, "direction");
+            } else if !cell.is_empty() && !is_left_out {
                 self.push(&format!("{} = {}", key.name, value(key, cell)), span, column(key.name));
             }
         }
