@@ -9,7 +9,7 @@ use crate::data::{DropResult, End, Estimate, FilteredPeak, RigidBodyDeceleration
 const CAPTION: &str = "At the report's low-pass, and unfiltered. An acceleration counts from the free fall, \
                        another quantity from its level before the release. Length: above a tenth of the \
                        peak. Change of velocity and displacement: over the pulse, unfiltered; the \
-                       displacement is that against an undisturbed motion. `srs.csv` has the spectra.";
+                       displacement is that against an undisturbed motion. srs.csv has the spectra.";
 
 /// The chapter; empty where no channel shows an impact.
 pub(super) fn shocks(result: &DropResult) -> Chapter {
@@ -63,15 +63,16 @@ pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> Str
     let table = ReportTable::of(&result.filters)
         .caption(
             "What another low-pass would make of it: peak and length of the first end's transverse channel \
-             in the first impact, and the decelerations of the rigid body",
+             in the first impact, and the decelerations of the rigid body's centre of gravity S and struck \
+             end in both",
         )
         .head("Low-pass", |f| &f.name[..])
         .number("−3 dB, Hz", |f| optional(f.cutoff_hz, 4))
         .number("Peak, g", |f| optional(f.peak_g, 4))
         .number("Length, ms", |f| optional_fixed(f.duration_s.map(|s| 1e3 * s), 2))
-        .number("First impact, centre of gravity, g", cell(0, |d| d.at_cog))
-        .number("at the struck end, g", cell(0, |d| d.at_struck_end))
-        .number("Second impact, centre of gravity, g", cell(1, |d| d.at_cog))
-        .number("at the struck end, g", cell(1, |d| d.at_struck_end));
+        .number("1st: S, g", cell(0, |d| d.at_cog))
+        .number("1st: end, g", cell(0, |d| d.at_struck_end))
+        .number("2nd: S, g", cell(1, |d| d.at_cog))
+        .number("2nd: end, g", cell(1, |d| d.at_struck_end));
     vec![table.into()]
 }
