@@ -191,7 +191,7 @@ fn a_drop_without_a_slap_down_says_what_kind_it_is_and_has_its_shocks() {
             assert!((change_m_s / truth_m_s - 1.0).abs() < 0.02, "{own}: {truth_m_s}");
         }
         let screen = dropcheck(words!["analyze", made, "--cask", cask]).stdout;
-        let first: String = screen.lines().take(3).map(|line| format!("{line} ")).collect();
+        let first = screen.lines().take(3).collect::<Vec<_>>().join(" ");
         assert!(first.starts_with(kind) && first.contains(" is expected"), "{angle_deg}: {screen}");
     }
 }
