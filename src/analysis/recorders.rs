@@ -13,7 +13,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content,
-/// and from the file with the rest before the drop where `[recording] rest` names one.
+/// and from the files beside it that the cask file names: other recorders, the rest before the drop, the
+/// calculation.
 ///
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault.
