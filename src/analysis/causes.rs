@@ -30,8 +30,11 @@ const LEAST_M: f64 = 0.1;
 /// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
 /// the unit is wrong.
 const MOST_LOST: f64 = 3.0;
-/// Clocks that are less far apart show it by how late a channel answers the first impact alone, s.
-const NEAR_S: f64 = 8e-3;
+/// Clocks are apart where they seem so by more, s: within it an analysis comes to the same. A soft impact has
+/// an end seem to answer by so much later than it does; clocks nearer to one another are one.
+const APART_S: f64 = 2e-3;
+const SEEM_LATER_S: [f64; 3] = [0.0, 2e-3, 4e-3];
+const SAME_CLOCK_S: f64 = 1.5e-3;
 /// Places that differ by less are one, m.
 const SAME_M: f64 = 0.01;
 /// Openings that are tried: no more than so many, of a χ² up to this many times the least and three times
@@ -47,7 +50,7 @@ const LIKELY_FACTOR: RangeInclusive<f64> = 0.1..=10.0;
 /// Adds what explains the analysis where something speaks against it: the usual slips with which everything
 /// closes, or else the stated numbers of which another one does it.
 pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
-    let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
+    let doubt = severity_of_doubt(&found.result, file.drop.impact_velocity_m_s);
     let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
     let stated = Contradicted { recording, file };
     // Where all closes without one channel, nothing else is wrong.
@@ -55,9 +58,12 @@ pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut An
     let is_of_it = |slips: &[Slip]| left_out.is_none_or(|name| slips.iter().any(|s| s.names.contains(name)));
     let steps = of_steps(recording, &found.result);
     let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
-    let usual = hypotheses(recording, file).into_par_iter().filter(may_cure).chain(stated.of_clock(found));
-    let own = usual.filter(|slips| is_of_it(slips));
-    let by_slips = best(own.filter_map(|slips| stated.cured_by_slips(slips)).collect());
+    let usual = hypotheses(recording, file).into_par_iter().filter(may_cure);
+    let by_usual = usual.filter(|slips| is_of_it(slips)).filter_map(|slips| stated.cured_by_slips(slips));
+    let clocks = stated.clocks_behind_s(found).into_par_iter().map(|behind_s| stated.earlier(behind_s));
+    let by_clock = clocks.filter(|slip| is_of_it(std::slice::from_ref(slip)));
+    let by_clock = by_clock.filter_map(|slip| stated.cured_by_clock(slip));
+    let by_slips = best(by_usual.chain(by_clock).collect());
     let is_usual = !by_slips.is_empty();
     let by_number = || {
         let numbers = stated.numbers_to_try(found).into_par_iter();
@@ -98,23 +104,41 @@ impl Contradicted<'_> {
         is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.cure(slips, &analysis))
     }
 
-    /// The clock of the second end's channels put right by how late they answer the first impact, as it was
-    /// found or where they first stir at one time with the struck one.
-    fn of_clock(&self, found: &Analysis) -> Vec<Vec<Slip>> {
-        let v0_m_s = self.file.drop.impact_velocity_m_s;
-        let behind_s = events::Changes::of(&self.recording.channels).behind_s(v0_m_s);
+    /// How far the clock of the second end's channels may be behind, s: as they answer the first impact, and
+    /// roughly as both ends show the drop.
+    fn clocks_behind_s(&self, found: &Analysis) -> Vec<f64> {
+        let roughly =
+            events::Changes::of(&self.recording.channels).behind_s(self.file.drop.impact_velocity_m_s);
+        let apart = roughly.into_iter().filter(|behind_s| behind_s.abs() > APART_S);
+        let sooner_s = apart.flat_map(|behind_s| SEEM_LATER_S.map(|later_s| behind_s - later_s));
+        let mut all_s: Vec<f64> = late_s(found, &self.far_names()).into_iter().chain(sooner_s).collect();
+        all_s.sort_by(f64::total_cmp);
+        all_s.dedup_by(|a, b| (*a - *b).abs() < SAME_CLOCK_S);
+        all_s
+    }
+
+    fn far_names(&self) -> Vec<String> {
         let far = self.recording.channels.iter().filter(|c| c.end == End::Second);
-        let names: Vec<String> = far.map(|c| c.name.clone()).collect();
-        let earlier = |by_s: f64| {
-            let way = if by_s > 0.0 { "earlier" } else { "later" };
-            let right = format!("{:.2} ms {way}", 1e3 * by_s.abs());
-            vec![Slip { right: right.into(), ..slip("time", names.clone(), "", [-by_s, 1.0]) }]
-        };
-        let roughly = behind_s.filter(|behind_s| behind_s.abs() > NEAR_S).map(|behind_s| {
-            let moved = self.with(&earlier(behind_s), Patience::OneBeginning);
-            behind_s + late_s(&moved, &names).unwrap_or(0.0)
-        });
-        late_s(found, &names).into_iter().chain(roughly).map(earlier).collect()
+        far.map(|c| c.name.clone()).collect()
+    }
+
+    /// The clock of the second end's channels, set so much earlier.
+    fn earlier(&self, by_s: f64) -> Slip {
+        let way = if by_s > 0.0 { "earlier" } else { "later" };
+        let right = format!("{:.2} ms {way}", 1e3 * by_s.abs());
+        Slip { right: right.into(), ..slip("time", self.far_names(), "", [-by_s, 1.0]) }
+    }
+
+    /// By a clock, which is set again as the channels then answer the first impact.
+    fn cured_by_clock(&self, mut slip: Slip) -> Option<(Doubt, Cure)> {
+        for _ in 0..ROUNDS {
+            let analysis = self.with(std::slice::from_ref(&slip), Patience::OneBeginning);
+            if is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]) {
+                return Some(self.cure(vec![slip], &analysis));
+            }
+            slip = self.earlier(late_s(&analysis, &slip.names)? - slip.from);
+        }
+        None
     }
 
     /// By another number, which is opened again where a large mistake leaves it open, as patiently.
@@ -260,6 +284,11 @@ fn is_doubted_place(result: &DropResult, name: &str) -> bool {
 /// Those that do as well as the best, in their order.
 fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+    // One clock is sought from several sides.
+    let mut is_first = true;
+    tried.retain(|(_, cure)| {
+        cure.slips.iter().all(|slip| slip.key != "time") || std::mem::take(&mut is_first)
+    });
     let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
     let least = tried.first().map(|(doubt, _)| clearly(doubt));
     tried.retain(|(doubt, _)| least.is_some_and(|least| *doubt < least));
@@ -297,9 +326,10 @@ fn is_left_out(finding: &Finding) -> bool {
     matches!(finding.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }))
 }
 
-/// How severe the findings are that a slip may explain: errors of which none takes a channel, or a warning on
-/// what the cask file says of the channels.
-fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
+/// How severe the findings are that a slip may explain: those that take the motion, of which none takes a
+/// channel, and warnings on what the cask file says of the channels.
+fn severity_of_doubt(result: &DropResult, v0_m_s: f64) -> Option<Severity> {
+    let findings = &result.quality;
     // The end that a channel was left out of may lack one now.
     if findings.iter().any(is_left_out) {
         return Some(Severity::Warning);
@@ -309,12 +339,14 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
         FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
         _ => f.takes(ResultPart::Channel),
     };
-    let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
-    if errors.peek().is_some() {
-        return (!errors.any(is_lost)).then_some(Severity::Error);
+    let of = |severity| findings.iter().filter(move |f| f.severity == severity);
+    if of(Severity::Error).next().is_some() {
+        return (!of(Severity::Error).any(is_lost)).then_some(Severity::Error);
     }
-    let warns = |f: &Finding| f.severity == Severity::Warning && f.effect.doubts_cask_file();
-    findings.iter().any(warns).then_some(Severity::Warning)
+    let takes_motion = |f: &Finding| f.takes(ResultPart::Motion);
+    let is_taken = of(Severity::Warning).any(takes_motion) && !of(Severity::Warning).any(is_lost);
+    let is_doubted = is_taken || of(Severity::Warning).any(|f| f.effect.doubts_cask_file());
+    is_doubted.then_some(Severity::Warning)
 }
 
 /// What is usually confused, as far as it may be by what is stated.

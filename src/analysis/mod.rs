@@ -69,8 +69,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     rayon::scope(|_| {
         others::add(recording, cask_file, &mut found);
         shocks::add(recording, cask_file, &mut found);
+        simulation::add(recording, cask_file, &mut found);
     });
-    simulation::add(recording, cask_file, &mut found);
     let result = &mut found.result;
     result.verdict = judge::verdict(&mut result.quality);
     judge::behind_the_motion(&mut result.quality, &result.other_channels);

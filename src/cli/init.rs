@@ -5,10 +5,10 @@ use super::batch::template;
 use super::limits::Bounds;
 use super::output::print_plain;
 use super::progress::with_progress;
+use super::replace::write_whole;
 use crate::{ingest, report};
 use clap::Args;
 use miette::miette;
-use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -40,9 +40,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let rows = report::sensor_list(&listing)?;
     let shown = list.display();
     let mend = "name another file, or delete this one: it may be filled in already";
-    let mut file = std::fs::File::create_new(list)
-        .map_err(|why| miette!(help = mend, "{shown} cannot be written: {why}"))?;
-    file.write_all(&rows).map_err(|why| miette!("{shown} cannot be written: {why}"))?;
+    write_whole(list, &rows).map_err(|why| miette!(help = mend, "{shown} cannot be written: {why}"))?;
     let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
     print_plain(report::cask_file_with_list(&listing, &name).as_bytes())?;
     Ok(Ending::Clear)

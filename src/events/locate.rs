@@ -39,6 +39,8 @@ const LAST_SHARE: f64 = 0.3;
 /// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
+/// The foot of a change lies at this share of it.
+const FOOT: f64 = 0.1;
 /// An end first stirs with this share of its largest change …
 const FIRST_SHARE: f64 = 0.15;
 /// … and what stays below this share of the first impact's change falls still.
@@ -123,7 +125,8 @@ impl<'a> Changes<'a> {
             (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
         };
         let first = |changing: &Changing| {
-            let at_s = changing.stirs_s(v0_m_s)?;
+            let least_m_s = (FIRST_SHARE * changing.largest_m_s()).max(LAST_SHARE_OF_FALL * v0_m_s);
+            let at_s = changing.stirs_s(least_m_s)?;
             let delay_s = at_s - event.near_s;
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
             (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
@@ -131,12 +134,18 @@ impl<'a> Changes<'a> {
         self.of_second_end().find_map(first)
     }
 
-    /// How much later the channels of the second end first stir than the struck one, s: roughly, the median.
-    pub fn behind_s(&self, v0_m_s: f64) -> Option<f64> {
-        let struck_s = self.struck()?.stirs_s(v0_m_s)?;
-        let mut behind_s: Vec<f64> =
-            self.of_second_end().filter_map(|far| Some(far.stirs_s(v0_m_s)? - struck_s)).collect();
-        (!behind_s.is_empty()).then(|| robust::median(&mut behind_s))
+    /// How much later the channels of the second end show the drop than the struck one, s: roughly, by the
+    /// first impact, whose answer may seem later by milliseconds, and by the slap-down.
+    pub fn behind_s(&self, v0_m_s: f64) -> Vec<f64> {
+        let Some(struck) = self.struck() else { return Vec::new() };
+        let least_m_s = LAST_SHARE_OF_FALL * v0_m_s;
+        // One clock has all channels of an end: the one that answers first tells it.
+        let earliest_s = |of_far: &dyn Fn(&Changing<'_>) -> Option<f64>| {
+            self.of_second_end().filter_map(of_far).min_by(f64::total_cmp)
+        };
+        let stirs_s = struck.foot_s(least_m_s).zip(earliest_s(&|far| far.foot_s(least_m_s)));
+        let again_s = struck.struck_again_s().zip(earliest_s(&|far| far.struck_most_s()));
+        stirs_s.into_iter().chain(again_s).map(|(struck_s, far_s)| far_s - struck_s).collect()
     }
 
     fn of_second_end(&self) -> impl Iterator<Item = &Changing<'a>> {
@@ -197,16 +206,48 @@ impl<'a> Changing<'a> {
 
     /// From which change on it is the first impact's, m/s.
     fn least_m_s(&self, least_step_m_s: f64) -> f64 {
-        (SHARE * reduce::peak(&self.changes_m_s)).min(SHARE_OF_LEAST * least_step_m_s)
+        (SHARE * self.largest_m_s()).min(SHARE_OF_LEAST * least_step_m_s)
     }
 
-    /// Where the width begins over which the velocity first changes by a share of its largest change, s.
-    fn stirs_s(&self, v0_m_s: f64) -> Option<f64> {
-        let largest_m_s = reduce::peak(&self.changes_m_s);
-        let least_m_s = (FIRST_SHARE * largest_m_s).max(LAST_SHARE_OF_FALL * v0_m_s);
+    fn largest_m_s(&self) -> f64 {
+        reduce::peak(&self.changes_m_s)
+    }
+
+    /// The first block that ends a width over which the velocity changes by `least_m_s`, and by more than
+    /// noise has it.
+    fn stirs(&self, least_m_s: f64) -> Option<usize> {
         let least_m_s = least_m_s.max(WALKS * self.noise_m_s);
-        let crossing = self.changes_m_s.iter().position(|c| c.abs() >= least_m_s)?;
-        Some(self.end_s(crossing) - WIDTH_S)
+        self.changes_m_s.iter().position(|c| c.abs() >= least_m_s)
+    }
+
+    /// Where the width begins that [`Changing::stirs`] finds, s.
+    fn stirs_s(&self, least_m_s: f64) -> Option<f64> {
+        Some(self.end_s(self.stirs(least_m_s)?) - WIDTH_S)
+    }
+
+    /// As [`Changing::stirs_s`], led back to where a tenth of that change was reached.
+    fn foot_s(&self, least_m_s: f64) -> Option<f64> {
+        let (stirs, changes) = (self.stirs(least_m_s)?, &self.changes_m_s);
+        let still = stirs.saturating_sub(3 * self.blocks)..stirs.saturating_sub(self.blocks);
+        let before_m_s = if still.is_empty() { 0.0 } else { robust::median(&mut changes[still].to_vec()) };
+        let is_foot = |c: &f64| (c - before_m_s).abs() < FOOT * (changes[stirs] - before_m_s).abs();
+        let foot = changes[..stirs].iter().rposition(is_foot).unwrap_or(stirs);
+        Some(self.end_s(foot) - WIDTH_S)
+    }
+
+    /// Where the width begins over which the velocity changes by half of its largest change, s.
+    fn struck_most_s(&self) -> Option<f64> {
+        self.stirs_s(self.largest_m_s() / 2.0)
+    }
+
+    /// Where the width begins over which the velocity changes notably once more after the first time, s.
+    fn struck_again_s(&self) -> Option<f64> {
+        let least_m_s = LAST_SHARE * self.largest_m_s();
+        let is_notable = |c: &f64| c.abs() >= least_m_s;
+        let first = self.changes_m_s.iter().position(is_notable)?;
+        let calm = first + self.changes_m_s[first..].iter().position(|c| !is_notable(c))?;
+        let again = calm + self.changes_m_s[calm..].iter().position(is_notable)?;
+        Some(self.end_s(again) - WIDTH_S)
     }
 
     /// When a block ends, s.
@@ -295,6 +336,23 @@ mod tests {
         assert_eq!(ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(1.0, -4.0), (1.06, 20.0)]), None);
         // Exchanged ends: what is called the first one stirs as the other is struck.
         assert_eq!(ahead(&[(1.0, -4.0), (1.06, 20.0)], &[(1.0, 18.0), (1.06, -6.0)]), None);
+    }
+
+    #[test]
+    fn either_blow_tells_how_far_a_clock_is_behind() {
+        let behind_ms = |by_s: f64| {
+            let second = channel(End::Second, &[(1.0 + by_s, -2.0), (1.06 + by_s, 20.0)]);
+            let near = Channel { name: "A4".into(), ..channel(End::Second, &[(1.06 + by_s, 9.0)]) };
+            let channels = [channel(End::First, &[(1.0, 18.0), (1.06, -12.0)]), near, second];
+            Changes::of(&channels).behind_s(13.3).iter().map(|s| 1e3 * s).collect::<Vec<f64>>()
+        };
+        for by_ms in [-140.0, -30.0, 0.0, 10.0, 70.0] {
+            let found = behind_ms(by_ms / 1e3);
+            assert!(
+                found.len() == 2 && found.iter().all(|ms| (ms - by_ms).abs() < 4.0),
+                "{by_ms}: {found:?}"
+            );
+        }
     }
 
     #[test]
