@@ -1,10 +1,11 @@
-//! From the source text to circles between files, tuples in signatures and type names that stand twice: holds
-//! what `docs/architecture.md` says.
+//! From the source text to circles between files, tuples in signatures, type names that stand twice, and the
+//! count of lines: holds what `docs/architecture.md` says.
 
 use crate::run::{files_below, root};
 use crate::tidy::{code_of, module_path};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::PathBuf;
 
 /// The files of the program by their module, without comments, strings and unit tests.
 pub(crate) fn modules() -> BTreeMap<Vec<String>, String> {
@@ -224,6 +225,48 @@ fn no_type_name_stands_twice() {
         .map(|(name, places)| format!("{name}: {}", places.join(", ")))
         .collect();
     assert!(twice.is_empty(), "one name, one meaning:\n{}", twice.join("\n"));
+}
+
+/// Lines of code in `src` at most: who deletes some lowers it, who needs more deletes elsewhere.
+const BUDGET: usize = 50_600;
+
+/// How many lines of a text are code, neither blank nor comment nor of tests, and the modules that it has for
+/// tests alone.
+fn counted(text: &str) -> (usize, Vec<String>) {
+    let (mut count, mut depth, mut tests) = (0, 0_usize, Vec::new());
+    let (mut is_test, mut is_comment) = (false, false);
+    for line in text.lines().map(str::trim) {
+        let [opened, closed] = ['{', '}'].map(|brace| line.matches(brace).count());
+        if is_comment || line.starts_with("/*") {
+            is_comment = !line.contains("*/");
+        } else if line.is_empty() || line.starts_with("//") {
+        } else if depth > 0 {
+            depth = (depth + opened).saturating_sub(closed);
+        } else if line.starts_with("#[cfg(test") || line.starts_with("#[cfg(all(test") {
+            is_test = true;
+        } else if !is_test {
+            count += 1;
+        } else if !line.starts_with("#[") {
+            (depth, is_test) = (opened.saturating_sub(closed), false);
+            let module = line.strip_suffix(';').and_then(|line| line.split_once("mod "));
+            tests.extend(module.map(|(_, name)| name.to_owned()));
+        }
+    }
+    (count, tests)
+}
+
+#[test]
+fn the_program_keeps_within_its_budget_of_lines() {
+    let read = |file: PathBuf| (module_path(&file), counted(&fs::read_to_string(file).expect("UTF-8")));
+    let files: Vec<_> = files_below(&root().join("src"), "rs").into_iter().map(read).collect();
+    let below = |path: &Vec<String>, name: &String| [&path[..], std::slice::from_ref(name)].concat();
+    let tests: BTreeSet<Vec<String>> =
+        files.iter().flat_map(|(path, (_, tests))| tests.iter().map(|name| below(path, name))).collect();
+    let is_code = |path: &Vec<String>| !tests.contains(path) && !path.join("_").ends_with("_tests");
+    let count: usize = files.iter().filter(|(path, _)| is_code(path)).map(|(_, (count, _))| count).sum();
+    assert!(count <= BUDGET, "src has {count} lines of code, {} beyond its budget", count - BUDGET);
+    let text = "/* a\n*/\nlet a = 1; // b\n\n#[cfg(test)]\n#[x]\nmod t {\n  f();\n}\n#[cfg(test)]\nmod u;";
+    assert_eq!(counted(text), (1, vec!["u".to_owned()]));
 }
 
 #[test]
