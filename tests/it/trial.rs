@@ -19,7 +19,7 @@ fn point<'a>(part: &'a [TrialPoint], method: &str, class: &str) -> &'a TrialPoin
 }
 
 #[test]
-fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
+fn the_program_is_near_from_file_to_answer() {
     let part = methods::ways(&REQUEST);
     for found in defaults(&part) {
         // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 %
@@ -36,8 +36,6 @@ fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
         assert!(found.p95_error < bound[usize::from(!is_speed)], "{found:?}");
         assert!(found.promised.is_some() && found.held > Some(0.9), "{found:?}");
     }
-    // The mean of what rings is off.
-    assert!(point(&part, "planar alone", "one mode, 2 to 5 periods").p95_error > 1.0);
     // Reading has a time, and says nothing.
     assert_eq!(point(&part, "reading alone", "all").cases, 0);
 }

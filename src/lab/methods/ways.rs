@@ -1,17 +1,15 @@
 //! Recordings in files to points of how far off each way of working with them is, timed whole from file to
 //! answer.
 
-use crate::analysis::flight_search::{self, Patience};
 use crate::analysis::{self, analyze};
-use crate::data::{CaskFile, CoarseEvent, Estimate, FlightFit, Recording, STANDARD_GRAVITY_M_S2, Signal};
+use crate::data::{CaskFile, Estimate, Recording, STANDARD_GRAVITY_M_S2};
+use crate::ingest;
 use crate::lab::chance::Chance;
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};
 use crate::lab::drawn::{BUILDS, DropPlan};
 use crate::lab::report::{SyntheticFormat, synthetic_files};
-use crate::motion::{self, Integrated};
 use crate::numerics::{as_f64, robust};
-use crate::{condition, events, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -103,68 +101,30 @@ pub const WAYS: [&str; 2] = ["speed, from file to answer", "k, from file to answ
 /// Of what the error of each is a share, or its unit, and how much a verdict needs.
 const NEEDED: [(&str, f64); 2] = [("% of the slap-down speed", 1.0), ("1", 0.01)];
 
-/// From a recording to what a way says of it.
-type Working = fn(&Recording, &CaskFile) -> Option<Answer>;
-
 /// What the program says and takes.
 const TAKEN: &str = "dropcheck, as taken";
-
-/// Ways of working with a recording that is read.
-const WORKINGS: [(&str, Working); 3] = [
-    (TAKEN, |recording, file| {
-        let result = analyze(recording, file).result;
-        Some([result.slap_down.speed, result.k])
-    }),
-    ("planar alone", |recording, file| alone(true, recording, file)),
-    ("flight alone", |recording, file| alone(false, recording, file)),
-];
-
-/// The conditioned channels of a recording about the first impact, and where that lies; none without an
-/// impact.
-fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, CoarseEvent)> {
-    let coarse = events::Changes::of(&recording.channels).locate(file.drop.transverse_velocity_m_s())?;
-    let reach = condition::Reach::of(&file.cask, &file.drop);
-    let (signals, _) = condition::condition(recording, &coarse, &reach, file.corrections);
-    Some((signals, coarse))
-}
-
-/// The flight alone, without joint fit, checks and prediction; each velocity step is its mean over the flight
-/// where `is_mean`.
-fn alone(is_mean: bool, recording: &Recording, file: &CaskFile) -> Option<Answer> {
-    let (signals, coarse) = conditioned(recording, file)?;
-    let contact = events::first_contact(&signals, &coarse)?;
-    let integrated = Integrated::over(&signals, contact.time_s);
-    let mut found = flight_search::find(file, &integrated, Patience::EachBeginning)?;
-    if is_mean {
-        let flight = FlightFit { modes: Vec::new(), drift: false, ..found.flight? };
-        let turning_rad_s = motion::rotation_rad_s(&signals, &flight);
-        found.flight = motion::with_modes(&integrated, &flight, turning_rad_s, file.cask.cog_m);
-    }
-    let moved = found.moved(file, &integrated)?;
-    let speed_m_s = moved.second_end_m_s.map(|(x, z)| x.hypot(z));
-    Some([speed_m_s, Some(moved.rebound_m_s / moved.impact_m_s)].map(bare))
-}
 
 /// A number without an interval.
 fn bare(value: Option<f64>) -> Option<Estimate> {
     value.map(|value| Estimate::new(value, f64::NAN, ""))
 }
 
-/// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time
-/// and no answer.
+/// The points of the program and of the notebook, by quantity and class; what is no answer is wholly off.
+/// Reading alone has a time and no answer.
 pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
     let drops: Vec<FiledDrop> =
         CLASSES.iter().flat_map(|class| filed(class, request, folder.path())).collect();
-    let mut worked = vec![Worked::named(READING)];
-    worked.extend(WORKINGS.iter().map(|(name, _)| Worked::named(name)));
+    let mut worked = vec![Worked::named(READING), Worked::named(TAKEN)];
     for drop in &drops {
-        // Each way has its turn on a file, after one that nobody times.
+        // Each has its turn on a file, after one that nobody times.
         black_box(read(drop));
         worked[0].timed(|| read(drop).map(|_| Answer::default()));
-        for (worked, (_, way)) in worked[1..].iter_mut().zip(&WORKINGS) {
-            worked.timed(|| read(drop).and_then(|(recording, file)| way(&recording, &file)));
-        }
+        worked[1].timed(|| {
+            let (recording, file) = read(drop)?;
+            let result = analyze(&recording, &file).result;
+            Some([result.slap_down.speed, result.k])
+        });
     }
     worked.extend(in_python(&drops, folder.path()));
     (0..WAYS.len()).flat_map(|quantity| scored(quantity, &worked, &drops)).collect()

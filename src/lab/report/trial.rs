@@ -138,7 +138,9 @@ mod tests {
         let text = page(&trial);
         assert!(text.contains("unnoticed from 1000, warned from 100, refused from 10000 Hz"), "{text}");
         assert!(text.contains("with a gauge") && text.contains("ACCEPTED") && !text.contains("NOT ACCEPTED"));
-        assert!(text.contains("within 0.20 % of the speed") && text.contains("other ways (by hand; 5.0 ms)"));
+        assert!(
+            text.contains("within 0.20 % of the speed") && text.contains("another way (by hand; 5.0 ms)")
+        );
         // What the recorded full run saw stands there though three drops did not show it.
         let known = Some(KnownSilence { becomes: "unnoticed from 7 mm", off: "4.5" });
         let unseen = TrialMap { name: "play".into(), sizes: vec![], known, ..trial.maps[0].clone() };

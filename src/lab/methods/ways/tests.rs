@@ -1,10 +1,10 @@
 //! Drops of a class to how far off first contact and the flight fit are, held by bounds that theory gives.
 
 use super::*;
-use crate::data::Signal;
+use crate::data::{CoarseEvent, Signal};
 use crate::lab::data::Scene;
 use crate::lab::drawn::DrawnDrop;
-use crate::{lab::synth, motion};
+use crate::{condition, events, lab::synth, motion};
 
 const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
 
@@ -22,8 +22,11 @@ fn prepared(class: &DropClass, count: u64) -> Vec<Prepared> {
     let prepared = |plan: &DropPlan| {
         let drop = plan.draw();
         let written = drop.recorded();
-        let recording = drop.read(&written).expect("a recording that is read");
-        let (signals, coarse) = conditioned(&recording, &drop.stated).expect("an impact");
+        let (recording, file) = (drop.read(&written).expect("a recording that is read"), &drop.stated);
+        let velocity_m_s = file.drop.transverse_velocity_m_s();
+        let coarse = events::Changes::of(&recording.channels).locate(velocity_m_s).expect("an impact");
+        let reach = condition::Reach::of(&file.cask, &file.drop);
+        let (signals, _) = condition::condition(&recording, &coarse, &reach, file.corrections);
         Prepared { contact_s: written.first_contact_s, signals, coarse, drop }
     };
     class.plans(count, &REQUEST).par_iter().map(prepared).collect()
