@@ -6,7 +6,6 @@ Prints a line each: how long, and what each recording costs more than in the loc
 """
 
 import csv
-import importlib.util
 import os
 import shutil
 import subprocess
@@ -20,8 +19,8 @@ RECIPES, HERE = ROOT / "docs/recipes", Path(__file__).resolve().parent
 PARTS = 4
 
 
-def has(*tools, modules=()):
-    return all(shutil.which(t) for t in tools) and all(importlib.util.find_spec(m) for m in modules)
+def has(*tools):
+    return all(shutil.which(tool) for tool in tools)
 
 
 def run(words, env):
@@ -45,15 +44,12 @@ def main(program, manifest):
     run([*batch, work / "local"], env)
     local, local_s = campaign(work / "local"), time.time() - start
     print(f"local: {count} recordings in {local_s:.2f} s")
-    out = {name: work / name for name in ["slurm", "dask", "parallel", "snakemake"]}
+    out = {name: work / name for name in ["slurm", "parallel"]}
     merge = f"dropcheck merge {out['slurm']}/results-*-of-{PARTS}.jsonl --out {out['slurm']}"
     slurm = f"sbatch --array=0-{PARTS - 1} --wait --output=/dev/null {RECIPES}/slurm.sh {manifest} {out['slurm']}; {merge}"
-    config = [f"manifest={manifest}", f"out={out['snakemake']}", f"parts={PARTS}"]
     engines = {
         "slurm": (has("sbatch", "slurmctld", "slurmd") and os.geteuid() == 0, [HERE / "slurm_here.sh", "sh", "-c", slurm]),
-        "dask": (has(modules=["distributed"]), [sys.executable, RECIPES / "campaign_dask.py", manifest, out["dask"], PARTS]),
         "parallel": (has("parallel"), ["sh", RECIPES / "parallel.sh", manifest, out["parallel"]]),
-        "snakemake": (has("snakemake"), ["snakemake", "--cores", 2, "-d", work, "-s", RECIPES / "Snakefile", "--config", *config]),
     }
     for name, (is_here, words) in engines.items():
         if not is_here:
