@@ -1,19 +1,21 @@
 //! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over
-//! angle, date and number.
+//! angle and number.
 
 use super::BatchRow;
 use super::series::{DropSeries, Pool, PooledQuantity, PredictedCurve, is_usable};
 use crate::data::{BodyModel, Estimate};
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
-    ALARM, AxisScale, COLOURS, Colour, Curve, Dash, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape,
-    Points,
+    ALARM, COLOURS, Colour, Curve, Dash, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape, Points,
 };
 use crate::report::rounding::plain;
 use crate::report::words::contact_words;
 
 /// How far the mean of an angle is drawn to either side of it, degrees.
 const MEAN_DEG: f64 = 0.5;
+
+/// Fewer drops show no trend.
+const LEAST_TREND: usize = 3;
 
 const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
 
@@ -57,17 +59,12 @@ impl DropSeries<'_> {
 
     fn ks(&self, name: &str) -> Picture {
         let k = |row: &BatchRow| PooledQuantity::K.of(row);
-        let over = |what: &str, axis: PanelAxis| Panel::new(format!("k over the {what}"), axis, "k", 330);
-        let dates = PanelAxis { scale: AxisScale::Days, ..PanelAxis::new("test date") };
-        let mut panels = [
-            self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row)),
-            self.drawn(over("test date", dates), k, day).with_air(0.03),
-            self.drawn(over("test number", "test number in the campaign".into()), k, |row| {
-                Some(row.at.number.into())
-            })
-            .with_air(0.03),
-        ];
-        // Over date and number the drops at several angles stand among one another.
+        let mut panels = vec![self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row))];
+        if self.rows.len() >= LEAST_TREND {
+            let trend = Panel::new("k over the test number", "test number in the campaign", "k", 330);
+            panels.push(self.drawn(trend, k, |row| Some(row.at.number.into())).with_air(0.03));
+        }
+        // Over the number the drops at several angles stand among one another.
         let has_mean = |pool: &&Pool| pool.quantity == PooledQuantity::K && !pool.is_contradictory();
         for pool in self.pools.iter().filter(has_mean) {
             let [from, to] = pool.angles_deg;
@@ -76,7 +73,7 @@ impl DropSeries<'_> {
         }
         let caption = "The coefficient of restitution with its 95 % interval. Dashed: mean of the repeats at \
                        an angle, without outliers. Hollow: with errors, in no mean. Ringed: outlier.";
-        let plate = Plate { columns: 3, ..Plate::new(name, format!("{}: restitution", self.name), caption) };
+        let plate = Plate { columns: 2, ..Plate::new(name, format!("{}: restitution", self.name), caption) };
         plate.or(NOTHING).picture(&panels)
     }
 
@@ -135,12 +132,6 @@ fn relative(row: &BatchRow) -> Option<Estimate> {
     let share = (comparison.measured_u95 / comparison.measured)
         .hypot(comparison.predicted_u95 / comparison.predicted);
     Some(Estimate::new(ratio, ratio * share, "1"))
-}
-
-/// The day of a test, counted from 1970 on.
-fn day(row: &BatchRow) -> Option<f64> {
-    let date: jiff::civil::Date = row.at.date.as_deref()?.get(..10)?.parse().ok()?;
-    Some(date.since(jiff::civil::date(1970, 1, 1)).ok()?.get_days().into())
 }
 
 /// A band for each body and contact law between the curves of its lowest and highest k.

@@ -4,7 +4,7 @@ use super::legend::{self, LEFT, RIGHT, point, width_of};
 use super::live::runs;
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
-use crate::numerics::{as_f64, nanoseconds};
+use crate::numerics::as_f64;
 use std::ops::Range;
 
 /// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the
@@ -104,8 +104,7 @@ impl PlotFrame<'_> {
         let (width, height, panel) = (self.width, self.height, self.panel);
         let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
         let most = if width < WIDTH / 2.0 { 8 } else { 14 };
-        // A date takes the room of two or three numbers.
-        let x = ticks(&panel.x, &self.x, if panel.x.scale == AxisScale::Days { most / 3 + 1 } else { most });
+        let x = ticks(&panel.x, &self.x, most);
         let y = ticks(&panel.y, &self.y, 8);
         let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
@@ -227,14 +226,12 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     };
     match axis.scale {
         AxisScale::Rows(_) => Ticks::default(),
-        AxisScale::Linear | AxisScale::Days => {
+        AxisScale::Linear => {
             let least = (to - from) / f64::from(most);
             let power = 10_f64.powf(least.log10().floor());
             let step =
                 [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= least * 0.999);
-            // A date has no parts.
-            let step =
-                if axis.scale == AxisScale::Days { least.ceil().max(1.0) } else { step.unwrap_or(least) };
+            let step = step.unwrap_or(least);
             Ticks { bold: steps(step).into_iter().map(|i| f64::from(i) * step).collect(), fine: Vec::new() }
         }
         AxisScale::Logarithmic => {
@@ -249,12 +246,8 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     }
 }
 
-/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic; a date's day.
+/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
 fn tick(value: f64, axis: &PanelAxis) -> String {
-    if axis.scale == AxisScale::Days {
-        let date = jiff::Timestamp::from_nanosecond(nanoseconds(value * 86_400.0).into());
-        return date.map_or_else(|_| String::new(), |date| date.strftime("%F").to_string());
-    }
     if axis.scale == AxisScale::Logarithmic && !(1e-2..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
@@ -305,14 +298,6 @@ mod tests {
         assert_eq!(tick(-12.5, &linear), "−12.5");
         assert_eq!(tick(1e-5, &logarithmic), "1e−5");
         assert_eq!(tick(100.0, &logarithmic), "100");
-    }
-
-    #[test]
-    fn days_are_ticked_by_their_dates() {
-        let days = PanelAxis { scale: AxisScale::Days, ..PanelAxis::new("date") };
-        let found = ticks(&days, &(20_512.8..20_515.2), 4).bold;
-        let found: Vec<String> = found.into_iter().map(|day| tick(day, &days)).collect();
-        assert_eq!(found, ["2026-03-01", "2026-03-02", "2026-03-03"]);
     }
 
     #[test]

@@ -203,8 +203,6 @@ pub(crate) enum AxisScale {
     #[default]
     Linear,
     Logarithmic,
-    /// Days since 1970, numbered with their dates.
-    Days,
     /// One below the other, a unit each, the last one from 0 to 1.
     Rows(Vec<RowWords>),
 }
