@@ -83,22 +83,22 @@ macro_rules! quantities {
     (
         $(#[$first_about:meta])*
         FirstImpact {
-            $(#[$contact_about:meta])* time,
             $(
                 $(#[$first_field:meta])*
-                $first:ident: $first_unit:literal, $first_words:expr => $first_by:expr;
+                $first:ident: $first_unit:literal, $first_words:expr => |$first_m:ident| $first_by:expr;
             )*
         }
         $(#[$second_about:meta])*
         SlapDown {
-            $(#[$strike_about:meta])* time,
             $(#[$local_about:meta])* local_speed: $local_words:expr,
             $(
                 $(#[$second_field:meta])*
-                $second:ident: $second_unit:literal, $second_words:expr => $second_by:expr;
+                $second:ident: $second_unit:literal, $second_words:expr => |$second_m:ident| $second_by:expr;
             )*
         }
-        beside { $($(#[$beside_about:meta])* $beside:ident: $beside_unit:literal => $beside_of:expr;)* }
+        beside {
+            $($(#[$beside_about:meta])* $beside:ident: $beside_unit:literal => |$m:ident| $beside_of:expr;)*
+        }
     ) => {
         named_numbers! {
             /// Everything that is read off the reconstructed motion.
@@ -112,56 +112,45 @@ macro_rules! quantities {
         impl Quantities<f64> {
             /// The quantities of a motion.
             pub fn of(motion: &Motion) -> Self {
-                fn by<T>(motion: &Motion, formula: fn(&Motion) -> T) -> T {
-                    formula(motion)
-                }
-                Self {
-                    $($first: by(motion, $first_by),)*
-                    $($beside: by(motion, $beside_of),)*
-                    $($second: by(motion, $second_by),)*
-                }
+                $(let $first = { let $first_m = motion; $first_by };)*
+                $(let $beside = { let $m = motion; $beside_of };)*
+                $(let $second = { let $second_m = motion; $second_by };)*
+                Self { $($first,)* $($beside,)* $($second,)* }
             }
         }
 
-        quantities!(part $(#[$first_about])* FirstImpact { $(#[$contact_about])* time: ("", "") }
+        quantities!(part $(#[$first_about])* FirstImpact {}
             { $($(#[$first_field])* $first: $first_words => |all| all.$first.into();)* });
-        quantities!(part $(#[$second_about])* SlapDown
-            { $(#[$strike_about])* time: ("", ""), $(#[$local_about])* local_speed: $local_words }
+        quantities!(part $(#[$second_about])* SlapDown { $(#[$local_about])* local_speed: $local_words }
             { $($(#[$second_field])* $second: $second_words => |all| all.$second;)* });
     };
-    (part $(#[$about:meta])* $name:ident
-        {
-            $(#[$time_about:meta])* time: $time_words:expr
-            $(, $(#[$beside_about:meta])* $beside:ident: $beside_words:expr)*
-        }
-        { $($(#[$field_about:meta])* $field:ident: $words:expr => $of:expr;)* }) => {
+    (part $(#[$about:meta])* $name:ident { $($(#[$beside_about:meta])* $beside:ident: $beside_words:expr)? }
+        { $($(#[$field_about:meta])* $field:ident: $words:expr => |$all:ident| $of:expr;)* }) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Default, Serialize)]
         pub struct $name {
-            $(#[$time_about])* pub time: Option<Estimate>,
+            /// First contact of the end, s from the recording's first sample.
+            pub time: Option<Estimate>,
             $($(#[$field_about])* pub $field: Option<Estimate>,)*
-            $($(#[$beside_about])* pub $beside: Option<Estimate>,)*
+            $($(#[$beside_about])* pub $beside: Option<Estimate>,)?
         }
 
         impl $name {
             /// At a time, with its quantities where they are measured.
             pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
-                fn by(all: Option<&Quantities>, of: fn(&Quantities) -> Option<Estimate>) -> Option<Estimate> {
-                    all.and_then(of)
-                }
-                Self { time, $($field: by(measured, $of),)* $($beside: None,)* }
+                Self { time, $($field: measured.and_then(|$all| $of),)* $($beside: None,)? }
             }
 
             /// Those of the prototype, of a model of this scale; the time of the recording is none of it.
             pub fn of_prototype(&self, scale: f64) -> Self {
                 let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.of_prototype(scale));
-                Self { time: None, $($field: scaled(self.$field),)* $($beside: scaled(self.$beside),)* }
+                Self { time: None, $($field: scaled(self.$field),)* $($beside: scaled(self.$beside),)? }
             }
 
             /// Its quantities, but for the time.
             pub fn rows(&self) -> Vec<QuantityRow> {
                 let row = |(name, remark), value| QuantityRow { name, remark, value };
-                let all = [$(row($words, self.$field),)* $(row($beside_words, self.$beside),)*];
+                let all = [$(row($words, self.$field),)* $(row($beside_words, self.$beside),)?];
                 all.into_iter().filter(|row| !row.name.is_empty()).collect()
             }
         }
@@ -171,8 +160,6 @@ macro_rules! quantities {
 quantities! {
     /// The first impact.
     FirstImpact {
-        /// First contact of L, s from the recording's first sample.
-        time,
         /// Speed at first contact, m/s.
         impact_velocity: "m/s", ("impact velocity", "by the cask file") => |m| m.impact_m_s;
         /// From first contact to separation, s.
@@ -184,8 +171,6 @@ quantities! {
     }
     /// The slap-down of R.
     SlapDown {
-        /// First contact of R, s from the recording's first sample.
-        time,
         /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s
         /// (44)
         local_speed: ("speed (corner)", "with ringing and swinging"),
