@@ -20,6 +20,28 @@ impl Bench {
         fs::write(&path, content).expect("a temporary file");
         path
     }
+
+    /// What `synth` makes of a scene: NAME.csv, with its cask file and its truth beside it.
+    #[track_caller]
+    pub fn synth(&self, name: &str, scene: impl AsRef<[u8]>) -> PathBuf {
+        let made = self.0.path().join(format!("{name}.csv"));
+        let scene = self.put(&format!("{name}-scene.toml"), scene);
+        let answer = dropcheck(words!["synth", scene, "--out", made]);
+        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        made
+    }
+}
+
+/// The example scene with an axial channel on each end.
+pub fn scene_with_axial_channels() -> String {
+    let axial = |(name, end, position_m): (&str, &str, f64)| {
+        format!(
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"axial\"\n\
+             position_m = {position_m}\nsample_rate_hz = 25000\nwhite_noise_g = 0.1\n"
+        )
+    };
+    let scene = fs::read_to_string(fixture("scene-anf18.toml")).expect("the example scene");
+    scene + "\n" + &[("B1", "first", 0.15), ("B2", "second", 5.362)].map(axial).concat()
 }
 
 /// A cask file of the fixtures with `from` replaced by `to`.

@@ -1,7 +1,7 @@
 //! Channels that take no part in the motion: shown and judged, and no number of the motion moves by them.
 
-use crate::command_line::{Bench, at_fault};
-use crate::run::{analyze, dropcheck, fixture, number, words};
+use crate::command_line::{Bench, at_fault, scene_with_axial_channels};
+use crate::run::{analyze, dropcheck, number, words};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,17 +22,7 @@ impl Drop {
     /// Whose strain gauge reads no more than `limit`, in µm/m, and comes off where `lost`.
     fn new(limit: f64, lost: bool) -> Self {
         let bench = Bench::new();
-        let axial = |(name, end, position_m): (&str, &str, f64)| {
-            format!(
-                "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"axial\"\n\
-                 position_m = {position_m}\nsample_rate_hz = 25000\nwhite_noise_g = 0.1\n"
-            )
-        };
-        let scene = fs::read_to_string(fixture("scene-anf18.toml")).expect("the example scene");
-        let both: String = [("B1", "first", 0.15), ("B2", "second", 5.362)].map(axial).concat();
-        let made = bench.0.path().join("drop.csv");
-        let scene = bench.put("scene.toml", format!("{scene}\n{both}"));
-        assert_eq!(dropcheck(words!["synth", scene, "--out", made]).status, 0);
+        let made = bench.synth("drop", scene_with_axial_channels());
         let cask = made.with_extension("toml");
         let plain = analyze(&made, &cask).json();
         let contact_s = number(&plain, "/first_impact/time/value").expect("a first contact");

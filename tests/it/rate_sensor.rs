@@ -2,7 +2,7 @@
 //! what is said of a sensor that cannot be right.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{analyze, dropcheck, number, read_json, words};
+use crate::run::{analyze, findings, number, read_json};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -50,9 +50,7 @@ struct TurningDrop {
 impl TurningDrop {
     fn new() -> Self {
         let bench = Bench::new();
-        let made = bench.0.path().join("drop.csv");
-        let answer = dropcheck(words!["synth", bench.put("scene.toml", SCENE), "--out", made]);
-        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        let made = bench.synth("drop", SCENE);
         let cask = fs::read_to_string(made.with_extension("toml")).expect("a cask file");
         assert!(cask.contains("axis = \"rate\"\nsource = \"W1\"\nunit = \"deg/s\""), "{cask}");
         Self { bench, cask }
@@ -84,10 +82,6 @@ impl TurningDrop {
 
 /// Stated nowhere.
 const UNSTATED: [&str; 2] = ["angular_velocity_deg_s = 5\n", ""];
-
-fn findings(result: &Value) -> String {
-    result["quality"].to_string()
-}
 
 fn tests_rotation(result: &Value) -> bool {
     let untested = result["untested"].as_array().expect("a list");

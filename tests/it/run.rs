@@ -130,6 +130,11 @@ pub fn read_json(path: &Path) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// What a result says of its data, as JSON.
+pub fn findings(result: &Value) -> String {
+    result["quality"].to_string()
+}
+
 /// The number at a JSON pointer, `None` where it is null or absent.
 pub fn number(value: &Value, pointer: &str) -> Option<f64> {
     value.pointer(pointer).and_then(Value::as_f64)

@@ -1,7 +1,7 @@
 //! Sensors of the skin, in tables and in lists, and of two recorders, to the same numbers.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{analyze, dropcheck, fixture, number, read_json, words};
+use crate::run::{analyze, dropcheck, findings, fixture, number, read_json, words};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -51,9 +51,7 @@ struct SkinDrop {
 impl SkinDrop {
     fn new() -> Self {
         let bench = Bench::new();
-        let made = bench.0.path().join("drop.csv");
-        let answer = dropcheck(words!["synth", bench.put("scene.toml", SCENE), "--out", made]);
-        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        let made = bench.synth("drop", SCENE);
         let cask = fs::read_to_string(made.with_extension("toml")).expect("a cask file");
         let cask = cask.split("[[channel]]").next().expect("its beginning").to_owned();
         let text = fs::read_to_string(made).expect("a recording");
@@ -154,10 +152,6 @@ fn apart(one: &Value, other: &Value) -> f64 {
         (part(one, "value") - part(other, "value")).abs() / part(one, "u95")
     };
     in_half_widths("/slap_down/speed").max(in_half_widths("/k"))
-}
-
-fn findings(result: &Value) -> String {
-    result["quality"].to_string()
 }
 
 #[test]

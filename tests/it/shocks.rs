@@ -1,6 +1,6 @@
 //! From pulses of known size, and from drops without a slap-down, to the shocks, spectra and low-passes.
 
-use crate::command_line::Bench;
+use crate::command_line::{Bench, scene_with_axial_channels};
 use crate::run::{analyze, dropcheck, fixture, number, words};
 use dropcheck::data::{STANDARD_GRAVITY_M_S2, Signal};
 use dropcheck::stages::{pulses, shock_response};
@@ -158,24 +158,14 @@ fn spectra_are_of_channels_that_return_to_rest() {
 
 #[test]
 fn a_drop_without_a_slap_down_says_what_kind_it_is_and_has_its_shocks() {
-    let scene = fs::read_to_string(fixture("scene-anf18.toml")).expect("the example scene");
-    let axial = |(name, end, position_m): (&str, &str, f64)| {
-        format!(
-            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"axial\"\nposition_m = {position_m}\n\
-             sample_rate_hz = 25000\nwhite_noise_g = 0.1\n"
-        )
-    };
-    let scene = scene + "\n" + &[("B1", "first", 0.15), ("B2", "second", 5.362)].map(axial).concat();
+    let scene = scene_with_axial_channels();
     for (angle_deg, kind) in
         [("0.1", "Flat drop"), ("1.0", "Flat drop"), ("81.0", "Corner drop"), ("89.0", "End drop")]
     {
         let bench = Bench::new();
         let line = scene.lines().find(|line| line.starts_with("angle_deg")).expect("an angle");
         let wide = scene.replace("full_scale = 2000.0", "full_scale = 6000.0");
-        let file = bench.put("scene.toml", wide.replacen(line, &format!("angle_deg = {angle_deg}"), 1));
-        let made = bench.0.path().join("drop.csv");
-        let answer = dropcheck(words!["synth", file, "--out", made]);
-        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        let made = bench.synth("drop", wide.replacen(line, &format!("angle_deg = {angle_deg}"), 1));
         let cask = made.with_extension("toml");
         let result = analyze(&made, &cask).json();
         assert!(result["slap_down"]["speed"].is_null(), "{angle_deg}: {}", result["slap_down"]);

@@ -38,13 +38,8 @@ impl Drop {
         };
         let ideal = scene.lines().filter(is_chain).collect::<Vec<_>>().join("\n");
         let ideal = ideal.replace("white_noise_g = 0.1", "white_noise_g = 0.0");
-        let [recording, pure] = [("drop", scene), ("ideal", ideal)].map(|(name, scene)| {
-            let scene = bench.put(&format!("{name}-scene.toml"), scene);
-            let made = bench.0.path().join(format!("{name}.csv"));
-            let answer = dropcheck(words!["synth", scene, "--out", made]);
-            assert_eq!(answer.status, 0, "{}", answer.stderr);
-            made
-        });
+        let [recording, pure] =
+            [("drop", scene), ("ideal", ideal)].map(|(name, scene)| bench.synth(name, scene));
         let cask = fs::read_to_string(recording.with_extension("toml")).expect("a cask file");
         let row = |line: &str| {
             let cells: Vec<f64> = line.split(',').map_while(|cell| cell.parse().ok()).collect();
