@@ -186,8 +186,8 @@ mod tests {
             svg.split("<polyline").filter(|line| line.matches(',').count() > 40).count()
         };
         let whole = solid(&study);
-        // Rough, k = 1, of the rod: a solid line.
-        study.curves[1].speed_m_s[80..90].fill(f64::NAN);
+        // Smooth, k = 1, of the rod: a solid line.
+        study.curves[3].speed_m_s[60..70].fill(f64::NAN);
         assert_eq!(solid(&study), whole + 1);
     }
 

@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(json["critical_angles"][0]["criterion"], "speed");
         assert_eq!(
             json["monte_carlo"]["quantiles"][0]["q50"].as_array().unwrap().len(),
-            study.request.angles_deg.len()
+            study.monte_carlo.angle_deg.len()
         );
     }
 
