@@ -34,7 +34,7 @@ pub enum ScatterWord {
 }
 
 /// E_n = (a − b) / √(U_a² + U_b²) of values with half-widths (ISO 13528): within ±1 they agree.
-pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
+fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0) / a.1.hypot(b.1)
 }
 

@@ -5,14 +5,13 @@ use super::columns::NamedQuantity;
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, is_usable, scatter_words};
 use super::summary::{Oddity, few, oddities, tag};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES};
-use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
-use crate::numerics::pooled::e_n;
+use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::report::document::{
     Chapter, ChapterPart, Frame, PartContent, ReportDocument, ReportTable, TableCell, Tone,
 };
 use crate::report::json::in_a_line;
 use crate::report::rounding::{
-    MISSING, fixed, interval, optional, optional_fixed, pair, percent, plain, significant,
+    MISSING, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
 use crate::report::text::Style;
 use serde_json::json;
@@ -44,7 +43,6 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let banner = Chapter::new("").with(PartContent::Banner(banner, batch.sum(&odd)));
     let mut chapters = vec![banner, outliers(&odd)];
     chapters.extend(reasons(batch));
-    chapters.extend(both(batch));
     chapters.extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| of_series(series, i + 1)));
     let more =
         format!("The first {MOST_SERIES} of {} casks: campaign.json has the pools of all.", series.len());
@@ -103,44 +101,6 @@ fn data(rows: &[&BatchRow]) -> String {
 /// The day of a test.
 fn date(row: &BatchRow) -> Option<&str> {
     row.at.date.as_deref().map(|date| date.get(..10).unwrap_or(date))
-}
-
-/// Where just two gave a result: what they differ by.
-fn both(batch: &Batch) -> Option<Chapter> {
-    let usable: Vec<&BatchRow> = batch.rows.iter().filter(|row| row.verdict.is_some()).collect();
-    let [a, b] = usable[..] else { return None };
-    Some(Chapter::new("What the two differ by").with(compared(a, b)))
-}
-
-/// Two rows to what they differ by, quantity by quantity.
-fn compared<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
-    let e_n = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
-        e_n((b.estimate.value, b.estimate.u95), (a.estimate.value, a.estimate.u95))
-    };
-    let pair =
-        |of_a: &'a NamedQuantity| Some((of_a, b.quantities.iter().find(|of_b| of_b.name == of_a.name)?));
-    let pairs: Vec<(&NamedQuantity, &NamedQuantity)> =
-        a.quantities.iter().filter_map(pair).filter(|pair| e_n(pair).is_finite()).collect();
-    let difference = |(a, b): &(&NamedQuantity, &NamedQuantity)| {
-        let (a, b) = (a.estimate, b.estimate);
-        interval(Some(&Estimate::new(b.value - a.value, a.u95.hypot(b.u95), a.unit)))
-    };
-    let word = |pair: &(&NamedQuantity, &NamedQuantity)| {
-        TableCell::marked(fixed(e_n(pair), 2), if e_n(pair).abs() > 1.0 { "differ" } else { "" })
-    };
-    ReportTable::of(&pairs)
-        .class("many")
-        .caption(format!(
-            "{} and {}: E_n = difference over the root of the squares of both half-widths; within ±1 they \
-             agree.",
-            a.id, b.id
-        ))
-        .head("quantity", |(a, _)| a.name)
-        .number(&a.id[..], |(a, _)| interval(Some(&a.estimate)))
-        .number(&b.id[..], |(_, b)| interval(Some(&b.estimate)))
-        .number("difference", difference)
-        .number("E_n", word)
-        .into()
 }
 
 /// Drops that disagree with their repeats, or lie outside both intervals of measurement and prediction.
