@@ -30,6 +30,8 @@ const LEAST_M: f64 = 0.1;
 /// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
 /// the unit is wrong.
 const MOST_LOST: f64 = 3.0;
+/// Clocks that are farther apart are no number that is a little off, s.
+const NEAR_S: f64 = 8e-3;
 /// Clocks are apart where they seem so by more, s: within it an analysis comes to the same. A soft impact has
 /// an end seem to answer by so much later than it does; clocks nearer to one another are one.
 const APART_S: f64 = 2e-3;
@@ -60,15 +62,17 @@ pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut An
     let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
     let usual = hypotheses(recording, file).into_par_iter().filter(may_cure);
     let by_usual = usual.filter(|slips| is_of_it(slips)).filter_map(|slips| stated.cured_by_slips(slips));
-    let clocks = stated.clocks_behind_s(found).into_par_iter().map(|behind_s| stated.earlier(behind_s));
-    let by_clock = clocks.filter(|slip| is_of_it(std::slice::from_ref(slip)));
-    let by_clock = by_clock.filter_map(|slip| stated.cured_by_clock(slip));
-    let by_slips = best(by_usual.chain(by_clock).collect());
+    // A small shift is one number more, which other numbers may do as well as.
+    let clocks = stated.clocks_behind_s(found).into_iter().map(|behind_s| stated.earlier(behind_s));
+    let own_clocks = clocks.filter(|slip| is_of_it(std::slice::from_ref(slip)));
+    let (far, near): (Vec<Slip>, Vec<Slip>) = own_clocks.partition(|slip| slip.from.abs() > NEAR_S);
+    let by_clock = |slips: Vec<Slip>| slips.into_par_iter().filter_map(|slip| stated.cured_by_clock(slip));
+    let by_slips = best(by_usual.chain(by_clock(far)).collect());
     let is_usual = !by_slips.is_empty();
     let by_number = || {
         let numbers = stated.numbers_to_try(found).into_par_iter();
         let own = numbers.filter(|(slip, _)| is_of_it(std::slice::from_ref(slip)));
-        best(own.filter_map(|number| stated.cured_by_number(number)).collect())
+        best(own.filter_map(|number| stated.cured_by_number(number)).chain(by_clock(near)).collect())
     };
     let cures = if is_usual { by_slips } else { by_number() };
     if cures.len() <= MOST_NAMED {
