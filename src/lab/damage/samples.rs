@@ -16,6 +16,12 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut Synthetic
         "unplugged" => unplugged(case, recording, size),
         "limited_first" => limited(case, recording, 0, size),
         "limited_second" => limited(case, recording, 1, size),
+        "slewing" => slewing(case, recording, size),
+        "overloaded" => overloaded(case, recording, size),
+        "compressed" => compressed(case, recording, size),
+        "breaks" => breaks(case, recording, size),
+        "loose_plug" => loose_plug(case, recording, size),
+        "trigger" => trigger(case, recording, size),
         "drift" => drift(case, recording, size),
         "spikes" => spikes(case, recording, size),
         "base_strain" => base_strain(case, recording, size),
@@ -96,6 +102,81 @@ fn limited(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usiz
         *sample = single(f64::from(*sample).clamp(-limit, limit) + noise * case.chance.normal());
     }
     case.stated.channels[which].full_scale = None;
+}
+
+/// An amplifier that follows no slope steeper than `size` percent below the steepest.
+fn slewing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let channel = one(case, recording);
+    let steepest = channel.samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
+    let most = single((1.0 - size / 100.0) * f64::from(steepest));
+    let mut reads = channel.samples.first().copied().unwrap_or(0.0);
+    for sample in &mut channel.samples {
+        reads += (*sample - reads).clamp(-most, most);
+        *sample = reads;
+    }
+}
+
+/// An amplifier that limits at `size` percent below the peak, and recovers from it within 5 to 50 ms.
+fn overloaded(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let fades_s = case.chance.log_even([5e-3, 50e-3]);
+    let channel = one(case, recording);
+    let limit = (1.0 - size / 100.0) * peak(channel);
+    let kept = (-1.0 / (fades_s * channel.sample_rate_hz)).exp();
+    let mut charged = 0.0;
+    for sample in &mut channel.samples {
+        let force = f64::from(*sample);
+        let beyond = force - force.clamp(-limit, limit);
+        charged = kept * charged - (1.0 - kept) * beyond;
+        *sample = single(force - beyond + charged);
+    }
+}
+
+/// An amplifier that reads the peak by `size` percent too little, and less force by less: by its cube.
+fn compressed(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let channel = one(case, recording);
+    let peak = peak(channel);
+    for sample in &mut channel.samples {
+        let force = f64::from(*sample);
+        *sample = single(force * (1.0 - size / 100.0 * (force / peak).powi(2)));
+    }
+}
+
+/// A cable that breaks after `size` percent of the way to the slap-down: noise from there on, about 0 or at a
+/// rail.
+fn breaks(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let since_s = size / 100.0 * case.way_s();
+    let rail = if case.chance.is(0.5) { case.chance.sign() } else { 0.0 };
+    let channel = one(case, recording);
+    let (level, noise, from) =
+        (rail * peak(channel), CONVERTER_G * g_in(channel), index(case, channel, since_s));
+    for sample in &mut channel.samples[from..] {
+        *sample = single(level + noise * case.chance.normal());
+    }
+}
+
+/// A plug that lets go for 0.3 to 2 ms, `size` times between first contact and slap-down.
+fn loose_plug(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let way_s = case.way_s();
+    let channel = one(case, recording);
+    for _ in 0..as_count(size) {
+        let (since_s, long_s) = (case.chance.even(0.0, way_s), case.chance.log_even([3e-4, 2e-3]));
+        let span = index(case, channel, since_s)..index(case, channel, since_s + long_s);
+        channel.samples[span].fill(0.0);
+    }
+}
+
+/// What a trigger couples into a channel within the first contact: `size` percent of the peak, which fades
+/// within half a millisecond.
+fn trigger(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    const FADES_S: f64 = 5e-4;
+    let since_s = case.chance.even(0.0, case.contact_s());
+    let share = case.chance.sign() * size / 100.0;
+    let channel = one(case, recording);
+    let (amplitude, fades) = (share * peak(channel), FADES_S * channel.sample_rate_hz);
+    let from = index(case, channel, since_s);
+    for (i, sample) in channel.samples[from..].iter_mut().enumerate() {
+        *sample += single(amplitude * (-as_f64(i) / fades).exp());
+    }
 }
 
 /// A slope over the whole record.
