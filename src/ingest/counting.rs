@@ -3,6 +3,7 @@
 
 use super::clock::usual_step;
 use super::refusal::Refusal;
+use crate::data::{Finding, TableFinding};
 use crate::numerics::{as_count, as_f64, robust};
 use std::borrow::Cow;
 
@@ -211,29 +212,79 @@ pub(super) fn with_missing(held: &[f64], missing: &[(usize, f64)]) -> Vec<f64> {
     all
 }
 
+/// A counter of rows, and where it shows some to be missing.
+#[derive(Debug, Clone)]
+pub(super) struct RowCounter {
+    /// Its column or field.
+    pub header: String,
+    /// The rows, from 0, behind which some are missing, and how many.
+    pub jumps: Vec<(usize, f64)>,
+    rows: usize,
+}
+
+impl RowCounter {
+    /// By its numbers, one a row; `None` where they count nothing.
+    pub(super) fn of(header: &str, counts: &[f64]) -> Option<Self> {
+        let jumps = Counter::of(counts)?.jumps(counts);
+        Some(Self { header: header.to_owned(), jumps, rows: counts.len() })
+    }
+
+    /// How many rows are missing.
+    pub(super) fn lost(&self) -> f64 {
+        self.jumps.iter().map(|(_, lost)| lost).sum()
+    }
+
+    /// Whether rows are missing, and no more than there are.
+    pub(super) fn shows_loss(&self) -> bool {
+        !self.jumps.is_empty() && self.lost() <= as_f64(self.rows)
+    }
+
+    /// That the missing rows were put in, where it shows some.
+    pub(super) fn finding(&self) -> Finding {
+        let (row, count) = self.jumps[0];
+        TableFinding::CounterJumps { header: self.header.clone(), lost: self.lost(), count, row: row + 1 }
+            .into()
+    }
+
+    /// What it says of times, called `times`, that go on over missing rows; nothing where they leave room.
+    ///
+    /// # Errors
+    /// They go on, and are not those that the cask file names.
+    pub(super) fn beside(
+        &self,
+        times_s: &[f64],
+        times: &str,
+        are_named: bool,
+    ) -> Result<Option<Finding>, Refusal> {
+        if self.jumps.iter().all(|(row, lost)| is_room(times_s, *row, *lost)) {
+            return Ok(None);
+        }
+        let ((row, first), lost, header) = (self.jumps[0], self.lost(), self.header.clone());
+        let row = row + 1;
+        if are_named {
+            let times = times.to_owned();
+            return Ok(Some(TableFinding::CounterBesideTimes { header, lost, row, times }.into()));
+        }
+        Err(Refusal::new(
+            format!(
+                "{header:?} counts the rows, and {lost} of them are missing, the first {first} behind row \
+                 {row}, where the times in {times:?} go on without a gap"
+            ),
+            format!(
+                "where the counter is right write time = {header:?} under [recording] of the cask file and \
+                 sample_rate_hz into each [[channel]]; where it counts something else write time = {times:?}"
+            ),
+        ))
+    }
+}
+
 /// Whether times leave room for so many rows that are missing behind a row; those that are cut to more than
 /// the samples' interval show nothing.
-pub(super) fn is_room(times: &[f64], row: usize, lost: f64) -> bool {
+fn is_room(times: &[f64], row: usize, lost: f64) -> bool {
     let (near, next) = (&times[row.saturating_sub(8)..=row], &times[row + 1..times.len().min(row + 9)]);
     let is_cut = |times: &[f64]| times.windows(2).any(|pair| pair[1] <= pair[0]);
     let usual = usual_step(&[near, next].concat());
     !is_cut(near) && !is_cut(next) && times[row + 1] - times[row] > (lost + 0.5) * usual
-}
-
-/// The refusal of times that go on over rows which a counter shows to be missing, the first of them behind a
-/// row (from 0).
-pub(super) fn contradiction(counter: &str, lost: f64, (row, first): (usize, f64), times: &str) -> Refusal {
-    Refusal::new(
-        format!(
-            "{counter:?} counts the rows, and {lost} of them are missing, the first {first} behind row {}, \
-             where the times in {times:?} go on without a gap",
-            row + 1
-        ),
-        format!(
-            "where the counter is right write time = {counter:?} under [recording] of the cask file and \
-             sample_rate_hz into each [[channel]]; where it counts something else write time = {times:?}"
-        ),
-    )
 }
 
 /// Whether few whole numbers return one after another in nine rows of ten: the ids of sensors by turns.

@@ -10,14 +10,14 @@ use super::sensors;
 use super::stamp::Stamps;
 use super::time_column;
 use super::wanted::Wanted;
-use crate::data::{Finding, Samples, TableFinding};
+use crate::data::{Finding, Samples};
 use crate::ingest::clock::Clock;
-use crate::ingest::counting::{self, Counter};
+use crate::ingest::counting::{self, Counter, RowCounter};
 use crate::ingest::lines;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
-use crate::numerics::{as_f64, robust};
+use crate::numerics::robust;
 use rayon::prelude::*;
 
 /// The wanted columns of a table, kept whole, with what is said of them.
@@ -204,37 +204,18 @@ impl<'a> Table<'a> {
     /// # Errors
     /// They do, and the cask file does not name the times.
     pub(super) fn place_by_counter(&mut self) -> Result<Option<Finding>, Refused> {
-        let Some(column) = self.wanted.counter.filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()))
-        else {
-            return Ok(None);
-        };
-        let counts = self.columns[self.wanted.slot(column)].values();
-        let jumps = Counter::of(&counts).map_or(Vec::new(), |counter| counter.jumps(&counts));
-        let (header, lost) =
-            (self.layout.columns[column].header.clone(), jumps.iter().map(|(_, lost)| lost).sum::<f64>());
-        let Some(&(row, first)) = jumps.first().filter(|_| lost <= as_f64(counts.len())) else {
-            return Ok(None);
-        };
+        let values = |column: usize| self.columns[self.wanted.slot(column)].values();
+        let header = |column: usize| self.layout.columns[column].header.as_str();
+        let counter = self.wanted.counter.filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
+        let counter = counter.and_then(|column| RowCounter::of(header(column), &values(column)));
+        let Some(counter) = counter.filter(RowCounter::shows_loss) else { return Ok(None) };
         let timed = self.plans.iter().enumerate().find_map(|(plan, of)| Some((plan, of.time_column?)));
         if let Some((plan, time)) = timed {
-            let times = self.columns[self.wanted.slot(time)].values();
-            if jumps.iter().all(|(row, lost)| counting::is_room(&times, *row, *lost)) {
-                return Ok(None);
-            }
-            let times = self.layout.columns[time].header.clone();
-            if self.plans[plan].claims.are_times_named {
-                return Ok(Some(
-                    TableFinding::CounterBesideTimes { header, lost, row: row + 1, times }.into(),
-                ));
-            }
-            let refusal = counting::contradiction(&header, lost, (row, first), &times);
-            return Err(Refused { plan, refusal });
+            let said = counter.beside(&values(time), header(time), self.plans[plan].claims.are_times_named);
+            return said.map_err(|refusal| Refused { plan, refusal });
         }
-        drop(counts);
-        for column in &mut self.columns {
-            column.put_in(&jumps);
-        }
-        Ok(Some(TableFinding::CounterJumps { header, lost, count: first, row: row + 1 }.into()))
+        self.columns.iter_mut().for_each(|column| column.put_in(&counter.jumps));
+        Ok(Some(counter.finding()))
     }
 
     /// How many samples a channel has at most.

@@ -7,12 +7,12 @@ use super::column::DatasetColumn;
 use super::find;
 use super::sensors::RecordSensors;
 use super::starts::{LATEST_S, Start};
-use crate::data::{Finding, RowsOf, Samples, TableFinding};
+use crate::data::{RowsOf, Samples};
 use crate::ingest::clock::Claims;
-use crate::ingest::counting::{self, Counter};
+use crate::ingest::counting::{RowCounter, with_missing};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
-use crate::numerics::{as_f64, extent};
+use crate::numerics::extent;
 
 /// A channel before its samples are read.
 pub(super) struct DatasetChannel {
@@ -24,8 +24,8 @@ pub(super) struct DatasetChannel {
     pub times: Vec<DatasetColumn>,
     /// Which of its samples are taken, where it holds those of several sensors.
     rows: Option<Vec<usize>>,
-    /// What counts its samples, and where it shows some to be missing.
-    jumps: Option<(String, Vec<(usize, f64)>)>,
+    /// What counts its samples, where it shows some to be missing.
+    counter: Option<RowCounter>,
 }
 
 /// Samples on one base.
@@ -63,7 +63,7 @@ impl DatasetChannel {
         }
         let stated = std::mem::take(&mut attributes.stated);
         let claims = Claims { cask_hz, are_times_named: time.is_some(), stated };
-        Ok(Self { column, attributes, claims, times, rows: None, jumps: None })
+        Ok(Self { column, attributes, claims, times, rows: None, counter: None })
     }
 
     /// Takes the samples of one sensor alone.
@@ -87,33 +87,12 @@ impl DatasetChannel {
 
     /// Looks beside the samples for a counter of them that shows some to be missing.
     pub(super) fn count_rows(&mut self, mut may_read: impl FnMut(&DatasetColumn) -> bool) {
-        let jumps = |counter: DatasetColumn| {
-            let counts = counter.samples().ok()?.into_f64();
-            Some((counter.source, Counter::of(&counts)?.jumps(&counts)))
-        };
+        let counter =
+            |column: DatasetColumn| RowCounter::of(&column.source, &column.samples().ok()?.into_f64());
         let is_own = |other: &DatasetColumn| self.times.iter().any(|time| time.source == other.source);
         let beside = clocks::counters_beside(&self.column).into_iter().filter(|other| !is_own(other));
-        let found = beside.filter(|counter| may_read(counter)).find_map(jumps);
-        let count = as_f64(self.column.length);
-        let is_lost = |jumps: &[(usize, f64)]| (1.0..count).contains(&jumps.iter().map(|jump| jump.1).sum());
-        self.jumps = found.filter(|(_, jumps)| self.rows.is_none() && is_lost(jumps));
-    }
-
-    /// What the counter says beside times.
-    ///
-    /// # Errors
-    /// They go on over what it shows to be missing, and the cask file does not name them.
-    fn held_against(&self, time: &DatasetColumn, times_s: &[f64]) -> Result<Option<Finding>, Refusal> {
-        let Some((header, jumps)) = &self.jumps else { return Ok(None) };
-        if jumps.iter().all(|(row, lost)| counting::is_room(times_s, *row, *lost)) {
-            return Ok(None);
-        }
-        let (lost, times) = (jumps.iter().map(|jump| jump.1).sum(), time.source.clone());
-        if self.claims.are_times_named {
-            let (header, row) = (header.clone(), jumps[0].0 + 1);
-            return Ok(Some(TableFinding::CounterBesideTimes { header, lost, row, times }.into()));
-        }
-        Err(counting::contradiction(header, lost, jumps[0], &times))
+        let found = beside.filter(|column| may_read(column)).find_map(counter);
+        self.counter = found.filter(|counter| self.rows.is_none() && counter.shows_loss());
     }
 
     /// Its numbers, scaled.
@@ -170,7 +149,10 @@ impl DatasetChannel {
                     *t += since_s;
                 }
             }
-            let told = self.held_against(time, &times_s).map_err(at)?;
+            let told = self.counter.as_ref().map_or(Ok(None), |counter| {
+                counter.beside(&times_s, &time.source, self.claims.are_times_named)
+            });
+            let told = told.map_err(at)?;
             let placed = ChannelTimes::new(&times_s).place(samples, &self.claims);
             let mut uniform = placed.map_err(at)?;
             uniform.issues.extend(told);
@@ -188,11 +170,9 @@ impl DatasetChannel {
     fn by_rate(&self, mut samples: Samples, unfit: Option<String>) -> Result<Based, Refusal> {
         let Attributes { no_rate, start, .. } = &self.attributes;
         let mut told = None;
-        if let Some((header, jumps)) = &self.jumps {
-            let (lost, (row, count), header) =
-                (jumps.iter().map(|jump| jump.1).sum(), jumps[0], header.clone());
-            told = Some(TableFinding::CounterJumps { header, lost, count, row: row + 1 }.into());
-            samples = samples.alike(counting::with_missing(&samples.clone().into_f64(), jumps));
+        if let Some(counter) = &self.counter {
+            told = Some(counter.finding());
+            samples = samples.alike(with_missing(&samples.clone().into_f64(), &counter.jumps));
         }
         let unclear = no_rate.clone().filter(|_| self.claims.cask_hz.is_none());
         let none = || unfit.unwrap_or_else(|| clocks::why_none(&self.column));

@@ -2,9 +2,9 @@
 //! their log times to how their pace differs from that of the stamps.
 
 use super::{Column, SEQUENCE, SentTimes, StatedRate, seconds_from};
-use crate::data::{Finding, ListedChannel, McapFinding, TableFinding};
+use crate::data::{Finding, ListedChannel, McapFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
-use crate::ingest::counting::{self, Counter};
+use crate::ingest::counting::RowCounter;
 use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::mcap::topics::LOG_TIME;
 use crate::ingest::refusal::Refusal;
@@ -140,30 +140,23 @@ impl Column {
         let Some((from_ns, _)) = self.span_ns() else { return Ok(None) };
         let times_s: Vec<f64> = self.times_ns.iter().map(|time| seconds_from(*time, from_ns)).collect();
         for (_, header, numbers) in &self.others {
-            let counts = numbers.values();
-            let jumps = Counter::of(&counts).map_or(Vec::new(), |counter| counter.jumps(&counts));
-            let lost: f64 = jumps.iter().map(|jump| jump.1).sum();
-            let is_shared = header == SEQUENCE && lost <= messages;
-            let is_room = |(row, lost): &(usize, f64)| counting::is_room(&times_s, *row, *lost);
-            if counts.len() != times_s.len() || is_shared || lost > as_f64(counts.len()) {
-                continue;
+            let counts = Some(numbers.values()).filter(|counts| counts.len() == times_s.len());
+            let counter = counts.and_then(|counts| RowCounter::of(header, &counts));
+            let is_sequence = header == SEQUENCE;
+            let is_own = |counter: &RowCounter| !is_sequence || counter.lost() > messages;
+            let Some(counter) = counter.filter(RowCounter::shows_loss).filter(is_own) else { continue };
+            let times = if self.good_stamps > 0 { "stamp" } else { LOG_TIME };
+            match counter.beside(&times_s, times, is_named) {
+                Ok(None) => {}
+                Err(mut refusal) if is_sequence => {
+                    refusal.remedy = "where messages were lost measure again, or cut the recording before \
+                                      them; where they count something else write time = \"log_time\" \
+                                      under [recording] of the cask file"
+                        .into();
+                    return Err(refusal);
+                }
+                said => return said,
             }
-            let Some(&(row, first)) = jumps.first().filter(|_| !jumps.iter().all(is_room)) else { continue };
-            let times = if self.good_stamps > 0 { "stamp" } else { LOG_TIME }.to_owned();
-            if is_named {
-                let header = header.clone();
-                return Ok(Some(
-                    TableFinding::CounterBesideTimes { header, lost, row: row + 1, times }.into(),
-                ));
-            }
-            let mut refusal = counting::contradiction(header, lost, (row, first), &times);
-            if header == SEQUENCE {
-                refusal.remedy = "where messages were lost measure again, or cut the recording before them; \
-                    where they count something else write time = \"log_time\" under [recording] of the \
-                    cask file"
-                    .into();
-            }
-            return Err(refusal);
         }
         Ok(None)
     }
