@@ -4,14 +4,14 @@ use super::error::{self, IngestError};
 use super::mme::MmeFiles;
 use super::recording_file::{OpenFile, RecordingFile};
 use super::refusal::Refusal;
-use super::{lines, number, strangers};
+use super::{lines, number, unsupported};
 use crate::data::RecordingFormat;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
-const HEAD_BYTES: u64 = 1 << 16;
+pub(super) const HEAD_BYTES: u64 = 1 << 16;
 const FORMATS: &str = "dropcheck reads MCAP, HDF5, delimited text (CSV) and ISO-MME";
 
 /// The format of a recording.
@@ -42,8 +42,8 @@ pub fn format<'a>(recording: impl Into<RecordingFile<'a>>) -> Result<RecordingFo
     {
         return Ok(format);
     }
-    if let Some((what, mend)) = strangers::named(&head) {
-        return Err(unknown(path, &format!("it is {what}"), mend));
+    if let Some((what, remedy)) = unsupported::named(&head) {
+        return Err(unknown(path, &format!("it is {what}"), remedy.text()));
     }
     // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
     if lines::wide_text(&head).is_some() || looks_like_rows(&head) {

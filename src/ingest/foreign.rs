@@ -1,9 +1,12 @@
 //! A recording of a format that dropcheck does not read to an HDF5 file that another reader makes of it; the
 //! Python module brings one.
 
+use super::RecordingFile;
+use super::detect::HEAD_BYTES;
 use super::error::{self, IngestError};
+use super::recording_file::bytes_at;
 use super::refusal::Refusal;
-use super::{RecordingFile, detect, strangers};
+use super::unsupported::{self, Remedy};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 #[cfg(feature = "native")]
@@ -29,8 +32,11 @@ pub(crate) fn has_reader() -> bool {
 /// The word for the format of the file at `path`, where a library of its field reads it.
 #[must_use]
 pub fn foreign_format(path: &Path) -> Option<&'static str> {
-    let Err(IngestError::Refused { refusal, .. }) = detect::format(path) else { return None };
-    strangers::library(&refusal.remedy)
+    let head = bytes_at(&mut RecordingFile::from(path).opened().ok()?, 0, HEAD_BYTES).ok()?;
+    match unsupported::named(&head)?.1 {
+        Remedy::Library(word, _) => Some(word),
+        _ => None,
+    }
 }
 
 /// The HDF5 file that stands for a recording as long as this value.

@@ -25,11 +25,11 @@ mod recording_file;
 pub(crate) mod refusal;
 mod repeats;
 mod statement;
-mod strangers;
 pub mod time_base;
 mod times;
 mod unchanged;
 mod unpack;
+mod unsupported;
 mod vocabulary;
 
 pub use arrays::read_arrays;

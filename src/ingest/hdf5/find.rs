@@ -178,6 +178,8 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Refusal> {
     Err(Refusal::new(format!("{what}, which is not read"), remedy).at(name))
 }
 
+/// Commands that make a file which is read of one that is not.
+pub(super) const COMMANDS: [&str; 3] = [REPACK, OWN_DATA, NO_LINKS];
 const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack -f GZIP=1 IN OUT` makes one";
 const NO_LINKS: &str = "ask for a recording that holds its own data: `h5repack --merge IN OUT` makes one";
 const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";

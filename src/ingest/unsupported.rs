@@ -1,67 +1,80 @@
 //! First bytes of files that are no recording read here to their name, and to how to make one of them.
 
-const EXPORT: &str = "export the channels from the program that wrote it as CSV, HDF5 or MCAP";
+use Remedy::{Library, Lines, Words};
 
-// Lines for a shell. What a library warns of ends them; a number that no file states is to be filled in.
-const TDMS: &str = include_str!("convert/tdms.txt");
-const MDF: &str = include_str!("convert/mdf.txt");
-const UFF: &str = include_str!("convert/uff.txt");
-const MATLAB: &str = include_str!("convert/matlab.txt");
-const IDE: &str = include_str!("convert/ide.txt");
-const ARROW: &str = include_str!("convert/arrow.txt");
-const JSON: &str = include_str!("convert/json.txt");
-const NETCDF: &str = include_str!("convert/netcdf.txt");
-
-/// The words for formats that a library of their field reads, by how to convert them.
-const LIBRARIES: [(&str, &str); 5] =
-    [(TDMS, "tdms"), (MDF, "mdf"), (UFF, "uff"), (MATLAB, "mat"), (IDE, "ide")];
-
-/// The word for the format whose remedy this is, where a library of its field reads it.
-pub(super) fn library(mend: &str) -> Option<&'static str> {
-    LIBRARIES.iter().find(|(remedy, _)| *remedy == mend).map(|(_, word)| *word)
+/// How to make a recording that is read here of a file of another format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Remedy {
+    /// The word for a format that a library of its field reads, and the lines for a shell by which it does.
+    Library(&'static str, &'static str),
+    /// Lines for a shell. What a library warns of ends them; a number that no file states is to be filled in.
+    Lines(&'static str),
+    /// What to do.
+    Words(&'static str),
 }
 
-const UNPACK: &str = "unpack it first, and name the file that was in it";
+impl Remedy {
+    /// What to write or do; who has a page alone has no shell.
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Library(..) | Lines(_) if cfg!(not(feature = "native")) => BY_ITS_PROGRAM,
+            Library(_, text) | Lines(text) | Words(text) => text,
+        }
+    }
+}
+
+const BY_ITS_PROGRAM: &str = "export the channels from the program that wrote it as CSV, HDF5 or MCAP";
+const EXPORT: Remedy = Words(BY_ITS_PROGRAM);
+const UNPACK: Remedy = Words("unpack it first, and name the file that was in it");
+const SHEET: Remedy = Words("save the sheet as CSV");
+const TDMS: Remedy = Library("tdms", include_str!("convert/tdms.txt"));
+const MDF: Remedy = Library("mdf", include_str!("convert/mdf.txt"));
+const UFF: Remedy = Library("uff", include_str!("convert/uff.txt"));
+const MATLAB: Remedy = Library("mat", include_str!("convert/matlab.txt"));
+const IDE: Remedy = Library("ide", include_str!("convert/ide.txt"));
+const ARROW: Remedy = Lines(include_str!("convert/arrow.txt"));
+const JSON: Remedy = Lines(include_str!("convert/json.txt"));
+const NETCDF: Remedy = Lines(include_str!("convert/netcdf.txt"));
 
 /// Where a mark stands, its bytes, what the file is, and what to do with it.
 #[rustfmt::skip]
-const MARKS: [(usize, &[u8], &str, &str); 32] = [
-    (0, b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
+const MARKS: [(usize, &[u8], &str, Remedy); 32] = [
+    (0, b"#ROSBAG", "a ROS 1 bag", Words("convert it to MCAP: `mcap convert in.bag out.mcap`")),
     (0, b"SQLite format 3", "a SQLite file, perhaps a ROS 2 bag",
-     "convert it to MCAP: `ros2 bag convert` or `mcap convert`"),
+     Words("convert it to MCAP: `ros2 bag convert` or `mcap convert`")),
     (0, b"TDSm", "a TDMS file", TDMS),
     (0, b"TDSh", "the index of a TDMS file",
-     "name the file beside it that holds the samples, exported as CSV or HDF5"),
+     Words("name the file beside it that holds the samples, exported as CSV or HDF5")),
     (0, b"MDF ", "an ASAM MDF file", MDF),
     (0, b"UnFinMF", "an unfinalised ASAM MDF file", MDF),
     (0, b"MATLAB 5.0", "a MATLAB file before version 7.3", MATLAB),
     (0, b"PK\x03\x04", "a ZIP archive that was cut or holds no .mme file, or an office document",
-     "unpack it, or save the sheet as CSV"),
-    (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
+     Words("unpack it, or save the sheet as CSV")),
+    (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", SHEET),
     (0, b"%PDF", "a PDF document", EXPORT),
-    (0, b"\x1f\x8b", "a gzip archive", "unpack it first: `gunzip FILE`"),
+    (0, b"\x1f\x8b", "a gzip archive", Words("unpack it first: `gunzip FILE`")),
     (0, b"\xFD7zXZ\0", "an xz archive", UNPACK),
     (0, b"BZh", "a bzip2 archive", UNPACK),
     (0, b"\x28\xB5\x2F\xFD", "a Zstandard archive", UNPACK),
     (0, b"\x04\x22\x4D\x18", "an LZ4 archive", UNPACK),
     (0, b"7z\xBC\xAF\x27\x1C", "a 7-Zip archive", UNPACK),
-    (0, b"PAR1\x15", "a Parquet file", include_str!("convert/parquet.txt")),
+    (0, b"PAR1\x15", "a Parquet file", Lines(include_str!("convert/parquet.txt"))),
     (0, b"ARROW1\0", "an Arrow file", ARROW),
     (0, b"FEA1\0", "a Feather file", ARROW),
-    (0, b"\x93NUMPY", "a NumPy array", include_str!("convert/numpy.txt")),
+    (0, b"\x93NUMPY", "a NumPy array", Lines(include_str!("convert/numpy.txt"))),
     (0, b"CDF\x01", "a netCDF file before version 4", NETCDF),
     (0, b"CDF\x02", "a netCDF file before version 4", NETCDF),
-    (8, b"WAVE", "a WAV sound file, which states no unit", include_str!("convert/wav.txt")),
+    (8, b"WAVE", "a WAV sound file, which states no unit", Lines(include_str!("convert/wav.txt"))),
     (0, b"\x1A\x45\xDF\xA3", "an EBML file, such as .ide of an enDAQ or Slam Stick recorder", IDE),
     (0, b"|CF,", "an imc FAMOS file", EXPORT),
     (0, b"|CB,", "an imc FAMOS file", EXPORT),
     (0, b"DIAEXTENDED HEADER", "the header of a DIAdem file", EXPORT),
     (0, b"\x89MCAP0\n", "an MCAP file that lost bytes in a copy made in text mode",
-     "copy it from the logger again, in binary mode"),
+     Words("copy it from the logger again, in binary mode")),
     (0, b"\x89PNG", "a picture", EXPORT),
     (0, b"\xFF\xD8\xFF", "a picture", EXPORT),
     (0, b"{\\rtf", "a text document (RTF)", EXPORT),
-    (0, b"\x7FELF", "a program", "name the recording here"),
+    (0, b"\x7FELF", "a program", Words("name the recording here")),
 ];
 
 /// What lines of files in ISO-MME begin with.
@@ -69,18 +82,14 @@ const OF_MME: [&str; 4] =
     ["Test object number", "Name of the channel", "Name of channel ", "Data format edition number"];
 
 /// What a file that begins so is and what to do, where it is known to be no recording read here.
-pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
-    let has_mark = |(at, mark, ..): &&(usize, &[u8], &str, &str)| {
+pub(super) fn named(head: &[u8]) -> Option<(&'static str, Remedy)> {
+    let has_mark = |(at, mark, ..): &&(usize, &[u8], &str, Remedy)| {
         head.get(*at..).is_some_and(|from| from.starts_with(mark))
     };
     let found = MARKS.iter().find(has_mark).map(|(_, _, what, mend)| (*what, *mend));
-    let found = found
+    found
         .or_else(|| is_matlab_4(head).then_some(("a MATLAB file of version 4", MATLAB)))
-        .or_else(|| sheet(head));
-    // Who has a page alone has no shell.
-    found.map(|(what, mend)| {
-        (what, if cfg!(feature = "native") || !mend.contains("pip install") { mend } else { EXPORT })
-    })
+        .or_else(|| sheet(head))
 }
 
 /// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length
@@ -104,7 +113,7 @@ fn is_matlab_4(head: &[u8]) -> bool {
 }
 
 /// Texts with numbers in them that are no table of samples.
-fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
+fn sheet(head: &[u8]) -> Option<(&'static str, Remedy)> {
     let text = String::from_utf8_lossy(head);
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let (first, second) = (lines.next()?, lines.next().unwrap_or_default());
@@ -121,13 +130,13 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     if OF_MME.iter().any(|name| first.starts_with(name) || text.contains(&format!("\n{name}"))) {
         return Some((
             "a file of a test in ISO-MME (ISO/TS 13499)",
-            "name the folder of its .mme file, or a zip of that folder",
+            Words("name the folder of its .mme file, or a zip of that folder"),
         ));
     }
     if first.starts_with(['-', '#']) && first.contains("EV5") {
         return Some((
             "an EV5 test sheet, which lists a test",
-            "name the files of samples that it lists, exported as CSV",
+            Words("name the files of samples that it lists, exported as CSV"),
         ));
     }
     None
