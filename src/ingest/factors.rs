@@ -3,9 +3,10 @@
 
 use super::refusal::Refusal;
 use super::statement::number_and_unit;
-use super::vocabulary;
+use super::vocabulary::{self, has_part, plain};
 use super::{RawChannel, error};
 use crate::data::{ChannelSpec, Samples, acceleration_unit_m_s2};
+use std::collections::BTreeMap;
 
 /// Parts of names, as [`plain`] has them, of a factor between stored numbers and a quantity.
 const FACTORS: &str = "scal skal factor faktor gain verst resol aufl lsb tovolt bitvolt volts perbit \
@@ -24,15 +25,6 @@ const WEAK_FACTORS: &str = "range bereich span bits adc const konst";
 /// Words for stored numbers that are in no unit.
 const COUNTS: [&str; 12] =
     ["lsb", "lsbs", "count", "counts", "cts", "digit", "digits", "raw", "adc", "adu", "bit", "bits"];
-
-/// In lower case without what parts its words.
-fn plain(name: &str) -> String {
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
-fn has_part(parts: &str, plain: &str) -> bool {
-    parts.split_whitespace().any(|part| plain.contains(part))
-}
 
 /// Whether a name says by itself that its number turns stored numbers into a quantity.
 pub(super) fn is_factor(name: &str) -> bool {
@@ -72,6 +64,14 @@ pub(super) fn unexplained(name: &str, text: &str) -> Option<String> {
         (name, text) => format!("{name} = {}", text.chars().take(60).collect::<String>()),
     };
     is_open.then_some(shown)
+}
+
+/// So many entries of one metadata are looked at.
+pub(super) const MOST_METADATA: usize = 64;
+
+/// Those among what a channel or a file states by names.
+pub(super) fn among(stated: &BTreeMap<String, String>) -> Vec<String> {
+    stated.iter().take(MOST_METADATA).filter_map(|(name, text)| unexplained(name, text)).collect()
 }
 
 /// The number that a word is, with a unit behind it: `0.9g`, `x0.9`, `9/10`, `90%`. A date is none, nor `A1`.

@@ -229,25 +229,20 @@ pub(super) fn is_counter(name: &str) -> bool {
 /// Whether a column of that name may count messages or toggle with each, as the buses of vehicles do: few
 /// numbers that return are no ids then.
 pub(super) fn may_count(name: &str) -> bool {
-    const PARTS: [&str; 15] = [
-        "count",
-        "cnt",
-        "alive",
-        "seq",
-        "frame",
-        "toggle",
-        "parity",
-        "cycle",
-        "phase",
-        "heartbeat",
-        "zähl",
-        "zaehl",
-        "pkt",
-        "packet",
-        "record",
-    ];
+    const PARTS: &str = "count cnt alive seq frame toggle parity cycle phase heartbeat zähl zaehl pkt packet \
+                         record";
     let name = joined(name);
-    is_counter(&name) || (PARTS.iter().any(|part| name.contains(part)) && !is_sensor_of_rows(&name))
+    is_counter(&name) || (has_part(PARTS, &name) && !is_sensor_of_rows(&name))
+}
+
+/// Whether a name holds one of these parts.
+pub(super) fn has_part(parts: &str, name: &str) -> bool {
+    parts.split_whitespace().any(|part| name.contains(part))
+}
+
+/// A name in lower case without what parts its words.
+pub(super) fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 fn joined(name: &str) -> String {

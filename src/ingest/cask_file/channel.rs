@@ -6,25 +6,17 @@ use crate::data::{
     SkinDirection, SkinPlace, Source, Unit, rate_unit_rad_s,
 };
 use crate::ingest::IngestError;
+use crate::numerics::as_count;
 use toml::de::DeValue;
 
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: \
                      what the recording says";
 
 /// Keys that say something of the motion, and how many of them of an acceleration alone.
+#[rustfmt::skip]
 const OF_MOTION: [&str; 12] = [
-    "sensitivity",
-    "coupling",
-    "time_constant_s",
-    "reference",
-    "axis",
-    "position_m",
-    "offset_m",
-    "polarity",
-    "calibration_percent",
-    "lateral_m",
-    "around_deg",
-    "direction",
+    "sensitivity", "coupling", "time_constant_s", "reference",
+    "axis", "position_m", "offset_m", "polarity", "calibration_percent", "lateral_m", "around_deg", "direction",
 ];
 const OF_ACCELERATION: usize = 4;
 
@@ -234,12 +226,7 @@ fn source(table: &Section) -> Result<Source, IngestError> {
     Ok(Source::TopicField {
         topic: parts.required_text("topic")?,
         field: parts.required_text("field")?,
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the key's row bounds it"
-        )]
-        channel: parts.given("channel")?.map(|channel| channel as u16),
+        channel: parts.given("channel")?.and_then(|channel| u16::try_from(as_count(channel)).ok()),
     })
 }
 

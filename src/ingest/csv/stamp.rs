@@ -56,10 +56,7 @@ impl Stamps {
             self.is_absolute = stamp.is_absolute;
         }
         let since_ns = at_ns.checked_sub(*zero_ns.get_or_insert(at_ns))?;
-        #[allow(
-            clippy::cast_precision_loss,
-            reason = "whole and rest apart: exact to a part of a nanosecond"
-        )]
+        #[allow(clippy::cast_precision_loss, reason = "whole and rest apart: exact to a part of a ns")]
         Some((since_ns / SECOND_NS) as f64 + (since_ns % SECOND_NS) as f64 * 1e-9)
     }
 

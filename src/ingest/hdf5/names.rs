@@ -1,7 +1,7 @@
 //! Names of attributes and datasets to what they say of samples.
 
 use crate::ingest::factors;
-use crate::ingest::vocabulary::{self, Meaning};
+use crate::ingest::vocabulary::{self, Meaning, has_part, plain};
 
 /// What an attribute says of samples, apart from their rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,18 +56,12 @@ const CONVERSIONS: [(&str, AttributeRole); 2] = [
     ("range slope factor resolution", AttributeRole::CountsConversion),
 ];
 
-/// In lower case without what parts its words.
-fn plain(name: &str) -> String {
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
 /// What an attribute of this name says, `distance` groups above the samples.
 pub(in crate::ingest) fn role(name: &str, distance: usize) -> Option<AttributeRole> {
     let [whole, bare] = [name, vocabulary::split(name).0].map(plain);
     let is_in = |names: &str, name: &str| names.split(' ').any(|known| known == name);
-    let has_part = |parts: &str| parts.split(' ').any(|part| whole.contains(part));
     let known = ROLES.iter().find(|(names, _)| is_in(names, &whole));
-    let part = CONVERSIONS[..2 - distance.min(1)].iter().find(|(parts, _)| has_part(parts));
+    let part = CONVERSIONS[..2 - distance.min(1)].iter().find(|(parts, _)| has_part(parts, &whole));
     let start = ROLES[..2].iter().any(|(names, _)| is_in(names, &bare)).then_some(AttributeRole::Start);
     known.map(|known| known.1).or(start).or(part.map(|part| part.1))
 }

@@ -98,12 +98,9 @@ pub(super) fn no_samples(
              were written with",
         );
     }
-    let signals = leaves.iter().chain(seen).filter(|leaf| leaf.is_signal);
     let mut there: Vec<String> = Vec::new();
-    for leaf in signals {
-        if !there.contains(&leaf.path) {
-            there.push(leaf.path.clone());
-        }
+    for leaf in leaves.iter().chain(seen).filter(|leaf| leaf.is_signal) {
+        there.extend((!there.contains(&leaf.path)).then(|| leaf.path.clone()));
     }
     if there.contains(&field) {
         return Refusal::new(

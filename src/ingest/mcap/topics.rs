@@ -27,8 +27,14 @@ pub(super) const LOG_TIME: &str = "log_time";
 pub(super) const LISTS_OF_RECORDS: &str =
     "its messages hold lists of records: a message a record is read, or an array of numbers for each field";
 
-/// So many entries of one metadata are looked at.
-pub(super) const MOST_METADATA: usize = 64;
+/// A channel that is asked for.
+struct AskedChannel {
+    /// The place of its topic.
+    topic: usize,
+    number: u16,
+    /// What its record states that may be a factor of its samples.
+    factors: Vec<String>,
+}
 
 /// What may still be listed, and what was left out.
 #[derive(Default)]
@@ -66,10 +72,8 @@ pub(super) struct Topics<'a> {
     /// The topic of each channel, the first of an id, and its place in the file; `None` where its messages
     /// are not asked for.
     pub(super) by_channel: HashMap<u16, Option<(usize, usize)>>,
-    /// The topic and the number of each channel that is asked for, in the order of the file.
-    channels: Vec<(usize, u16)>,
-    /// What the record of each channel states that may be a factor of its samples.
-    factors: HashMap<u16, Vec<String>>,
+    /// The channels that are asked for, in the order of the file.
+    channels: Vec<AskedChannel>,
     room: Room,
     /// Memory of the names and schemas.
     pub(super) held_bytes: u64,
@@ -108,13 +112,10 @@ impl<'a> Topics<'a> {
                 let is_complete = channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id);
                 if is_complete || !is_ahead {
                     self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
-                    let topic = self.topic(&channel);
-                    let stated = channel.metadata.iter().take(MOST_METADATA);
-                    let factors =
-                        stated.filter_map(|(name, text)| factors::unexplained(name, text)).collect();
-                    self.factors.insert(channel.id, factors);
-                    self.by_channel.insert(channel.id, topic.map(|topic| (topic, self.channels.len())));
-                    self.channels.extend(topic.map(|topic| (topic, channel.id)));
+                    let (topic, number) = (self.topic(&channel), channel.id);
+                    self.by_channel.insert(number, topic.map(|topic| (topic, self.channels.len())));
+                    let factors = factors::among(&channel.metadata);
+                    self.channels.extend(topic.map(|topic| AskedChannel { topic, number, factors }));
                 }
             }
             _ => {}
@@ -276,10 +277,11 @@ impl<'a> Topics<'a> {
     pub(super) fn finish(self, taken: Part) -> Vec<TopicSeries> {
         let is_listed = self.asked.is_none();
         let mut channels: Vec<Vec<(u16, Gathered)>> = self.all.iter().map(|_| Vec::new()).collect();
-        let mut factors = self.factors;
-        for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
+        for (AskedChannel { topic, number, factors }, mut gathered) in
+            self.channels.into_iter().zip(taken.gathered)
+        {
             if gathered.messages > 0 {
-                gathered.factors = factors.remove(&number).unwrap_or_default();
+                gathered.factors = factors;
                 channels[topic].push((number, gathered));
             }
         }

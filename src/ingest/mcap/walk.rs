@@ -6,7 +6,7 @@ use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary, Summed};
 use super::topic::{Part, TopicSeries};
-use super::topics::{MOST_METADATA, Topics};
+use super::topics::Topics;
 use crate::data::{CaskFile, FileEnd, McapFinding};
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
@@ -212,10 +212,8 @@ impl<'a> Walk<'a> {
                     Ok(())
                 }
                 Ok(Record::Metadata(stated)) => {
-                    let factors = stated.metadata.iter().take(MOST_METADATA);
-                    let factors = factors.filter_map(|(name, text)| factors::unexplained(name, text));
-                    scanned.factors.extend(factors);
-                    scanned.factors.truncate(MOST_METADATA);
+                    scanned.factors.extend(factors::among(&stated.metadata));
+                    scanned.factors.truncate(factors::MOST_METADATA);
                     Ok(())
                 }
                 Ok(Record::Statistics(statistics)) => {
