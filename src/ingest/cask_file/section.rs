@@ -124,30 +124,17 @@ impl<'a> Document<'a> {
 
     fn wrong(&self, span: Range<usize>, message: String, mend: String) -> IngestError {
         let start = span.start.min(self.text.len());
-        if let Some((ExpandedCaskFile { list, .. }, place)) = self.in_list(start) {
-            let path = list.path.display().to_string();
-            return Box::new(WrongLine {
-                text: NamedSource::new(&path, list.text.clone()),
-                path,
-                line: place.line,
-                message: place.words + &message,
-                span: place.span.into(),
-                mend,
-            })
-            .into();
-        }
-        let end = span.end.clamp(start, self.text.len());
-        let line = line_of(self.text.as_bytes(), start);
-        let path = self.path.display().to_string();
-        Box::new(WrongLine {
-            text: NamedSource::new(&path, self.text.to_string()),
-            path,
-            line,
-            message,
-            span: (start..end).into(),
-            mend,
-        })
-        .into()
+        let (path, text, place) = match self.in_list(start) {
+            Some((ExpandedCaskFile { list, .. }, place)) => (&*list.path, &*list.text, place),
+            None => {
+                let span = start..span.end.clamp(start, self.text.len());
+                let line = line_of(self.text.as_bytes(), start);
+                (self.path, &*self.text, ListPlace { line, words: String::new(), span })
+            }
+        };
+        let (ListPlace { line, words, span }, path) = (place, path.display().to_string());
+        let text = NamedSource::new(&path, text.to_owned());
+        Box::new(WrongLine { path, line, message: words + &message, text, span: span.into(), mend }).into()
     }
 
     /// What the parser of TOML objects to, with the slips that are usual in files written by hand.
