@@ -1,7 +1,7 @@
 //! What a recording holds, before any cask file is known: the answer of `inspect`.
 
 use super::cask::{RowsOf, Source};
-use super::channel::Extreme;
+use super::channel::{Extreme, is_number};
 use super::finding::Finding;
 use super::recording::RecordingFormat;
 use serde::Serialize;
@@ -45,6 +45,14 @@ impl ListedChannel {
     /// A source of which only its name and kind are known.
     pub(crate) fn named(source: &str, kind: &str) -> Self {
         Self { source: source.to_owned(), kind: kind.to_owned(), ..Self::default() }
+    }
+
+    /// The smallest and the largest of samples, where there is a number among them.
+    pub(crate) fn range_of(samples: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+        let wider = |range: Option<(f64, f64)>, x: f64| {
+            Some(range.map_or((x, x), |(least, most)| (least.min(x), most.max(x))))
+        };
+        samples.filter(|sample| is_number(*sample)).fold(None, wider)
     }
 
     /// Where its samples are, for a reader: a listing may tell it as the table of topic and field.

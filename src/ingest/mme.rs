@@ -14,9 +14,7 @@ use super::refusal::Refusal;
 use super::{RawChannel, RawRecording, ReadRequest, RecordingFile};
 use crate::data::{
     CaskFile, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2,
-    is_number,
 };
-use crate::numerics::{as_f64, extent};
 use channel::ChannelFile;
 use index::IndexedChannel;
 use std::collections::BTreeMap;
@@ -98,24 +96,24 @@ fn one_listed(
     mut read: ChannelFile,
     issues: &mut Vec<Finding>,
 ) -> ListedChannel {
-    let numbers = read.values.iter().copied().filter(|value| is_number(*value));
-    let range = extent(numbers);
     let said =
         [Some(read.text.encoding.to_owned()), code::meaning(&channel.code), Some(channel.words.clone())];
     let said: Vec<String> = said.into_iter().flatten().filter(|words| !words.is_empty()).collect();
-    let (samples, unit) = (read.values.len(), read.unit().map(|line| line.value.clone()));
-    let (of_channel, sample_rate_hz) = match read.placed(None) {
-        Ok(uniform) => (uniform.issues, Some(uniform.sample_rate_hz)),
-        Err(refusal) => (vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()], None),
+    let (samples, unit) = (Some(read.values.len() as u64), read.unit().map(|line| line.value.clone()));
+    let range = ListedChannel::range_of(read.values.iter().copied());
+    let (of_channel, shown) = match read.placed(None) {
+        Ok(uniform) => (uniform.issues.clone(), uniform.listed(None)),
+        Err(refusal) => (vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()], named.clone()),
     };
     issues.extend(of_channel.into_iter().map(|issue| issue.on(&channel.source)));
+    let ListedChannel { sample_rate_hz, duration_s, .. } = shown;
     ListedChannel {
-        samples: Some(samples as u64),
+        samples,
         sample_rate_hz,
         unit,
         start_s: read.start_s,
-        duration_s: sample_rate_hz.map(|rate_hz| as_f64(samples.saturating_sub(1)) / rate_hz),
-        range: (range.0 <= range.1).then_some(range),
+        duration_s,
+        range,
         encoding: said.join("; "),
         ..named
     }

@@ -12,12 +12,10 @@ use super::layout::Layout;
 use super::pieces::Sizes;
 use super::plan::ColumnPlan;
 use super::rows::{self, RowsPart, Sink};
-use super::sensors::{self, Filled};
+use super::sensors::{self, Filled, Sensors};
 use super::table::Table;
 use super::wanted::Wanted;
-use crate::data::{
-    ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
-};
+use crate::data::{ClockFinding, Finding, ListedChannel, Listing, RecordingFormat, RowsOf, is_number};
 use crate::ingest::ReadRequest;
 use crate::ingest::assemble::shifted;
 use crate::ingest::time_base::Uniform;
@@ -31,18 +29,8 @@ struct Range {
     words: u64,
     /// The first of the words, or its beginning.
     word: Option<String>,
-    /// The smallest and the largest number.
-    numbers: Option<(f64, f64)>,
     /// The rows of the numbers.
     rows: Filled,
-}
-
-impl Range {
-    fn take(&mut self, row: usize, number: f64) {
-        let (smallest, largest) = self.numbers.unwrap_or((number, number));
-        self.numbers = Some((smallest.min(number), largest.max(number)));
-        self.rows.take(row);
-    }
 }
 
 /// Keeps the columns that one channel would take, and of all columns what they hold.
@@ -104,7 +92,7 @@ impl Sink for Survey<'_> {
                         sensors.iter().position(|own| own.total_cmp(&part.0[*slot][row]).is_eq())
                     });
                     if let Some(sensor) = sensor {
-                        ranges[sensor].take(rows + row, value);
+                        ranges[sensor].rows.take(rows + row, value);
                     }
                 }
                 rows += values.len();
@@ -141,14 +129,11 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         (0..layout.columns.len()).map(|column| (column, time_of(column))).collect();
     let all = Wanted::new(&values, &[]);
     let mut clocks = vec![time_column];
-    clocks.extend((0..layout.columns.len()).filter(|column| is_timed(*column)).map(|c| layout.time_of(c)));
-    let mut seen = Vec::new();
-    clocks.retain(|clock| {
-        clock.is_some() == time_column.is_some() && !seen.contains(clock) && {
-            seen.push(*clock);
-            true
+    for clock in (0..layout.columns.len()).filter(|c| is_timed(*c)).map(|c| layout.time_of(c)) {
+        if clock.is_some() == time_column.is_some() && !clocks.contains(&clock) {
+            clocks.push(clock);
         }
-    });
+    }
     let plans: Vec<ColumnPlan> = clocks.iter().map(|clock| plan(&layout, *clock)).collect();
     let kept = Wanted::of(&plans, &layout);
     let columns = vec![HeldColumn::default(); kept.columns.len()];
@@ -172,18 +157,22 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     {
         let own = clocks.iter().position(|clock| *clock == layout.time_of(index)).unwrap_or_default();
         let clock = &listed_clocks[own];
-        let sensors = layout.sensors.first().filter(|it| it.column != index && column.is_numeric);
-        let Some(sensors) = sensors else {
-            let is_it = layout.sensors.first().is_some_and(|it| it.column == index);
-            let unreadable = is_it.then(|| "tells the rows of several sensors apart".to_owned());
-            let listed = listed(column, &ranges[index], 0, clock, rows);
-            channels.push(if is_it { ListedChannel { unreadable, range: None, ..listed } } else { listed });
-            continue;
+        let sensors = layout.sensors.first();
+        let is_of = |sensors: &Sensors, is: &str| RowsOf {
+            column: layout.columns[sensors.column].header.clone(),
+            is: is.to_owned(),
         };
-        for (sensor, is) in sensors.named(None).into_iter().enumerate() {
-            let rows_of = RowsOf { column: layout.columns[sensors.column].header.clone(), is: is.to_owned() };
-            let listed = listed(column, &ranges[index], sensor, clock, rows);
-            channels.push(ListedChannel { rows: Some(rows_of), ..listed });
+        let named = sensors.filter(|it| it.column != index && column.is_numeric).map_or_else(
+            || vec![None],
+            |it| it.named(None).into_iter().map(|is| Some(is_of(it, is))).collect(),
+        );
+        for (sensor, rows_of) in named.into_iter().enumerate() {
+            let mut listed = listed(column, &ranges[index], sensor, clock, rows);
+            if sensors.is_some_and(|it| it.column == index) {
+                listed.unreadable = Some("tells the rows of several sensors apart".to_owned());
+                listed.range = None;
+            }
+            channels.push(ListedChannel { rows: rows_of, ..listed });
         }
     }
     Ok(Listing {
@@ -218,10 +207,8 @@ fn plan(layout: &Layout, time_column: Option<usize>) -> ColumnPlan {
 /// When the samples of every column were taken.
 #[derive(Default)]
 struct ListedClock {
-    sample_rate_hz: Option<f64>,
-    start_s: Option<f64>,
-    duration_s: Option<f64>,
-    gaps: Option<u64>,
+    /// As the listing shows it.
+    shown: ListedChannel,
     first_s: f64,
     times_s: Vec<f64>,
     /// With those that times show to be missing.
@@ -262,16 +249,11 @@ impl ListedClock {
 
     fn of(uniform: Uniform, times: Option<Vec<f64>>, issues: &mut Vec<Finding>) -> Self {
         let (first_s, last_s) = extent(times.iter().flatten().copied());
-        let count = uniform.samples.len();
-        let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
+        let shown = uniform.listed(times.as_ref().map(|_| (first_s, last_s)));
         issues.extend(uniform.issues.into_iter().map(|issue| shifted(issue, first_s)));
-        let of_rate = as_f64(count.saturating_sub(1)) / uniform.sample_rate_hz;
         Self {
-            sample_rate_hz: Some(uniform.sample_rate_hz),
-            start_s: Some(0.0),
-            duration_s: Some(if times.is_some() { last_s - first_s } else { of_rate }),
-            gaps: times.is_some().then_some(if has_gaps { uniform.gaps.len() as u64 } else { 0 }),
-            samples: count,
+            shown: ListedChannel { start_s: Some(0.0), ..shown },
+            samples: uniform.samples.len(),
             first_s,
             times_s: times.unwrap_or_default(),
             is_one_of_several: false,
@@ -289,7 +271,7 @@ fn listed(
     rows: usize,
 ) -> ListedChannel {
     let (range, own) = (&ranges[0], &ranges[sensor]);
-    let is_empty = own.numbers.is_none();
+    let is_empty = own.rows.count == 0;
     let is_short = clock.is_one_of_several && own.rows.count < rows;
     let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || own.rows.lie_between() || is_short);
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
@@ -313,12 +295,12 @@ fn listed(
     };
     ListedChannel {
         samples: Some(if is_apart { own.rows.count } else { rows } as u64),
-        sample_rate_hz: own_hz.or(clock.sample_rate_hz),
+        sample_rate_hz: own_hz.or(clock.shown.sample_rate_hz),
         unit: column.unit.clone(),
-        start_s: first_s.map(|first_s| first_s - clock.first_s).or(clock.start_s),
-        duration_s: duration_s.or(clock.duration_s),
-        gaps: clock.gaps.filter(|_| !is_apart),
-        range: own.numbers.filter(|_| !column.is_stamped),
+        start_s: first_s.map(|first_s| first_s - clock.first_s).or(clock.shown.start_s),
+        duration_s: duration_s.or(clock.shown.duration_s),
+        gaps: clock.shown.gaps.filter(|_| !is_apart),
+        range: (!is_empty && !column.is_stamped).then_some(own.rows.range),
         encoding: "text".into(),
         unreadable,
         ..ListedChannel::named(&column.header, "column")

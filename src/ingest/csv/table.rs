@@ -294,20 +294,14 @@ impl<'a> Table<'a> {
     /// `own_rows` are those of [`Self::own_rows`].
     pub(super) fn uniforms(&mut self, own_rows: &[Option<Vec<bool>>]) -> Vec<Result<Uniform, Refusal>> {
         let Self { plans, wanted, columns, .. } = self;
-        let mut uses = vec![0_usize; columns.len()];
-        for column in plans.iter().flat_map(|plan| [Some(plan.column), plan.time_column]).flatten() {
-            uses[wanted.slot(column)] += 1;
-        }
-        let samples: Vec<Vec<f64>> = plans
-            .iter()
-            .map(|plan| {
-                let at = wanted.slot(plan.column);
-                uses[at] -= 1;
-                // The last channel to use a column takes it instead of copying it.
-                let values = columns[at].each_mut();
-                if uses[at] == 0 { std::mem::take(values) } else { values.clone() }
-            })
-            .collect();
+        let samples = |(at, plan): (usize, &ColumnPlan)| {
+            // The last channel to use a column takes it instead of copying it.
+            let is_used = plans[at + 1..].iter().any(|later| later.column == plan.column)
+                || plans.iter().any(|other| other.time_column == Some(plan.column));
+            let values = columns[wanted.slot(plan.column)].each_mut();
+            if is_used { values.clone() } else { std::mem::take(values) }
+        };
+        let samples: Vec<Vec<f64>> = plans.iter().enumerate().map(samples).collect();
         // Columns of times are fitted once, however many channels use them.
         let times = columns.iter().zip(&wanted.is_time);
         let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
@@ -345,7 +339,8 @@ fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
     let mut filled = sensors::Filled::default();
     let values = picked(values, is_own);
     // A channel that begins late or ends early has no row of another's.
-    values.iter().enumerate().filter(|(_, value)| !value.is_nan()).for_each(|(row, _)| filled.take(row));
+    let present = values.iter().enumerate().filter(|(_, value)| !value.is_nan());
+    present.for_each(|(row, value)| filled.take(row, *value));
     filled.lie_between()
 }
 

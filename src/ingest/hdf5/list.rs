@@ -9,13 +9,10 @@ use super::find;
 use super::room::File;
 use super::sensors::RecordSensors;
 use super::starts::{self, Start};
-use crate::data::{
-    AttributeFinding, ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, Samples,
-    is_number,
-};
+use crate::data::{AttributeFinding, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
-use crate::numerics::{as_f64, extent};
+use crate::numerics::as_f64;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -169,7 +166,8 @@ impl Lister {
         }
         let samples = channel.samples()?;
         let count = samples.len();
-        (listed.range, listed.samples) = (range(&samples), Some(count as u64));
+        let values = (0..count).map(|i| samples.get(i));
+        (listed.range, listed.samples) = (ListedChannel::range_of(values), Some(count as u64));
         if channel.has_no_clock() || count < 2 {
             return Ok(());
         }
@@ -177,14 +175,11 @@ impl Lister {
             Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
             Ok(based) => {
                 let uniform = based.uniform;
-                let even_s = as_f64(count - 1) / uniform.sample_rate_hz;
-                let (first_s, last_s) = based.span_s.unwrap_or((uniform.start_s, f64::NAN));
-                listed.sample_rate_hz = Some(uniform.sample_rate_hz);
-                listed.start_s = Some(first_s);
+                let ListedChannel { sample_rate_hz, start_s, duration_s, gaps, .. } =
+                    uniform.listed(based.span_s);
+                (listed.sample_rate_hz, listed.start_s) = (sample_rate_hz, start_s);
+                (listed.duration_s, listed.gaps) = (duration_s, gaps);
                 self.starts.push((source.clone(), based.start));
-                listed.duration_s = Some(based.span_s.map_or(even_s, |_| last_s - first_s));
-                let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
-                listed.gaps = based.span_s.map(|_| if has_gap { uniform.gaps.len() as u64 } else { 0 });
                 self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.on(source)));
             }
         }
@@ -214,10 +209,6 @@ impl Lister {
 
 /// The problem of what the list names, and the command that cures it where there is one.
 fn why_unreadable(Refusal { problem, remedy, .. }: Refusal) -> String {
-    if remedy.contains("h5repack") { format!("{problem}: {remedy}") } else { problem }
-}
-
-fn range(samples: &Samples) -> Option<(f64, f64)> {
-    let range = extent((0..samples.len()).map(|i| samples.get(i)).filter(|value| is_number(*value)));
-    (range.0 <= range.1).then_some(range)
+    let is_command = find::COMMANDS.iter().any(|command| remedy.ends_with(command));
+    if is_command { format!("{problem}: {remedy}") } else { problem }
 }

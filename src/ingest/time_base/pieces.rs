@@ -2,7 +2,7 @@
 //! and which of them are the same.
 
 use super::order::is_same;
-use crate::data::{Finding, Samples, Span};
+use crate::data::{Finding, IssueCode, ListedChannel, Samples, Span};
 use crate::numerics::as_f64;
 use std::ops::Range;
 
@@ -21,6 +21,22 @@ pub struct Uniform {
     pub time_jitter_s: f64,
     /// What was put right: duplicates, disorder, gaps, jitter (times in the clock of the times given).
     pub issues: Vec<Finding>,
+}
+
+impl Uniform {
+    /// When the samples were taken, as a listing shows it; `span_s` is the first and the last of their times,
+    /// s, where they have any.
+    pub(in crate::ingest) fn listed(&self, span_s: Option<(f64, f64)>) -> ListedChannel {
+        let has_gap = self.issues.iter().any(|issue| issue.code == IssueCode::Gap);
+        let even_s = as_f64(self.samples.len().saturating_sub(1)) / self.sample_rate_hz;
+        ListedChannel {
+            sample_rate_hz: Some(self.sample_rate_hz),
+            start_s: Some(span_s.map_or(self.start_s, |(first_s, _)| first_s)),
+            duration_s: Some(span_s.map_or(even_s, |(first_s, last_s)| last_s - first_s)),
+            gaps: span_s.map(|_| if has_gap { self.gaps.len() as u64 } else { 0 }),
+            ..ListedChannel::default()
+        }
+    }
 }
 
 /// A contiguous run of samples with its own start.
