@@ -256,7 +256,9 @@ impl RowCounter {
         times: &str,
         are_named: bool,
     ) -> Result<Option<Finding>, Refusal> {
-        if self.jumps.iter().all(|(row, lost)| is_room(times_s, *row, *lost)) {
+        // As many times as rows, or they are refused where they are taken.
+        let is_each = times_s.len() == self.rows;
+        if !is_each || self.jumps.iter().all(|(row, lost)| is_room(times_s, *row, *lost)) {
             return Ok(None);
         }
         let ((row, first), lost, header) = (self.jumps[0], self.lost(), self.header.clone());
@@ -333,6 +335,17 @@ mod tests {
         assert_eq!(Counter::of(&lost_in_wrap).unwrap().jumps(&lost_in_wrap), [(254, 3.0)]);
         let from_one: Vec<f64> = counts(0..1000, 1, 100, &[7]).iter().map(|count| count + 1.0).collect();
         assert_eq!(Counter::of(&from_one).unwrap().jumps(&from_one), [(6, 1.0)]);
+    }
+
+    #[test]
+    fn a_counter_is_held_against_as_many_times_as_it_has_rows() {
+        let all = counts(0..1000, 1, u32::MAX, &[535, 536]);
+        let counter = RowCounter::of("n", &all).unwrap();
+        let times_s: Vec<f64> = (0..all.len()).map(as_f64).collect();
+        assert!(counter.shows_loss() && counter.beside(&times_s, "t", false).is_err());
+        assert!(matches!(counter.beside(&times_s, "t", true), Ok(Some(_))));
+        assert!(matches!(counter.beside(&times_s[..500], "t", false), Ok(None)));
+        assert!(matches!(counter.beside(&all, "t", false), Ok(None)));
     }
 
     #[test]

@@ -140,8 +140,7 @@ impl Column {
         let Some((from_ns, _)) = self.span_ns() else { return Ok(None) };
         let times_s: Vec<f64> = self.times_ns.iter().map(|time| seconds_from(*time, from_ns)).collect();
         for (_, header, numbers) in &self.others {
-            let counts = Some(numbers.values()).filter(|counts| counts.len() == times_s.len());
-            let counter = counts.and_then(|counts| RowCounter::of(header, &counts));
+            let counter = RowCounter::of(header, &numbers.values());
             let is_sequence = header == SEQUENCE;
             let is_own = |counter: &RowCounter| !is_sequence || counter.lost() > messages;
             let Some(counter) = counter.filter(RowCounter::shows_loss).filter(is_own) else { continue };
