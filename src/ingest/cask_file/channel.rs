@@ -16,7 +16,8 @@ const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivit
 #[rustfmt::skip]
 const OF_MOTION: [&str; 12] = [
     "sensitivity", "coupling", "time_constant_s", "reference",
-    "axis", "position_m", "offset_m", "polarity", "calibration_percent", "lateral_m", "around_deg", "direction",
+    "axis", "position_m", "offset_m", "polarity", "calibration_percent", "lateral_m", "around_deg",
+    "direction",
 ];
 const OF_ACCELERATION: usize = 4;
 

@@ -124,17 +124,16 @@ impl<'a> Document<'a> {
 
     fn wrong(&self, span: Range<usize>, message: String, mend: String) -> IngestError {
         let start = span.start.min(self.text.len());
-        let (path, text, place) = match self.in_list(start) {
-            Some((ExpandedCaskFile { list, .. }, place)) => (&*list.path, &*list.text, place),
-            None => {
-                let span = start..span.end.clamp(start, self.text.len());
-                let line = line_of(self.text.as_bytes(), start);
-                (self.path, &*self.text, ListPlace { line, words: String::new(), span })
-            }
+        let (path, text, place) = if let Some((whole, place)) = self.in_list(start) {
+            (&*whole.list.path, &*whole.list.text, place)
+        } else {
+            let span = start..span.end.clamp(start, self.text.len());
+            let line = line_of(self.text.as_bytes(), start);
+            (self.path, &*self.text, ListPlace { line, words: String::new(), span })
         };
         let (ListPlace { line, words, span }, path) = (place, path.display().to_string());
-        let text = NamedSource::new(&path, text.to_owned());
-        Box::new(WrongLine { path, line, message: words + &message, text, span: span.into(), mend }).into()
+        let (text, message) = (NamedSource::new(&path, text.to_owned()), [words, message].concat());
+        Box::new(WrongLine { path, line, message, text, span: span.into(), mend }).into()
     }
 
     /// What the parser of TOML objects to, with the slips that are usual in files written by hand.
