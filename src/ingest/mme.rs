@@ -99,24 +99,22 @@ fn one_listed(
     let said =
         [Some(read.text.encoding.to_owned()), code::meaning(&channel.code), Some(channel.words.clone())];
     let said: Vec<String> = said.into_iter().flatten().filter(|words| !words.is_empty()).collect();
-    let (samples, unit) = (Some(read.values.len() as u64), read.unit().map(|line| line.value.clone()));
-    let range = ListedChannel::range_of(read.values.iter().copied());
-    let (of_channel, shown) = match read.placed(None) {
-        Ok(uniform) => (uniform.issues.clone(), uniform.listed(None)),
-        Err(refusal) => (vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()], named.clone()),
-    };
-    issues.extend(of_channel.into_iter().map(|issue| issue.on(&channel.source)));
-    let ListedChannel { sample_rate_hz, duration_s, .. } = shown;
-    ListedChannel {
-        samples,
-        sample_rate_hz,
-        unit,
-        start_s: read.start_s,
-        duration_s,
-        range,
+    let mut listed = ListedChannel {
+        samples: Some(read.values.len() as u64),
+        unit: read.unit().map(|line| line.value.clone()),
+        range: ListedChannel::range_of(read.values.iter().copied()),
         encoding: said.join("; "),
         ..named
-    }
+    };
+    let found = match read.placed(None) {
+        Ok(uniform) => {
+            uniform.list(None, &mut listed);
+            uniform.issues
+        }
+        Err(refusal) => vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()],
+    };
+    issues.extend(found.into_iter().map(|issue| issue.on(&channel.source)));
+    ListedChannel { start_s: read.start_s, ..listed }
 }
 
 #[cfg(test)]

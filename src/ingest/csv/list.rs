@@ -249,7 +249,8 @@ impl ListedClock {
 
     fn of(uniform: Uniform, times: Option<Vec<f64>>, issues: &mut Vec<Finding>) -> Self {
         let (first_s, last_s) = extent(times.iter().flatten().copied());
-        let shown = uniform.listed(times.as_ref().map(|_| (first_s, last_s)));
+        let mut shown = ListedChannel::default();
+        uniform.list(times.as_ref().map(|_| (first_s, last_s)), &mut shown);
         issues.extend(uniform.issues.into_iter().map(|issue| shifted(issue, first_s)));
         Self {
             shown: ListedChannel { start_s: Some(0.0), ..shown },

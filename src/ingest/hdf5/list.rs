@@ -175,10 +175,7 @@ impl Lister {
             Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
             Ok(based) => {
                 let uniform = based.uniform;
-                let ListedChannel { sample_rate_hz, start_s, duration_s, gaps, .. } =
-                    uniform.listed(based.span_s);
-                (listed.sample_rate_hz, listed.start_s) = (sample_rate_hz, start_s);
-                (listed.duration_s, listed.gaps) = (duration_s, gaps);
+                uniform.list(based.span_s, listed);
                 self.starts.push((source.clone(), based.start));
                 self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.on(source)));
             }

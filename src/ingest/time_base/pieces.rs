@@ -24,18 +24,15 @@ pub struct Uniform {
 }
 
 impl Uniform {
-    /// When the samples were taken, as a listing shows it; `span_s` is the first and the last of their times,
-    /// s, where they have any.
-    pub(in crate::ingest) fn listed(&self, span_s: Option<(f64, f64)>) -> ListedChannel {
+    /// Adds to a listing when the samples were taken; `span_s` is the first and the last of their times, s,
+    /// where they have any.
+    pub(in crate::ingest) fn list(&self, span_s: Option<(f64, f64)>, listed: &mut ListedChannel) {
         let has_gap = self.issues.iter().any(|issue| issue.code == IssueCode::Gap);
         let even_s = as_f64(self.samples.len().saturating_sub(1)) / self.sample_rate_hz;
-        ListedChannel {
-            sample_rate_hz: Some(self.sample_rate_hz),
-            start_s: Some(span_s.map_or(self.start_s, |(first_s, _)| first_s)),
-            duration_s: Some(span_s.map_or(even_s, |(first_s, last_s)| last_s - first_s)),
-            gaps: span_s.map(|_| if has_gap { self.gaps.len() as u64 } else { 0 }),
-            ..ListedChannel::default()
-        }
+        listed.sample_rate_hz = Some(self.sample_rate_hz);
+        listed.start_s = Some(span_s.map_or(self.start_s, |(first_s, _)| first_s));
+        listed.duration_s = Some(span_s.map_or(even_s, |(first_s, last_s)| last_s - first_s));
+        listed.gaps = span_s.map(|_| if has_gap { self.gaps.len() as u64 } else { 0 });
     }
 }
 
