@@ -137,6 +137,23 @@ pub fn read_within<'a>(
     Ok(Recording { reader, ..recording })
 }
 
+/// What reads a format, and what lists it.
+struct FormatReader {
+    read: fn(ReadRequest, &CaskFile) -> Result<RawRecording, IngestError>,
+    list: fn(ReadRequest) -> Result<Listing, IngestError>,
+}
+
+/// The one list of readers.
+fn reader(format: RecordingFormat) -> FormatReader {
+    match format {
+        RecordingFormat::Mcap => FormatReader { read: mcap::read, list: mcap::list },
+        RecordingFormat::Hdf5 => FormatReader { read: hdf5::read, list: hdf5::list },
+        RecordingFormat::Mme => FormatReader { read: mme::read, list: mme::list },
+        // No file is told as `Samples`.
+        RecordingFormat::Csv | RecordingFormat::Samples => FormatReader { read: csv::read, list: csv::list },
+    }
+}
+
 /// What the reader of the format makes of the channels that `cask_file` names: on a thread of the pool, which
 /// need not be put to sleep for each piece that two threads share.
 fn read_raw(
@@ -144,13 +161,7 @@ fn read_raw(
     format: RecordingFormat,
     cask_file: &CaskFile,
 ) -> Result<RawRecording, IngestError> {
-    rayon::scope(|_| match format {
-        RecordingFormat::Mcap => mcap::read(request, cask_file),
-        RecordingFormat::Hdf5 => hdf5::read(request, cask_file),
-        // No file is told as `Samples`.
-        RecordingFormat::Csv | RecordingFormat::Samples => csv::read(request, cask_file),
-        RecordingFormat::Mme => mme::read(request, cask_file),
-    })
+    rayon::scope(|_| (reader(format).read)(request, cask_file))
 }
 
 /// Whether the folder at `path` is a recording, in ISO-MME, and not one of recordings.
@@ -190,12 +201,7 @@ pub fn list_within<'a>(
     let file = converted.as_ref().map_or(recording, |converted| (&converted.file).into());
     let request = ReadRequest { file, limits, progress };
     let format = detect::format(file)?;
-    let listing = rayon::scope(|_| match format {
-        RecordingFormat::Mcap => mcap::list(request),
-        RecordingFormat::Hdf5 => hdf5::list(request),
-        RecordingFormat::Mme => mme::list(request),
-        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(request),
-    });
+    let listing = rayon::scope(|_| (reader(format).list)(request));
     let mut listing = listing.map_err(|fault| fault.in_file(file.path, path))?;
     if let Some(converted) = converted {
         listing.recording = path.display().to_string();
