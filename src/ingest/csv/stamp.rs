@@ -154,8 +154,13 @@ impl Stamp {
         // pandas counts "0 days 00:00:00.1".
         let days = date.and_then(|date| date.strip_suffix(" days").or_else(|| date.strip_suffix(" day")));
         let (date, days) = days.map_or(Some((date, 0)), |days| Some((None, whole(days, 3)?)))?;
-        let (hours, minutes, seconds) =
-            (of_day(whole(hours, 3)?, half)?, whole(minutes, 2)?, whole(seconds, 2)?);
+        let (hours, minutes, seconds) = (whole(hours, 3)?, whole(minutes, 2)?, whole(seconds, 2)?);
+        // 12 AM is midnight, 12 PM noon.
+        let hours = match half {
+            Some(half) if (1..=12).contains(&hours) => hours % 12 + half,
+            Some(_) => return None,
+            None => hours,
+        };
         if seconds > 59 || minutes > 59 || (date.is_some() && hours > 23) {
             return None;
         }
@@ -176,14 +181,6 @@ fn halved(text: &str) -> (&str, Option<i64>) {
         end.eq_ignore_ascii_case(suffix).then(|| (clock.trim_end(), Some(hours)))
     };
     [("AM", 0), ("PM", 12), ("A.M.", 0), ("P.M.", 12)].into_iter().find_map(half).unwrap_or((text, None))
-}
-
-/// The hours of a day: 12 AM is midnight, 12 PM noon.
-fn of_day(hours: i64, half: Option<i64>) -> Option<i64> {
-    match half {
-        None => Some(hours),
-        Some(half) => (1..=12).contains(&hours).then_some(hours % 12 + half),
-    }
 }
 
 /// A whole number of so many digits at most.

@@ -48,19 +48,15 @@ impl FieldPath {
     }
 
     /// The name of the field.
-    pub(super) fn last_name(&self) -> Option<&str> {
-        self.0
-            .iter()
-            .rev()
-            .find_map(|step| if let Step::Name(name) = step { Some(name.as_str()) } else { None })
+    pub(super) fn last_name<'a>(&'a self) -> Option<&'a str> {
+        let name = |step: &'a Step| if let Step::Name(name) = step { Some(name.as_str()) } else { None };
+        self.0.iter().rev().find_map(name)
     }
 
     /// The messages that enclose the field, the nearest first.
     pub(super) fn enclosing(&self) -> impl Iterator<Item = Self> + '_ {
-        (0..self.0.len())
-            .rev()
-            .filter(|&end| matches!(self.0.get(end), Some(Step::Name(_))))
-            .map(|end| Self(self.0.iter().take(end).cloned().collect()))
+        let ends = (0..self.0.len()).rev().filter(|&end| matches!(self.0[end], Step::Name(_)));
+        ends.map(|end| Self(self.0[..end].to_vec()))
     }
 }
 

@@ -45,10 +45,8 @@ pub(super) struct Node {
 impl Node {
     /// The child field `name`.
     pub(super) fn field(&self, name: &str) -> Option<&Self> {
-        self.children
-            .iter()
-            .find(|(step, _)| matches!(step, Step::Name(own) if own == name))
-            .map(|(_, node)| node)
+        let is_it = |(step, _): &&(Step, Self)| matches!(step, Step::Name(own) if own == name);
+        self.children.iter().find(is_it).map(|(_, node)| node)
     }
 
     /// The field that a key with dots means, whose path reads like that of a field within others.
@@ -56,9 +54,17 @@ impl Node {
         if key.contains('.') { key.split('.').try_fold(self, |node, name| node.field(name)) } else { None }
     }
 
+    /// The child elements with their places.
+    pub(super) fn indexed(&self) -> impl Iterator<Item = (usize, &Self)> {
+        self.children.iter().filter_map(|(step, node)| match step {
+            Step::Index(index) => Some((*index, node)),
+            Step::Name(_) => None,
+        })
+    }
+
     /// The child element `index`.
     pub(super) fn element(&self, index: usize) -> Option<&Self> {
-        self.children.iter().find(|(step, _)| *step == Step::Index(index)).map(|(_, node)| node)
+        self.indexed().find(|(own, _)| *own == index).map(|(_, node)| node)
     }
 
     /// The slot of this place that takes `want`.
@@ -68,13 +74,7 @@ impl Node {
 
     /// The numbers wanted of an array here: index and slot.
     pub(super) fn elements(&self) -> Vec<(usize, usize)> {
-        self.children
-            .iter()
-            .filter_map(|(step, node)| match step {
-                Step::Index(index) => node.slot(Want::Numbers).map(|slot| (*index, slot)),
-                Step::Name(_) => None,
-            })
-            .collect()
+        self.indexed().filter_map(|(index, node)| Some((index, node.slot(Want::Numbers)?))).collect()
     }
 
     fn at(&mut self, path: &FieldPath) -> &mut Self {

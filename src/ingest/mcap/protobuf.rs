@@ -1,7 +1,6 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
 use super::numbers::push;
-use super::path::Step;
 use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
@@ -58,10 +57,8 @@ fn is_number(kind: &Kind) -> bool {
 /// The field numbers of a time's two parts.
 fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<[u32; 2]> {
     let number = |names: &[&str]| {
-        message
-            .fields()
-            .find(|field| names.contains(&field.name()) && is_number(&field.kind()) && !field.is_list())
-            .map(|field| field.number())
+        let mut numbers = message.fields().filter(|field| is_number(&field.kind()) && !field.is_list());
+        numbers.find(|field| names.contains(&field.name())).map(|field| field.number())
     };
     Some([number(&SECONDS_NAMES)?, number(&NANOSECONDS_NAMES)?])
 }
@@ -123,10 +120,7 @@ impl Protobuf {
 fn action(child: &Node, field: &FieldDescriptor) -> Option<Action> {
     match field.kind() {
         Kind::Message(inner) if field.is_list() => {
-            let elements = child.children.iter().filter_map(|(step, node)| match step {
-                Step::Index(index) => Some((*index, Protobuf::new(node, &inner))),
-                Step::Name(_) => None,
-            });
+            let elements = child.indexed().map(|(index, node)| (index, Protobuf::new(node, &inner)));
             Some(Action::Elements(elements.collect()))
         }
         Kind::Message(inner) => match (child.slot(Want::Stamp), seconds_and_nanoseconds(&inner)) {
