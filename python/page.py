@@ -71,7 +71,7 @@ def page() -> str:
     for name in ["analyze", "from_file", "predict", "inspect", "synth", "main", "read_hdf5_with"]:
         parts += entry(name, getattr(dropcheck, name))
     parts.append("## Classes")
-    for name in ["Samples", "Result", "Answer", "Record", "Quantity", "FirstImpact", "SlapDown", "Finding", "Comparison", "Error"]:
+    for name in ["Samples", "Result", "Answer", "Record", "Quantity", "FirstImpact", "SlapDown", "Finding", "Comparison", "Shock", "FilteredPeak", "Error"]:
         parts += entry(name, getattr(dropcheck, name))
     return "\n\n".join([*parts, CLOSING.strip()]) + "\n"
 

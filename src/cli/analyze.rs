@@ -124,11 +124,12 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
 /// Writes the report of an analysis into `folder`, as `--out` does.
 ///
 /// # Errors
-/// As the command: the folder is another program's, or cannot be written.
+/// As the command: the folder is another program's, holds another recording's report, or cannot be written.
 pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
     let input = &analysis.result.input;
     let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
     let folder = Folder::checked(folder, report::FILE_NAMES, &inputs)?;
+    folder.spares_others(&input.recording_sha256)?;
     Ok(folder.write(&report::files(analysis)?)?)
 }
 

@@ -23,15 +23,17 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 from . import _dropcheck
 from ._dropcheck import Error, __version__
-from ._record import Answer, Comparison, Finding, FirstImpact, Quantity, Record, Result, SlapDown
+from ._record import Answer, Comparison, FilteredPeak, Finding, FirstImpact, Quantity, Record, Result, Shock, SlapDown
 
 if TYPE_CHECKING:
     import numpy as np
+    import pandas
     from numpy.typing import ArrayLike, NDArray
 
     Path = str | os.PathLike[str]
@@ -40,12 +42,14 @@ __all__ = [
     "Answer",
     "Comparison",
     "Error",
+    "FilteredPeak",
     "Finding",
     "FirstImpact",
     "Quantity",
     "Record",
     "Result",
     "Samples",
+    "Shock",
     "SlapDown",
     "__version__",
     "analyze",
@@ -94,31 +98,36 @@ class Samples:
 
 
 def analyze(
-    recording: Path | Mapping[str, Samples],
-    cask: Path,
+    recording: Path | Mapping[str, Samples] | pandas.DataFrame,
+    cask: Path | Mapping[str, Any],
     *,
     without: Iterable[str] = (),
     max_memory: str | None = None,
 ) -> Result:
     """Analyses a recording in MCAP, HDF5, CSV or ISO-MME, or samples in memory by name.
 
-    The names are those of each `source` in the cask file, or of each channel's `name`. `without` leaves corrections of the
+    The names are those of each `source` in the cask file, or of each channel's `name`. Of a DataFrame each column is a
+    channel; an index called `time_s`, or one of times, dates the rows, else the cask file states the rate. `cask` may be a
+    dict as `tomllib` reads a cask file; paths in it count from the working folder. `without` leaves corrections of the
     samples out ("offset", "zero_shift", "skew", "hum"); `max_memory` is what reading may take, such as "8GB".
     """
     _name_interpreter()
     given = None
+    if hasattr(recording, "columns") and hasattr(recording, "index"):
+        recording = _of_frame(recording)
     if isinstance(recording, Mapping):
         given = [_named(name, samples) for name, samples in recording.items()]
         recording = "samples in memory"
-    words = ["analyze", _path(recording), "--cask", _path(cask), "--json", "-"]
     corrections = [without] if isinstance(without, str) else [str(name) for name in without]
-    words += ["--without", ",".join(corrections)] if corrections else []
-    words += [] if max_memory is None else [f"--max-memory={max_memory}"]
-    return Result(_dropcheck.analyze(words, given))
+    with _cask_file(cask) as file:
+        words = ["analyze", _path(recording), "--cask", file, "--json", "-"]
+        words += ["--without", ",".join(corrections)] if corrections else []
+        words += [] if max_memory is None else [f"--max-memory={max_memory}"]
+        return Result(_dropcheck.analyze(words, given))
 
 
 def predict(
-    cask: Path,
+    cask: Path | Mapping[str, Any],
     *,
     angle_deg: float | None = None,
     k: float | None = None,
@@ -133,12 +142,13 @@ def predict(
     Without `k` and `contact` ("rough", "smooth" or a Coulomb coefficient) the four borderline cases; `sweep` is "5:45:5"
     or "k=0:1:0.1", or several of them. The cask file needs no channel.
     """
-    words = ["predict", "--cask", _path(cask), "--json", "-"]
+    words = ["predict", "--json", "-"]
     numbers = {"angle": angle_deg, "k": k, "duration": duration_s, "draws": draws, "seed": seed}
     words += [f"--{name}={_number(name, value)!r}" for name, value in numbers.items() if value is not None]
     words += [] if contact is None else [f"--contact={contact}"]
     words += [f"--sweep={range}" for range in ([sweep] if isinstance(sweep, str) else sweep)]
-    return Answer(_dropcheck.predict(words))
+    with _cask_file(cask) as file:
+        return Answer(_dropcheck.predict([*words, "--cask", file]))
 
 
 def from_file(recording: Path) -> dict[str, Samples]:
@@ -229,6 +239,57 @@ def _path(path: Path) -> str:
     text = os.fsdecode(path)
     # A name must not be taken for an option.
     return os.path.join(".", text) if text.startswith("-") else text
+
+
+@contextmanager
+def _cask_file(cask: Path | Mapping[str, Any]) -> Iterator[str]:
+    """The path of a cask file, which is written for the time being where a dict is given."""
+    if not isinstance(cask, Mapping):
+        yield _path(cask)
+        return
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory(prefix="dropcheck-") as folder:
+        file = os.path.join(folder, "cask.toml")
+        with open(file, "w", encoding="utf-8") as text:
+            text.write("\n".join(f"{_toml(str(key))} = {_toml(value, str(key))}" for key, value in cask.items()))
+        yield file
+
+
+# Keys whose values are paths beside the cask file.
+_PATHS = ("file", "rest", "sensors")
+
+
+def _toml(value: Any, key: str = "") -> str:
+    import json
+    from numbers import Integral, Real
+
+    if isinstance(value, str | os.PathLike):
+        text = os.fspath(value)
+        return json.dumps(os.path.abspath(text) if key in _PATHS else text, ensure_ascii=False)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Real):
+        return str(int(value)) if isinstance(value, Integral) else repr(float(value))
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_toml(str(name))} = {_toml(of, str(name))}" for name, of in value.items()) + "}"
+    if isinstance(value, Iterable):
+        return "[" + ", ".join(_toml(of, key) for of in value) + "]"
+    raise TypeError(f"{key} is {value!r}: a cask file holds texts, numbers, true and false, lists and tables")
+
+
+def _of_frame(frame: pandas.DataFrame) -> dict[str, Samples]:
+    index, times_s = frame.index, None
+    if hasattr(index, "total_seconds"):
+        times_s = index.total_seconds()
+    elif index.dtype.kind == "M":
+        times_s = (index - index[0]).total_seconds()
+    elif index.name == "time_s":
+        times_s = index
+    elif not (index.dtype.kind in "iu" and index.name is None):
+        name = index.name or "without a name"
+        raise TypeError(f"the index is {name}: call it time_s if it holds seconds, else reset_index(drop=True)")
+    return {str(name): Samples(frame[name], times_s=times_s) for name in frame.columns}
 
 
 def _number(name: str, value: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import math
 from collections.abc import Mapping
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas
     import xarray
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from . import _dropcheck
@@ -57,7 +59,10 @@ class Record:
 
 
 class Quantity(Record):
-    """A measured quantity: `value` ± `u95`, the half-width of its 95 % interval, in `unit`."""
+    """A measured quantity: `value` ± `u95`, the half-width of its 95 % interval, in `unit`.
+
+    `float(q)` is the value, `f"{q:.1f}"` writes both numbers so, with the unit.
+    """
 
     __slots__ = ()
     value: float
@@ -66,9 +71,14 @@ class Quantity(Record):
 
     def __repr__(self) -> str:
         # Two digits of the interval.
-        digits = max(0, 1 - math.floor(math.log10(self.u95))) if self.u95 > 0 else 6
+        return format(self, f".{max(0, 1 - math.floor(math.log10(self.u95))) if self.u95 > 0 else 6}f")
+
+    def __format__(self, spec: str) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{self.value:.{digits}f} ± {self.u95:.{digits}f}{unit}"
+        return f"{self.value:{spec}} ± {self.u95:{spec}}{unit}" if spec else repr(self)
+
+    def __float__(self) -> float:
+        return float(self.value)
 
 
 class FirstImpact(Record):
@@ -185,6 +195,25 @@ class Answer(Record):
         return self._json.decode()
 
 
+class _Held:
+    """What a result hands on to another process."""
+
+    def __init__(self, text: bytes, curves: Any, motion: Any) -> None:
+        self._parts = text, curves, motion
+
+    def json(self) -> bytes:
+        return self._parts[0]
+
+    def curves(self) -> Any:
+        return [(name, dict(of)) for name, of in self._parts[1]]
+
+    def motion(self) -> Any:
+        return self._parts[2]
+
+    def write(self, folder: str) -> None:
+        raise TypeError("this result came from another process: write the report there")
+
+
 class Result(Answer):
     """What `analyze` found: the fields of result.json as attributes, and the curves.
 
@@ -192,7 +221,7 @@ class Result(Answer):
     """
 
     __slots__ = ("_analysis",)
-    _analysis: _dropcheck.Analysis
+    _analysis: _dropcheck.Analysis | _Held
     verdict: str
     first_impact: FirstImpact
     slap_down: SlapDown
@@ -206,12 +235,23 @@ class Result(Answer):
     missing: list[Record]
     simulation: list[Record]
 
-    def __init__(self, analysis: _dropcheck.Analysis) -> None:
+    def __init__(self, analysis: _dropcheck.Analysis | _Held) -> None:
         super().__init__(analysis.json())
         object.__setattr__(self, "_analysis", analysis)
 
     def __reduce__(self) -> Any:
-        raise TypeError("a Result holds its curves outside Python: hand on to_dict() or to_json()")
+        return type(self), (_Held(self._json, self._analysis.curves(), self._analysis.motion()),)
+
+    def _repr_html_(self) -> str:
+        numbers = {"slap-down speed": self.slap_down.speed, "restitution k": self.k}
+        rows = [(name, str(of or "not determined")) for name, of in numbers.items()]
+        if self.comparison:
+            measured = f"measured {self.comparison.difference_percent:+.1f} %"
+            rows.append(("predicted speed", f"{self.comparison.predicted:.2f} m/s, {measured}"))
+        rows += [(f"{found.severity} {found.code}", found.message) for found in self.findings if found.severity != "note"]
+        cells = [(html.escape(name), html.escape(of)) for name, of in rows]
+        table = "".join(f"<tr><th>{name}</th><td>{of}</td></tr>" for name, of in cells)
+        return f"<table><caption>{html.escape(self.verdict)}, ± 95 %</caption>{table}</table>"
 
     def __repr__(self) -> str:
         return f"Result({self.verdict}: slap-down {self.slap_down.speed}, k {self.k}, {len(self.findings)} findings)"
@@ -235,7 +275,7 @@ class Result(Answer):
 
     @property
     def motion(self) -> dict[str, NDArray[np.float64]]:
-        """The motion of the rigid body by the names of curves.csv, such as `angle_deg` over `time_s`; empty where there is none."""
+        """The motion of the rigid body by the names of curves.csv, such as `angle_deg` over `time_s`; else empty."""
         return dict(self._analysis.motion())
 
     def curves_frame(self) -> pandas.DataFrame:
@@ -254,8 +294,28 @@ class Result(Answer):
         variables = {f"{name}.{key}": (f"{name}.time_s", of[key]) for name, of in held for key in of}
         return xarray.Dataset(variables, coords=times, attrs={"verdict": self.verdict})
 
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the velocity of every channel over time with both impacts; needs matplotlib. Without `axes` it makes its own."""
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.subplots(layout="constrained")[1]
+        for name, of in self._analysis.curves():
+            axes.plot(1e3 * of["time_s"], of["velocity_m_s"], label=name)
+        for at_s, event in [(self.first_impact.time, "first contact"), (self.slap_down.time, "slap-down")]:
+            if at_s is not None:
+                axes.axvline(1e3 * at_s.value, color="0.5", linestyle="--", label=event)
+        axes.set(xlabel="time after the first sample in ms", ylabel="change of velocity in m/s")
+        axes.set_title(f"{self.verdict}: slap-down {self.slap_down.speed or 'not determined'}")
+        axes.legend()
+        return axes
+
     def write(self, folder: str | os.PathLike[str]) -> None:
-        """Writes the report into `folder`, as `--out` does: report.html, result.json, curves, pictures."""
+        """Writes the report into `folder`, as `--out` does: report.html, result.json, curves, pictures.
+
+        A folder that holds the report of another recording is refused. A result that came from another process has no
+        pictures, and cannot be written.
+        """
         import os
 
         self._analysis.write(os.fsdecode(folder))
