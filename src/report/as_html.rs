@@ -199,7 +199,7 @@ fn facts(caption: &str, facts: &[Fact]) -> Markup {
             tbody { @for fact in facts { tr {
                 th scope="row" { (capital(&printable(&fact.name))) @if fact.is_default {
                     " " (default_mark("default")) } }
-                (cell(fact.kind, &fact.value.as_str().into()))
+                (cell(fact.kind, &fact.value.as_str().into(), None))
                 @if noted { td class="soft" { (printable(fact.shown_note())) } }
             } } }
         }
@@ -214,32 +214,46 @@ fn table(table: &ReportTable) -> Markup {
     let columns = table.shown(Medium::Page);
     let (rows, left_out) = table.rows(Medium::Page);
     let number = |column: &ReportColumn| (column.kind == CellKind::Number).then_some("n");
+    // A row of more cells than a phone is wide stands there as a list, each cell behind its head.
+    let is_stacked = columns.len() > 3 && table.class != "findings";
+    let classes = if is_stacked { format!("{} stack", table.class) } else { table.class.to_owned() };
     html! {
-        table class=[class(table.class)] {
+        table class=[class(classes.trim())] {
             @if !table.caption.is_empty() { caption { (printable(&table.caption)) } }
             thead { tr { @for column in &columns {
                 th scope="col" class=[number(column)] { (printable(column.head.on(Medium::Page))) }
             } } }
             tbody { @for (row, is_chosen) in table.chosen.iter().enumerate().take(rows) {
                 tr class=[is_chosen.then_some("chosen")] { @for column in &columns {
-                    (cell(column.kind, &column.cells[row])) } }
+                    (cell(column.kind, &column.cells[row],
+                        is_stacked.then(|| printable(column.head.on(Medium::Page))).as_deref())) } }
             } }
         }
         @if let Some(sentence) = left_out { p class="note" { (sentence) } }
     }
 }
 
-fn cell(kind: CellKind, cell: &TableCell) -> Markup {
+/// Words of a machine, which may go on in the next line behind a mark, and behind so many letters without
+/// one.
+fn code(words: &str) -> Markup {
+    const LONGEST: usize = 16;
+    let letters: Vec<char> = words.chars().collect();
+    let parts = letters.split_inclusive(|c| "._/".contains(*c)).flat_map(|part| part.chunks(LONGEST));
+    html! { code { @for part in parts { (part.iter().collect::<String>()) wbr; } } }
+}
+
+/// A cell; below `head` where its row is stacked.
+fn cell(kind: CellKind, cell: &TableCell, head: Option<&str>) -> Markup {
     let text = printable(cell.words.on(Medium::Page));
     let shown = html! { @if cell.link.is_empty() { (prose(&text)) } @else { a href=(cell.link) { (text) } } };
     let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() {
     " " } (default_mark(cell.mark)) } };
     match kind {
         CellKind::Head => html! { th scope="row" { (words) } },
-        CellKind::Text => html! { td { (words) } },
-        CellKind::Number => html! { td class="n" { (words) } },
-        CellKind::Soft => html! { td class="u" { (words) } },
-        CellKind::Code => html! { td { code { (words) } } },
-        CellKind::Tag => html! { td class=(format!("tag {text}")) { (words) } },
+        CellKind::Text => html! { td data-head=[head] { (words) } },
+        CellKind::Number => html! { td class="n" data-head=[head] { (words) } },
+        CellKind::Soft => html! { td class="u" data-head=[head] { (words) } },
+        CellKind::Code => html! { td data-head=[head] { (code(&text)) } },
+        CellKind::Tag => html! { td class=(format!("tag {text}")) data-head=[head] { (words) } },
     }
 }

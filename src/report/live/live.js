@@ -70,9 +70,10 @@ function digits(v) {
 function chart(box, panel, lines, key) {
   const data = uPlot.join(lines.map((line) => cut(samples(line), panel.from - line.dx / 2, panel.to + line.dx / 2)));
   const x = unitOf(panel.x), unit = unitOf(panel.y);
+  const colour = (line, least) => line.color + Math.round(255 * Math.max(line.opacity, least)).toString(16).padStart(2, "0");
   const series = lines.map((line) => ({
     label: line.label || panel.y.split(", ")[0], points: { show: false }, pxAlign: 0, width: 0.55 * line.stroke,
-    stroke: line.color + Math.round(255 * line.opacity).toString(16).padStart(2, "0"),
+    stroke: colour(line, 0),
     dash: line.dash?.map((piece) => 0.55 * piece * devicePixelRatio),
     head: `${line.label || panel.y.split(", ")[0]}, ${unit}`,
     value: (u, v) => (v == null ? "" : minus(v.toPrecision(5))),
@@ -98,9 +99,9 @@ function chart(box, panel, lines, key) {
     for (const [at, label] of panel.marks) {
       const x = u.valToPos(at, "x", true);
       if (x < bbox.left || x > bbox.left + bbox.width) continue;
-      // A word stands above the axes and inside of the chart, in a row below a neighbour that it would touch.
+      // A word stands above the axes, clear of their numbers, in a row above a neighbour that it would touch.
       const half = ctx.measureText(label).width / 2 + 4;
-      const middle = Math.min(Math.max(x, half), ctx.canvas.width - half);
+      const middle = Math.max(Math.min(x, ctx.canvas.width - half), bbox.left + half);
       let row = ends.findIndex((end) => middle - half > end);
       if (row < 0) row = ends.length;
       ends[row] = middle + half;
@@ -124,10 +125,10 @@ function chart(box, panel, lines, key) {
   // As high as the drawing that it stands for, and high enough for a phone.
   const fitted = () => ({ width: box.clientWidth, height: above + 54 + Math.max(180, box.clientWidth * panel.height / 1800) });
   const u = new uPlot({
-    title: panel.title, ...fitted(), padding: [above, 14, 0, 0],
+    title: panel.title, ...fitted(), padding: [above, 26, 0, 0],
     series: [{ value: (u, v) => (v == null ? "" : `at ${minus(v.toFixed(3))} ${x}`), label: "\u200b" }, ...series],
     scales: { x: { time: false } }, axes: [axis(panel.x, 32), axis(panel.y, 56)],
-    legend: { markers: { width: 2, dash: (u, i) => (series[i - 1].dash ? "dashed" : "solid") } },
+    legend: { markers: { width: 2, stroke: (u, i) => colour(lines[i - 1], 0.6), dash: (u, i) => (series[i - 1].dash ? "dashed" : "solid") } },
     // Panels of the same times have one cursor and one zoom.
     cursor: { sync: { key: key + data[0][0], setSeries: false }, dataIdx: nearest, drag: { x: true, y: false } },
     hooks: { draw: [marks] },

@@ -27,7 +27,7 @@ pub(super) fn height(panel: &Panel, width: f64) -> f64 {
 
 /// Height of what stands above the axes.
 fn head(panel: &Panel, width: f64) -> f64 {
-    let rows = mark_rows(panel, width).iter().max().map_or(0, |row| row + 1);
+    let rows = mark_places(panel, width).iter().map(|(_, row)| row + 1).max().unwrap_or(0);
     legend::height(panel, width) + MARK_ROW * as_f64(rows)
 }
 
@@ -35,19 +35,27 @@ fn bottom(panel: &Panel) -> f64 {
     if panel.x.label.is_empty() { 0.0 } else { BOTTOM }
 }
 
-/// Rows that the words of the marks take, so that none writes over its neighbour.
-fn mark_rows(panel: &Panel, width: f64) -> Vec<usize> {
+/// Room at the left and the right of the axes.
+fn sides(panel: &Panel) -> (f64, f64) {
+    panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()))
+}
+
+/// Where the words of the marks stand along the axis, clear of the numbers beside it, and in which rows, so
+/// that none writes over its neighbour.
+fn mark_places(panel: &Panel, width: f64) -> Vec<(f64, usize)> {
     let mut ends: Vec<f64> = Vec::new();
     let along = along(&panel.x, &panel.x_range());
-    let row = |mark: &Mark| {
+    let (left, right) = sides(panel);
+    let place = |mark: &Mark| {
         let half = width_of(&mark.label, 7.0) + 8.0;
-        let at = along(mark.at) * (width - LEFT);
-        let row = ends.iter().position(|end| at - half > *end).unwrap_or(ends.len());
+        let at = along(mark.at) * (width - left - right);
+        let middle = at.min(width - left - half).max(half - 8.0);
+        let row = ends.iter().position(|end| middle - half > *end).unwrap_or(ends.len());
         ends.resize(ends.len().max(row + 1), 0.0);
-        ends[row] = at + half;
-        row
+        ends[row] = middle + half;
+        (middle, row)
     };
-    panel.marks.iter().map(row).collect()
+    panel.marks.iter().map(place).collect()
 }
 
 /// From a value to how far along its axis it lies, 0 to 1; not finite where the axis has no place for it.
@@ -68,7 +76,7 @@ struct PlotFrame<'a> {
 /// Draws `panel` in a picture, or in a part of it, this wide.
 pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
     legend::draw(svg, panel, width);
-    let (left, right) = panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()));
+    let (left, right) = sides(panel);
     let (x, y) = (panel.x_range(), panel.y_range());
     let frame = PlotFrame { panel, x, y, width: width - left - right, height: panel.height.into() };
     svg.from((left, head(panel, width)), |svg| {
@@ -80,8 +88,8 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
         }
         frame.names(svg);
         frame.rows(svg, left);
-        for (mark, row) in panel.marks.iter().zip(mark_rows(panel, width)) {
-            frame.mark(svg, mark, row, (left, right));
+        for (mark, place) in panel.marks.iter().zip(mark_places(panel, width)) {
+            frame.mark(svg, mark, place);
         }
         let size = "font-size=\"26\"";
         svg.words(&panel.x.label, (frame.width / 2.0, frame.height + BOTTOM - 18.0), Anchor::Middle, size);
@@ -119,7 +127,10 @@ impl PlotFrame<'_> {
         for value in x.bold.iter().filter(|_| !panel.x.label.is_empty()) {
             let at = across(*value);
             svg.line(&line(1.0, vec![(at, height), (at, height + 5.0)]));
-            svg.word(&tick(*value, &panel.x), (at, height + 22.0), Anchor::Middle);
+            let number = tick(*value, &panel.x);
+            // The last number ends within the picture.
+            let most = width + sides(panel).1 - width_of(&number, 7.0);
+            svg.word(&number, (at.min(most), height + 22.0), Anchor::Middle);
         }
         for value in &y.bold {
             svg.line(&line(1.0, vec![(-5.0, up(*value)), (0.0, up(*value))]));
@@ -194,7 +205,7 @@ impl PlotFrame<'_> {
         }
     }
 
-    fn mark(&self, svg: &mut Svg, mark: &Mark, row: usize, (left, right): (f64, f64)) {
+    fn mark(&self, svg: &mut Svg, mark: &Mark, (middle, row): (f64, usize)) {
         if !(self.x.start..=self.x.end).contains(&mark.at) {
             return;
         }
@@ -202,9 +213,7 @@ impl PlotFrame<'_> {
         let top = -MARK_ROW * as_f64(row);
         let dashed = Curve { opacity: 0.55, stroke: 2, ..Curve::new(INK, vec![(x, top), (x, self.height)]) };
         svg.line(&dashed.broken(Dash::Marked));
-        let half = width_of(&mark.label, 7.0);
-        let x = x.clamp((half - 20.0 - left).max(half - left), self.width + right - half - 8.0);
-        svg.word(&mark.label, (x, top - 20.0), Anchor::Middle);
+        svg.word(&mark.label, (middle, top - 20.0), Anchor::Middle);
     }
 }
 
@@ -248,7 +257,7 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
 
 /// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
 fn tick(value: f64, axis: &PanelAxis) -> String {
-    if axis.scale == AxisScale::Logarithmic && !(1e-2..1e5).contains(&value) {
+    if axis.scale == AxisScale::Logarithmic && !(1e-4..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
     }
     let rounded = (value * 1e6).round() / 1e6;
@@ -266,7 +275,12 @@ mod tests {
         let marks = marks.map(|(label, at)| Mark { at, label: label.into() }).into();
         let panel =
             Panel { x: PanelAxis::new("time, ms").over(Some((-10.0, 100.0))), marks, ..Panel::default() };
-        assert_eq!(mark_rows(&panel, WIDTH), [0, 1, 0]);
+        let places = mark_places(&panel, WIDTH);
+        assert!(places.iter().map(|(_, row)| *row).eq([0, 1, 0]), "{places:?}");
+        // A word at the left edge begins at the axis, and so beside the numbers of the other one.
+        let at_edge = Panel { x: panel.x.over(Some((0.0, 100.0))), ..panel };
+        let (middle, _) = mark_places(&at_edge, WIDTH)[0];
+        assert!(middle - width_of("first contact", 7.0) >= 0.0, "{middle}");
     }
 
     #[test]
@@ -297,6 +311,7 @@ mod tests {
         assert_eq!(tick(-0.000_000_01, &linear), "0");
         assert_eq!(tick(-12.5, &linear), "−12.5");
         assert_eq!(tick(1e-5, &logarithmic), "1e−5");
+        assert_eq!([tick(1e-3, &logarithmic), tick(0.01, &logarithmic)], ["0.001", "0.01"]);
         assert_eq!(tick(100.0, &logarithmic), "100");
     }
 

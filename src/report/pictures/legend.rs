@@ -14,6 +14,8 @@ pub(super) const RIGHT: f64 = 28.0;
 const LEGEND_ROW: f64 = 40.0;
 /// Width of the sample of a line before its words.
 const SAMPLE: f64 = 58.0;
+/// A sample is seen beside its words, on paper and in the dark, however faint its line is.
+const FAINTEST: f64 = 0.6;
 const WHITE: Colour = Colour(255, 255, 255);
 
 /// What an entry of a legend stands for.
@@ -93,7 +95,8 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
                 }
                 LegendKey::Curve(line) => {
                     let points = vec![(left, y), (left + 48.0, y)];
-                    svg.line(&Curve { points, stroke: line.stroke.max(3), ..line.clone() });
+                    let (stroke, opacity) = (line.stroke.max(3), line.opacity.max(FAINTEST));
+                    svg.line(&Curve { points, stroke, opacity, ..line.clone() });
                 }
                 LegendKey::Points(points) => point(svg, points, (left + 36.0, y)),
             }

@@ -111,9 +111,11 @@ fn opacity(kind: &str, share: f64) -> String {
     if share < 1.0 { format!(" {kind}-opacity=\"{share}\"") } else { String::new() }
 }
 
-/// Points as whole units; what lies far outside of every picture need not be far.
+/// Points to a tenth of a unit, without which a shallow line is a staircase; what lies far outside of every
+/// picture need not be far.
 fn places(points: &[(f64, f64)]) -> String {
     const FAR: f64 = 20_000.0;
-    let place = |&(x, y): &(f64, f64)| format!("{:.0},{:.0}", x.clamp(-FAR, FAR), y.clamp(-FAR, FAR));
+    let tenths = |place: f64| (10.0 * place.clamp(-FAR, FAR)).round() / 10.0;
+    let place = |&(x, y): &(f64, f64)| format!("{},{}", tenths(x), tenths(y));
     points.iter().map(place).collect::<Vec<_>>().join(" ")
 }
