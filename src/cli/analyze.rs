@@ -12,6 +12,7 @@ use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, Setting, Verdict}
 use crate::{ingest, report};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
+use miette::{ensure, miette};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -140,6 +141,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let Arguments { recording, cask, from, rest, .. } = arguments;
     let inputs = [Some(recording), cask.as_ref(), from.as_ref(), rest.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    refuse_names(recording, cask.as_deref())?;
     let names = [report::FILE_NAMES, &[pdf::NAME]].concat();
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
@@ -198,6 +200,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 }
 
 /// Writes the files of `--out`, with a note where the printed report among them is not of this run.
+///
+/// # Errors
+/// Also where `--pdf` asks for a report that no browser prints; all other files are written.
 fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> miette::Result<()> {
     let mut files = report::files(analysis)?;
     if arguments.csv_locale == CsvLocale::De {
@@ -207,14 +212,30 @@ fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> 
         }
     }
     let printed = arguments.pdf.then(|| pdf::printed(&files[0].1)).transpose();
-    match printed {
-        Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
-        Err(why) => note(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME)),
-    }
+    let (printed, missing) = printed.map_or_else(|why| (None, Some(why)), |printed| (printed, None));
+    files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes)));
     folder.write(&files)?;
+    if let Some(why) = missing {
+        let mend = "install one, or open report.html and print it; the other files are written";
+        return Err(miette!(help = mend, "there is no {}: {why}", pdf::NAME));
+    }
     let is_new = files.iter().any(|(name, _)| name == pdf::NAME);
     if !is_new && Path::new(&folder.file(pdf::NAME)).exists() {
         note(&format!("{} is of an earlier run; --pdf writes it anew.", folder.file(pdf::NAME)));
     }
+    Ok(())
+}
+
+/// Refuses a recording that is none to see by its name.
+fn refuse_names(recording: &Path, cask: Option<&Path>) -> miette::Result<()> {
+    let [is_toml, cask_is_toml] = [Some(recording), cask]
+        .map(|path| path.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case("toml")));
+    let shown = |path: &Path| report::printable(&path.display().to_string());
+    let mend = "write it into a file, and name that";
+    ensure!(recording != Path::new("-"), help = mend, "- stands for standard input, which is not read");
+    let cask = cask.map_or_else(|| "CASK.toml".to_owned(), shown);
+    let recording = shown(recording);
+    let mend = format!("write `dropcheck analyze {cask} --cask {recording}`");
+    ensure!(!is_toml || cask_is_toml, help = mend, "{recording} is a cask file by its name, and {cask} none");
     Ok(())
 }

@@ -27,6 +27,7 @@ pub use embedded::synthetic;
 pub use embedded::{analysis, listing, prediction, write};
 
 use crate::data::Program;
+use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 
@@ -48,6 +49,26 @@ fn version() -> &'static str {
 pub struct CommandLine {
     #[command(subcommand)]
     pub command: Command,
+    /// Colours: auto shows them on a terminal
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto",
+          value_parser = ["auto", "always", "never"])]
+    color: String,
+    /// Print no tables and no progress: files, --json -, errors and the exit status alone
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+impl CommandLine {
+    /// How the command may print.
+    fn set_output(&self) {
+        let colours = match self.color.as_str() {
+            "always" => ColorChoice::Always,
+            "never" => ColorChoice::Never,
+            _ => ColorChoice::Auto,
+        };
+        colours.write_global();
+        output::set_quiet(self.quiet);
+    }
 }
 
 #[derive(Subcommand)]
@@ -107,6 +128,7 @@ pub fn main(words: &[OsString]) -> u8 {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
     let ended = CommandLine::try_parse_from(named).map(|line| {
         rerun::begin(words);
+        line.set_output();
         run(&line.command)
     });
     match ended {

@@ -10,6 +10,7 @@ use crate::report::{ReportError, printable};
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How every JSON document of this program begins, within its first bytes.
 const SCHEMA_MARK: &str = "\"schema\": \"dropcheck.";
@@ -218,8 +219,22 @@ pub fn replace_by(
     Ok(())
 }
 
+/// Whether tables and progress are printed at all.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+pub fn set_quiet(is_quiet: bool) {
+    IS_QUIET.store(is_quiet, Ordering::Relaxed);
+}
+
+pub fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
+
 /// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.
 pub fn print(text: &str) -> Result<(), CannotWrite> {
+    if is_quiet() {
+        return Ok(());
+    }
     let mut out = anstream::stdout().lock();
     settled(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
@@ -233,7 +248,7 @@ pub fn note(words: &str) {
 /// Columns that tables may take: those of the terminal, 80 where there is none.
 pub fn columns() -> usize {
     let of_terminal = terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
-    of_terminal.map_or(80, |width| width.clamp(60, 200))
+    of_terminal.map_or(80, |width| width.clamp(60, 160))
 }
 
 /// Writes bytes to standard output as they are.

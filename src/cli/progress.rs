@@ -1,6 +1,6 @@
 //! Long work to a bar on standard error where that is a terminal, else to a line now and then.
 
-use super::output::note;
+use super::output::{is_quiet, note};
 use crate::ingest::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -13,15 +13,25 @@ const PARTS: u32 = 1000;
 /// Work that is done within this time needs no word in a log.
 const SOON: Duration = Duration::from_secs(3);
 
+/// A bar of so many parts, unless nobody wants to see it.
+fn bar(parts: u64) -> ProgressBar {
+    if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(parts) }
+}
+
+/// Whether progress goes to a log, line by line.
+fn is_log() -> bool {
+    !is_quiet() && !std::io::stderr().is_terminal()
+}
+
 /// Does `work`, which tells its progress from 0 to 1, beside a bar; where standard error is no terminal long
 /// work has a line each tenth.
 pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
-    let bar = ProgressBar::new(u64::from(PARTS));
+    let bar = bar(u64::from(PARTS));
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} %") {
         bar.set_style(style);
     }
     bar.set_message(crate::report::printable(what));
-    let in_log = !std::io::stderr().is_terminal();
+    let in_log = is_log();
     let told = AtomicU64::new(0);
     let done = work(&|fraction: f64| {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 1000")]
@@ -48,7 +58,7 @@ pub struct CountedProgress {
 impl CountedProgress {
     /// Of so many steps; whether a run that is stopped leaves what it has `kept`.
     pub fn of(count: usize, kept: bool) -> Self {
-        let bar = ProgressBar::new(count as u64);
+        let bar = bar(count as u64);
         if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left{msg}") {
             bar.set_style(style);
         }
@@ -60,7 +70,7 @@ impl CountedProgress {
     pub fn step(&mut self) {
         self.bar.inc(1);
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
-        if !std::io::stderr().is_terminal() && (done == all || self.told.elapsed() >= EACH) {
+        if is_log() && (done == all || self.told.elapsed() >= EACH) {
             self.told = Instant::now();
             let left = HumanDuration(self.bar.eta());
             note(&format!("{done} of {all}, {left} left"));

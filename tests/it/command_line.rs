@@ -51,6 +51,28 @@ fn cask_with(bench: &Bench, stem: &str, from: &str, to: &str) -> PathBuf {
     bench.put("cask.toml", text.replace(from, to))
 }
 
+#[test]
+fn colours_and_silence_are_as_asked_for() {
+    let with = |more: &[&str]| {
+        let (recording, cask) = (fixture("anf18-json.mcap"), fixture("anf18-json.toml"));
+        let words = words!["analyze", recording, "--cask", cask];
+        dropcheck(words.into_iter().chain(more.iter().map(std::ffi::OsStr::new)))
+    };
+    assert!(with(&["--color", "always"]).stdout.contains("\u{1b}[1;32mDATA SOUND"));
+    assert!(!with(&["--color", "never"]).stdout.contains('\u{1b}'));
+    let quiet = with(&["--quiet"]);
+    assert_eq!((quiet.status, &quiet.stdout[..], &quiet.stderr[..]), (0, "", ""));
+    assert!(with(&["--quiet", "--json", "-"]).stdout.starts_with("{\n"));
+}
+
+#[test]
+fn a_recording_that_is_none_by_its_name_is_refused_with_the_line_that_mends_it() {
+    let (recording, cask) = (fixture("anf18-json.mcap"), fixture("anf18-json.toml"));
+    let exchanged = dropcheck(words!["analyze", cask, "--cask", recording]);
+    at_fault(&exchanged, &["anf18-json.toml is a cask file", "anf18-json.mcap --cask "]);
+    at_fault(&dropcheck(words!["analyze", "-", "--cask", cask]), &["standard input", "into a file"]);
+}
+
 /// One message on standard error that holds every one of `words`; exit 2, nothing on standard output, nobody
 /// panicked.
 #[track_caller]

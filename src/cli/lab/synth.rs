@@ -33,15 +33,32 @@ pub struct Arguments {
 const PROTOBUF: &str = "protobuf";
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    let before = paths(arguments).map(|file| file.exists());
     let (files, recording) = written(arguments)?;
-    let files = files.each_ref().map(|file| report::printable(&file.display().to_string()));
+    let shown = |(file, was_there): (&PathBuf, bool)| {
+        let replaced = if was_there { " (replaced)" } else { "" };
+        report::printable(&file.display().to_string()) + replaced
+    };
+    let files: Vec<String> = files.iter().zip(before).map(shown).collect();
     print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;
     Ok(Ending::Clear)
 }
 
+/// Where the recording goes.
+fn out(arguments: &Arguments) -> PathBuf {
+    arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene))
+}
+
+/// Where recording, cask file and truth go.
+fn paths(arguments: &Arguments) -> [PathBuf; 3] {
+    let out = out(arguments);
+    let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    lab::report::synthetic_names(&name).map(|name| out.with_file_name(name))
+}
+
 /// Makes the recording and writes its files: recording, cask file, truth.
 pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], SyntheticRecording)> {
-    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
+    let out = out(arguments);
     let format = format(&out, arguments.encoding.as_deref())?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let names = lab::report::synthetic_names(&name);
@@ -56,7 +73,7 @@ pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], Synthetic
     }
     let recording = lab::synthesise(&scene_file.scene);
     folder.write(&lab::report::synthetic_files(&scene_file, &recording, &name, format)?)?;
-    Ok((names.map(|name| out.with_file_name(name)), recording))
+    Ok((paths(arguments), recording))
 }
 
 fn default_out(scene: &Path) -> PathBuf {
