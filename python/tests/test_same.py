@@ -35,7 +35,7 @@ def test_the_fields_of_a_result() -> None:
     assert abs(speed.value - truth["speed"]) < speed.u95 and speed.unit == "m/s"
     # The README's session is of this drop, and a test of the command holds it.
     session = (EXAMPLES.parent.parent / "README.md").read_text()
-    assert f"Slap-down speed {speed!r} of the rigid cask (" in session and f"Restitution k   {k!r}\n" in session
+    assert f"Slap-down speed {speed!r} (rigid cask)" in session and f"Restitution k   {k!r}\n" in session
     assert [finding.code for finding in result.findings] == [found["code"] for found in result.to_dict()["quality"]]
     assert result.findings[0].severity in {"note", "warning", "error"}
     with pytest.raises(AttributeError, match="there is: time, impact_velocity"):

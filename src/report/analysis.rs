@@ -2,29 +2,28 @@
 
 use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
-    TableShape, Tone, Words,
+    TableShape, Tone,
 };
-use super::first_screen::{RIGID, agreement, built_in, by_measured, of_corner, untested};
+use super::first_screen::{RIGID, agreement, built_in, by_measured, not_checkable, of_corner};
 use super::impacts::{impacts, not_determined, prototype};
 use super::kind;
 use super::prediction::prediction_columns;
-use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
+use super::reconstruction::{assumed, budget, flight, reconstruction};
 use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::shocks::shocks;
 use super::simulation::simulation;
 use super::text::{
-    Style, causes, determined, dropped, json_word, reasons, sentence, span_text, tail, taken_mark,
-    true_minus, verdict_sentence, verdict_style, verdict_word, yes,
+    Style, causes, determined, dropped, json_word, reasons, sentence, span_text, taken_mark, true_minus,
+    verdict_sentence, verdict_style, verdict_word, yes,
 };
-use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
+use super::words::{KEPT_SENTENCE, OVER_SENTENCE};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Finding, FlightRegime, Prediction, Program, QuantityRow,
-    STANDARD_GRAVITY_M_S2, Setting, Severity,
+    Analysis, CaskFile, DropResult, Finding, FlightRegime, Prediction, QuantityRow, STANDARD_GRAVITY_M_S2,
+    Setting, Severity,
 };
 
-/// The whole document. A terminal has the findings last, where the eye rests; a page has them with the
-/// results.
+/// The whole document, with what a decision needs on its first page.
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let (name, input) = (&file.cask.name, &result.input);
@@ -57,10 +56,12 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
         },
         chapters: vec![
             summary(result, file),
+            record::head(result),
+            record::limits(&result.limits),
+            quality(&result.quality),
             Chapter::new("Accelerations and velocities")
                 .only(Medium::Page)
                 .with_all(pictures(&["accelerations", "velocities"])),
-            record::head(&result.test),
             tested(file, "What was tested")
                 .with(ChapterPart::picture("setup", ""))
                 .with(record::sensors(file)),
@@ -71,15 +72,12 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             comparison(result, file),
             simulation(result),
             record::observed(&result.observed),
-            record::limits(&result.limits),
-            quality(&result.quality).only(Medium::Page),
             reconstruction(result).with_all(pictures(&["motion"])),
             flight(result).with_all(pictures(&["fit"])),
             budget(result, file),
             predictions(result),
             channels(result).with_all(pictures(&["spectra"])),
             others(result),
-            quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
             Chapter::new("Photographs").only(Medium::Page).with_all(photographs),
             Chapter::new("Signatures").only(Medium::Page).with_all(signatures),
@@ -88,36 +86,18 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
 }
 
 /// What no reader of the first page should miss.
-const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals \
-                            were tested on simulated drops of known \
-                            truth; no recording with a certified slap-down velocity was available.";
+const NO_REFERENCE: &str = "The results relate to this one drop of this item only, and the verdict to the \
+                            data of its recording, not to the cask. The intervals were tested on simulated \
+                            drops of known truth; no recording with a certified slap-down velocity was \
+                            available.";
 
-/// What was dropped, the verdict and its cause, the four numbers that a reader looks for first, and what they
-/// rest on.
+/// The verdict and its cause, the four numbers that a reader looks for first, and what they rest on: on a
+/// page; a terminal has its first screen.
 fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
-    let cask = &file.cask;
-    let section =
-        if cask.height_m > 0.0 { format!(", h {} m", plain(cask.height_m, 5)) } else { String::new() };
-    let what = format!(
-        "{} · drop {} · {} kg, l {} m{section} · {} contact",
-        cask.name,
-        dropped(&file.drop),
-        plain(cask.mass_kg, 6),
-        plain(cask.length_m, 5),
-        contact_words(file.contact)
-    );
-    let files = format!(
-        "{} ({}) with {}",
-        tail(&result.input.recording, 40),
-        json_word(result.input.format),
-        tail(&result.input.cask, 24)
-    );
     let causes = Some(causes(result).join(" ")).filter(|said| !said.is_empty());
-    let assumed = record::assumed(file, &result.budget)
-        .map(|words| format!("The cask file does not state, and the intervals cover: {words}."));
-    let interval_by = defaults_that_weigh(result, file).map(|words| sentence(&words));
-    let untested = untested(result).map(|[named, remedies]| {
-        format!("Nothing in this recording tests {named}. To test them: {remedies}.")
+    let assumed = assumed(result, file, false).map(|words| format!("The interval {words}."));
+    let unchecked = not_checkable(result).map(|[named, remedies]| {
+        format!("Not checkable from this recording: {named}. To check them: {remedies}.")
     });
     let banner = |style, word: &str, sentence| PartContent::Banner(Tone(style, word.to_owned()), sentence);
     let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
@@ -126,29 +106,32 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
     let alarm = alarm.map(|said| banner(Style::Red, LIMIT_EXCEEDED, said));
     let banners = alarm.into_iter().chain([verdict]).map(ChapterPart::from);
-    let said = [limits.map(|said| format!("Limits: {said}")), causes, assumed, interval_by, untested];
+    let said = [limits.map(|said| format!("Limits: {said}")), causes, assumed, unchecked];
     let said = said.into_iter().flatten().map(ChapterPart::text);
     Chapter::new("")
+        .only(Medium::Page)
         .with_all(kind::words(result, file).map(ChapterPart::text))
-        .with(ChapterPart::title(what).only(Medium::Terminal))
-        .with(ChapterPart::line(files).only(Medium::Terminal))
-        .with_all(record::line(&result.test))
-        .with_all(banners.map(|part| part.only(Medium::Page)))
+        .with_all(banners)
         .with(PartContent::Figures(figures(result, file)))
-        .with_all(said.map(|part| part.only(Medium::Page)))
-        .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
+        .with_all(said)
+        .with(ChapterPart::note(NO_REFERENCE))
 }
 
 fn figures(result: &DropResult, file: &CaskFile) -> Vec<[String; 3]> {
-    let corner = of_corner(result).map_or_else(String::new, |corner| format!("; of the corner {corner}"));
+    let corner = of_corner(result)
+        .map_or_else(String::new, |corner| format!("; of the corner {}", corner.replace(' ', "\u{a0}")));
     let model = result.model.as_ref().map_or("no model taken", |model| model.rung.words());
     let compared = result.comparison.as_ref();
     let predicted = compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s"));
     let by = compared.map(|_| format!("{model}, {}", by_measured(result, file)));
     let figures = [
-        ("Slap-down speed, measured", interval(result.slap_down.speed.as_ref()), format!("{RIGID}{corner}")),
         (
-            "Slap-down speed, predicted",
+            "Slap-down speed, measured, ±\u{a0}95\u{a0}%",
+            interval(result.slap_down.speed.as_ref()),
+            format!("{RIGID}{corner}"),
+        ),
+        (
+            "Slap-down speed, predicted, ±\u{a0}95\u{a0}%",
             predicted.unwrap_or_else(|| MISSING.to_owned()),
             by.unwrap_or_default(),
         ),
@@ -157,7 +140,7 @@ fn figures(result: &DropResult, file: &CaskFile) -> Vec<[String; 3]> {
             percent(compared.map(|c| c.difference_percent)),
             compared.map_or("", |c| agreement(c.agrees)).to_owned(),
         ),
-        ("Coefficient of restitution k", interval(result.k.as_ref()), String::new()),
+        ("Coefficient of restitution k, ±\u{a0}95\u{a0}%", interval(result.k.as_ref()), String::new()),
     ];
     figures.map(|(name, value, detail)| [name.to_owned(), determined(value), detail]).into()
 }
@@ -175,7 +158,7 @@ fn quantities(result: &DropResult) -> Chapter {
         let facts = ChapterPart::facts(caption, rows.into_iter().map(fact).collect());
         [facts].into_iter().chain(not_determined(result, places)).collect()
     };
-    Chapter::new(Words::or("Results, ± 95 %", "")).with(PartContent::Beside([
+    Chapter::new("Results, ± 95 %").with(PartContent::Beside([
         estimates("First impact", first_impact.collect(), &["first_impact.", "k"]),
         estimates("Slap-down", slap_down.collect(), &["slap_down."]),
     ]))
@@ -218,7 +201,7 @@ fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
         let built_in = built_in(result).map(|words| format!(" The agreement is partly {words}."));
         let built_in = built_in.unwrap_or_default();
         let words = format!("Model: {}. {}{built_in}", model.rung.words(), sentence(&model.reason));
-        [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]
+        [ChapterPart::text(words), candidates.into()]
     });
     Chapter::new("Measured beside predicted")
         .with(compared)
@@ -230,7 +213,7 @@ fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
 pub(super) fn quality(issues: &[Finding]) -> Chapter {
     let chapter = Chapter::new("Quality");
     if issues.is_empty() {
-        return chapter.with(ChapterPart::text(Words::or("No check found anything to say.", "no findings")));
+        return chapter.with(ChapterPart::text("No check found anything to say."));
     }
     let style = |severity| match severity {
         Severity::Note => Style::Dim,
@@ -269,40 +252,26 @@ fn predictions(result: &DropResult) -> Chapter {
 
 /// What each channel is worth.
 fn channels(result: &DropResult) -> Chapter {
-    // The impacts have the peaks on a page, by impact and with their intervals.
-    let is_told = result.impacts.iter().any(|impact| !impact.channels.is_empty());
-    let peaks_on = is_told.then_some(Medium::Terminal);
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
-    let rate = |rate_hz: f64, digits| format!("{} kHz", plain(rate_hz / 1e3, digits));
     let table = ReportTable::of(&result.channels)
         .class("")
         .caption("Offset and noise (RMS) in g; where no impact is tabulated, also the peaks of the event")
-        .head(Words::or("Channel", "channel"), |c| &c.name[..])
-        .text(Words::or("End, axis", "end, axis"), |c| format!("{}, {}", json_word(c.end), json_word(c.axis)))
+        .head("Channel", |c| &c.name[..])
+        .text("End, axis", |c| format!("{}, {}", json_word(c.end), json_word(c.axis)))
         .code("Source", |c| &c.source[..])
-        .only(Medium::Page)
         .number("Samples", |c| c.samples.to_string())
-        .only(Medium::Page)
-        .number(Words::or("Rate", "rate"), |c| {
-            Words::or(rate(c.sample_rate_hz, 6), rate(c.sample_rate_hz, 5))
-        })
-        .text(Words::or("Unit", "unit"), |c| {
-            Words::or(&c.unit[..], c.unit.split(" (").next().unwrap_or_default())
-        })
-        .number(Words::or("Offset", "offset g"), |c| g(c.offset_m_s2))
-        .number(Words::or("Noise", "noise g"), |c| g(c.noise_m_s2))
-        .number(Words::or("Filtered peak", "event\npeak g"), |c| g(c.peak_filtered_m_s2))
-        .only(peaks_on)
-        .number(Words::or("Unfiltered peak", "event\nraw g"), |c| g(c.peak_raw_m_s2))
-        .only(peaks_on);
+        .number("Rate", |c| format!("{} kHz", plain(c.sample_rate_hz / 1e3, 6)))
+        .text("Unit", |c| &c.unit[..])
+        .number("Offset", |c| g(c.offset_m_s2))
+        .number("Noise", |c| g(c.noise_m_s2));
+    // The impacts have the peaks otherwise, each with its interval.
+    let has_peaks = result.impacts.iter().all(|impact| impact.channels.is_empty());
+    let table = table
+        .number("Filtered peak", |c| g(c.peak_filtered_m_s2))
+        .if_any(has_peaks)
+        .number("Unfiltered peak", |c| g(c.peak_raw_m_s2))
+        .if_any(has_peaks);
     Chapter::new("Channels").with(table)
-}
-
-/// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
-fn program(result: &DropResult) -> String {
-    let program = result.program.as_ref();
-    let words = program.map_or_else(|| format!("dropcheck {}", result.version), Program::words);
-    result.analysed.as_ref().map_or_else(|| words.clone(), |when| format!("{words}, {when}"))
 }
 
 /// Which files, which version, which settings.
@@ -321,7 +290,7 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         hash("SHA-256 of the rest", input.rest_sha256.as_deref()),
         words("Calculation", input.simulation.as_deref()),
         hash("SHA-256 of the calculation", input.simulation_sha256.as_deref()),
-        words("Program", Some(&program(result))),
+        words("Program", Some(&record::program(result))),
         hash("SHA-256 of the program", own),
         words("Schema of result.json", Some(result.schema)),
         words("Recording read by", input.reader.as_deref()),
@@ -336,5 +305,5 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         .head("Setting", |s| &s.name[..])
         .text("Value", |s| true_minus(&s.value))
         .text("From", |s| &s.origin[..]);
-    Chapter::new("Provenance").only(Medium::Page).with(ChapterPart::facts("", facts)).with(settings)
+    Chapter::new("Provenance").with(ChapterPart::facts("", facts)).with(settings)
 }

@@ -215,7 +215,7 @@ fn table(table: &ReportTable) -> Markup {
     let (rows, left_out) = table.rows(Medium::Page);
     let number = |column: &ReportColumn| (column.kind == CellKind::Number).then_some("n");
     // A row of more cells than a phone is wide stands there as a list, each cell behind its head.
-    let is_stacked = columns.len() > 3 && table.class != "findings";
+    let is_stacked = columns.len() > 3 && matches!(table.class, "" | "whole");
     let classes = if is_stacked { format!("{} stack", table.class) } else { table.class.to_owned() };
     html! {
         table class=[class(classes.trim())] {

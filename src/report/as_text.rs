@@ -3,7 +3,7 @@
 
 use super::document::{
     CellKind, ChapterPart, Fact, Medium, PartContent, ReportColumn, ReportDocument, ReportTable,
-    SentenceRole, TableShape, Tone,
+    SentenceRole, TableCell, TableShape, Tone,
 };
 use super::rounding::MISSING;
 use super::text::{Style, lines, printable, styled, styled_lines, wrap};
@@ -13,21 +13,38 @@ use comfy_table::{CellAlignment, ContentArrangement, TableStyle, Width};
 /// Columns that a name takes, and its value.
 const FACT_WIDTH: usize = 22;
 
-/// The whole document, in lines of at most `width` columns.
+/// The whole document, in lines of at most `width` columns; its tables without their captions.
 pub(crate) fn text(document: &ReportDocument, width: usize) -> String {
+    written(document, Sheet { width, has_captions: false })
+}
+
+/// The document as its page has it, in lines of at most `width` columns.
+pub(crate) fn full_text(document: &ReportDocument, width: usize) -> String {
+    written(document, Sheet { width, has_captions: true })
+}
+
+/// What is written on.
+#[derive(Clone, Copy)]
+struct Sheet {
+    width: usize,
+    has_captions: bool,
+}
+
+fn written(document: &ReportDocument, sheet: Sheet) -> String {
     let mut out = String::new();
     for chapter in &document.chapters {
-        out.extend(chapter.heading(Medium::Terminal).map(heading));
-        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width)));
+        out.extend(chapter.heading(Medium::Terminal).map(|words| heading(words, sheet.width)));
+        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, sheet)));
     }
     out
 }
 
-fn heading(words: &str) -> String {
-    format!("\n{}\n", styled(Style::Bold, &printable(words)))
+fn heading(words: &str, width: usize) -> String {
+    "\n".to_owned() + &styled_lines(Style::Bold, &wrap(words, width, 0))
 }
 
-fn passage(passage: &ChapterPart, width: usize) -> String {
+fn passage(passage: &ChapterPart, sheet: Sheet) -> String {
+    let Sheet { width, has_captions } = sheet;
     match &passage.content {
         PartContent::Sentence(role, words) => {
             let words = words.on(Medium::Terminal);
@@ -43,24 +60,36 @@ fn passage(passage: &ChapterPart, width: usize) -> String {
             format!("\n{}{}", styled(*style, word), &words[word.len().min(indent)..])
         }
         PartContent::Facts(caption, facts) => {
-            let head = if caption.is_empty() { String::new() } else { heading(caption) };
-            head + &lines(facts.iter().map(|one| fact(one, width)))
+            let head = if caption.is_empty() { String::new() } else { heading(caption, width) };
+            let names = facts.iter().map(|one| one.name.chars().count() + 2).max().unwrap_or(0);
+            head + &lines(facts.iter().map(|one| fact(one, names.clamp(FACT_WIDTH, width / 2), width)))
         }
-        PartContent::ReportTable(table) => self::table(table, width),
+        PartContent::ReportTable(table) => {
+            let caption = printable(&table.caption).replace('`', "");
+            let is_captioned = has_captions && !caption.is_empty() && !table.chosen.is_empty();
+            let caption = if is_captioned { wrap(&caption, width, 2) } else { String::new() };
+            styled_lines(Style::Dim, &caption) + &self::table(table, width)
+        }
         PartContent::Beside(columns) => columns
             .iter()
             .flatten()
             .filter(|passage| passage.is_shown(Medium::Terminal))
-            .map(|part| self::passage(part, width))
+            .map(|part| self::passage(part, sheet))
             .collect(),
         // What is drawn.
         _ => String::new(),
     }
 }
 
-fn fact(fact: &Fact, width: usize) -> String {
+/// A name, its value and the words on it beside one another, or what has no room below the name.
+fn fact(fact: &Fact, names: usize, width: usize) -> String {
     let words = fact.shown_note();
-    let line = format!("  {:<FACT_WIDTH$}{:<FACT_WIDTH$}", fact.name, fact.value);
+    let line = format!("  {:<names$}{:<FACT_WIDTH$}", fact.name, fact.value);
+    let line = if line.trim_end().chars().count() > width {
+        format!("  {}\n{}", fact.name, wrap(&fact.value, width, 6).trim_end())
+    } else {
+        line
+    };
     if words.is_empty() {
         return line.trim_end().to_owned();
     }
@@ -73,9 +102,14 @@ fn fact(fact: &Fact, width: usize) -> String {
 fn table(table: &ReportTable, width: usize) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
-    let gap = if table.shape == TableShape::Fitting && !fits(&columns, rows, width) { 1 } else { 2 };
+    let gap =
+        if table.shape == TableShape::Fitting && !fits(&columns, rows, width, longest_line) { 1 } else { 2 };
+    // A row of many cells that a line does not hold reads as a list of them, as on a phone.
+    let longest_word = |head: &str| head.split_whitespace().map(|word| word.chars().count()).max();
+    let is_stacked = columns.len() > 3 && !fits(&columns, rows, width, longest_word);
     let apart = if table.shape == TableShape::ApartItems { "\n" } else { "" };
     let mut out = match &table.shape {
+        TableShape::Columns if is_stacked => (0..rows).map(|row| stacked(&columns, row, width)).collect(),
         TableShape::Columns | TableShape::Fitting => lines(aligned(&columns, rows, gap, width).concat()),
         TableShape::Groups(names) => grouped(&columns, rows, names, width),
         TableShape::Items | TableShape::ApartItems => {
@@ -90,15 +124,20 @@ fn table(table: &ReportTable, width: usize) -> String {
 
 /// The words of a cell; `None` where the table has no such row.
 fn cell(column: &ReportColumn, row: usize) -> String {
-    column.cells.get(row).map_or_else(String::new, |cell| printable(cell.words.on(Medium::Terminal)))
+    let words = |cell: &TableCell| printable(cell.words.on(Medium::Terminal)) + cell.mark;
+    column.cells.get(row).map_or_else(String::new, words)
 }
 
-/// Whether columns two apart are narrower than the terminal.
-fn fits(columns: &[&ReportColumn], rows: usize, most: usize) -> bool {
-    let width = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+/// The longest line of words.
+fn longest_line(words: &str) -> Option<usize> {
+    words.lines().map(|line| line.chars().count()).max()
+}
+
+/// Whether columns two apart, with heads as wide as `of_head` says, are narrower than the terminal.
+fn fits(columns: &[&ReportColumn], rows: usize, most: usize, of_head: fn(&str) -> Option<usize>) -> bool {
     let widest = |column: &&ReportColumn| {
-        let cells = (0..rows).map(|row| width(&cell(column, row)));
-        cells.chain([width(column.head.on(Medium::Terminal))]).max().unwrap_or(0)
+        let cells = (0..rows).map(|row| longest_line(&cell(column, row)));
+        cells.chain([of_head(column.head.on(Medium::Terminal))]).flatten().max().unwrap_or(0)
     };
     columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= most - 2
 }
@@ -117,7 +156,7 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
     for i in 0..rows {
         table.add_row(row(columns.iter().map(|column| cell(column, i)).collect()));
     }
-    let is_narrow = !fits(columns, rows, width);
+    let is_narrow = !fits(columns, rows, width, longest_line);
     for (i, set) in table.column_iter_mut().enumerate() {
         set.set_padding((0, if i == 0 { 0 } else { gap }));
         let column = i.checked_sub(1).map(|i| columns[i]);
@@ -156,6 +195,16 @@ fn grouped(columns: &[&ReportColumn], rows: usize, names: &[String], width: usiz
         before = name;
     }
     lines(out)
+}
+
+/// The first cell, and below it the others that are not missing, each behind its head.
+fn stacked(columns: &[&ReportColumn], row: usize, width: usize) -> String {
+    let [first, others @ ..] = columns else { return String::new() };
+    let cells = others.iter().map(|column| (column.head.on(Medium::Terminal), cell(column, row)));
+    let cells = cells.filter(|(_, words)| words != MISSING && !words.is_empty());
+    let cells: Vec<String> = cells.map(|(head, words)| format!("{head}: {words}")).collect();
+    let head = wrap(&cell(first, row), width, 2);
+    styled_lines(Style::Bold, &head) + &wrap(&cells.join(" · "), width, 6)
 }
 
 /// The first cell in its colour, those that are not missing beside it, the last one below.

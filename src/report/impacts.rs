@@ -1,18 +1,18 @@
 //! Both impacts to the chapter that tabulates them, in short on a terminal, one table per impact on a page;
 //! and what holds of the prototype of a scale model to a table.
 
-use super::document::{Chapter, ChapterPart, Medium, ReportTable, Words};
+use super::document::{Chapter, ChapterPart, ReportTable};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
 use super::shocks::what_if;
 use super::text::{distinct, reasons};
 use crate::data::{CaskFile, DropResult, Estimate, ImpactTable, QuantityRow, STANDARD_GRAVITY_M_S2};
 
-/// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
-struct ImpactRow(&'static str, &'static str, f64, bool, fn(&ImpactTable) -> Option<Estimate>);
+/// A number of an impact: its name, unit and factor to it.
+struct ImpactRow(&'static str, &'static str, f64, fn(&ImpactTable) -> Option<Estimate>);
 
 impl ImpactRow {
     fn words(&self, impact: &ImpactTable) -> String {
-        let Self(_, unit, factor, _, number) = self;
+        let Self(_, unit, factor, number) = self;
         scaled(number(impact), *factor, unit)
     }
 }
@@ -20,20 +20,20 @@ impl ImpactRow {
 const G: f64 = 1.0 / STANDARD_GRAVITY_M_S2;
 
 const ROWS: [ImpactRow; 14] = [
-    ImpactRow("duration", "ms", 1e3, true, |i| i.numbers.duration),
-    ImpactRow("velocity change of the end", "m/s", 1.0, true, |i| i.numbers.velocity_change),
-    ImpactRow("restitution", "", 1.0, true, |i| i.numbers.restitution),
-    ImpactRow("impulse upwards I_z", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
-    ImpactRow("impulse along the target I_x", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
-    ImpactRow("impulse ratio I_x/I_z", "", 1.0, false, |i| i.numbers.friction),
-    ImpactRow("kinetic energy before", "kJ", 1e-3, true, |i| i.numbers.energy_before),
-    ImpactRow("energy absorbed", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
-    ImpactRow("kinetic energy after", "kJ", 1e-3, false, |i| i.numbers.energy_after),
-    ImpactRow("absorbed, share of the initial energy", "", 1.0, true, |i| i.numbers.absorbed_ratio),
-    ImpactRow("crush", "mm", 1e3, true, |i| i.numbers.crush),
-    ImpactRow("largest force", "MN", 1e-6, true, |i| i.numbers.force_peak),
-    ImpactRow("deceleration of the centre of gravity", "g", G, true, |i| i.rigid_body_deceleration.at_cog),
-    ImpactRow("deceleration at the struck end", "g", G, true, |i| i.rigid_body_deceleration.at_struck_end),
+    ImpactRow("duration", "ms", 1e3, |i| i.numbers.duration),
+    ImpactRow("velocity change of the end", "m/s", 1.0, |i| i.numbers.velocity_change),
+    ImpactRow("restitution", "", 1.0, |i| i.numbers.restitution),
+    ImpactRow("impulse upwards I_z", "kN s", 1e-3, |i| i.numbers.impulse_z),
+    ImpactRow("impulse along the target I_x", "kN s", 1e-3, |i| i.numbers.impulse_x),
+    ImpactRow("impulse ratio I_x/I_z", "", 1.0, |i| i.numbers.friction),
+    ImpactRow("kinetic energy before", "kJ", 1e-3, |i| i.numbers.energy_before),
+    ImpactRow("energy absorbed", "kJ", 1e-3, |i| i.numbers.energy_absorbed),
+    ImpactRow("kinetic energy after", "kJ", 1e-3, |i| i.numbers.energy_after),
+    ImpactRow("absorbed, share of the initial energy", "", 1.0, |i| i.numbers.absorbed_ratio),
+    ImpactRow("crush", "mm", 1e3, |i| i.numbers.crush),
+    ImpactRow("largest force", "MN", 1e-6, |i| i.numbers.force_peak),
+    ImpactRow("deceleration of the centre of gravity", "g", G, |i| i.rigid_body_deceleration.at_cog),
+    ImpactRow("deceleration at the struck end", "g", G, |i| i.rigid_body_deceleration.at_struck_end),
 ];
 
 fn in_g(estimate: Option<Estimate>) -> String {
@@ -42,11 +42,6 @@ fn in_g(estimate: Option<Estimate>) -> String {
 
 fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
     estimate.map_or_else(|| MISSING.to_owned(), |e| pair(factor * e.value, factor * e.u95, unit))
-}
-
-/// What a terminal shows of one impact: names and words.
-pub(super) fn in_short(impact: &ImpactTable) -> Vec<(&'static str, String)> {
-    ROWS.iter().filter(|row| row.3).map(|row| (row.0, row.words(impact))).collect()
 }
 
 /// A note for each reason why quantities at these places are missing.
@@ -62,21 +57,15 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
     if first.numbers.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
         return chapter;
     }
-    let (all, short) = (ROWS.iter().collect::<Vec<_>>(), ROWS.iter().filter(|row| row.3).collect());
-    let table = |rows: Vec<&ImpactRow>, caption: &str| {
-        ReportTable::of(&rows)
-            .caption(caption)
-            .head(Words::or("Quantity", ""), |row| row.0)
-            .number(Words::or("First impact", "first end"), |row| row.words(first))
-            .number(Words::or("Second impact", "second end"), |row| row.words(second))
-            .into()
-    };
-    let rigid = "The rigid body, free of ringing; impulse, energy and force with the stated mass";
-    let of_page = [table(all, rigid)].into_iter().chain(what_if(result, in_g));
+    let table = ReportTable::of(&ROWS)
+        .caption("The rigid body, free of ringing; impulse, energy and force with the stated mass")
+        .head("Quantity", |row| row.0)
+        .number("First impact", |row| row.words(first))
+        .number("Second impact", |row| row.words(second));
     chapter
-        .with(ChapterPart::only(table(short, ""), Medium::Terminal))
         .with(ChapterPart::text(filter_words(result)))
-        .with_all(of_page.map(|part| part.only(Medium::Page)))
+        .with(table)
+        .with_all(what_if(result, in_g))
         .with_all(not_determined(result, &["impacts[0]", "impacts[1]"]))
         .with_all(energy_words(result).map(ChapterPart::text))
 }
@@ -138,7 +127,8 @@ pub(super) fn prototype(result: &DropResult, file: &CaskFile) -> Chapter {
     add("first impact", [&result.first_impact, &prototype.first_impact].map(|of| words(of.rows())));
     add("slap-down", [&result.slap_down, &prototype.slap_down].map(|of| words(of.rows())));
     for (i, name) in ["first impact", "second impact"].into_iter().enumerate() {
-        add(name, [&result.impacts, &prototype.impacts].map(|of| in_short(&of[i])));
+        let words = |of: &ImpactTable| ROWS.iter().map(|row| (row.0, row.words(of))).collect();
+        add(name, [&result.impacts, &prototype.impacts].map(|of| words(&of[i])));
     }
     rows.retain(|[_, model, _]| model != MISSING);
     let table = ReportTable::of(&rows)

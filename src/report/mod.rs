@@ -107,7 +107,7 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
 /// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
 /// where no terminal shows it.
 pub fn table(analysis: &Analysis, width: usize) -> String {
-    as_text::text(&analysis::document(analysis), width)
+    as_text::full_text(&analysis::document(analysis), width)
 }
 
 /// The names of the files of a report, in the order of [`files`]; the last one is there where a channel takes

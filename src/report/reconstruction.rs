@@ -1,9 +1,9 @@
 //! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
 
-use super::document::{Chapter, ChapterPart, Medium, PartContent, ReportTable, TableCell};
-use super::record::to_state;
+use super::document::{Chapter, ChapterPart, PartContent, ReportTable, TableCell};
+use super::record::{Assumption, assumption};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
-use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
+use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
 /// Moves of the joint fit that are listed; the smaller ones say nothing.
@@ -25,26 +25,8 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
         .number("k", |c| interval(c.k.as_ref()))
         .text("What it leaves", |c| true_minus(&c.residual))
         .text("Explained", |c| yes(c.consistent));
-    let of_page = [rungs.into()].into_iter().chain(closures(choice)).chain(joint(choice));
-    chapter
-        .with(ChapterPart::lead(sentence(&choice.reason)))
-        .with_all(worst_closure(choice).map(|words| ChapterPart::text(words).only(Medium::Terminal)))
-        .with_all(of_page.map(|passage| passage.only(Medium::Page)))
-}
-
-/// The closure that is missed most.
-fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
-    let worst = choice.closures.iter().max_by(|a, b| a.most_in_u().total_cmp(&b.most_in_u()))?;
-    let which = match choice.closures.len() {
-        1 => "The one closure".to_owned(),
-        n => format!("Of {n} closures the worst"),
-    };
-    Some(format!(
-        "{which}, {}, is missed by {}, {} standard uncertainties.",
-        worst.name,
-        true_minus(&worst.miss),
-        fixed(worst.most_in_u(), 1)
-    ))
+    let tables = [rungs.into()].into_iter().chain(closures(choice)).chain(joint(choice));
+    chapter.with(ChapterPart::lead(sentence(&choice.reason))).with_all(tables)
 }
 
 fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
@@ -83,7 +65,7 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
             "What the joint fit moves, the largest first. Left: the input's standard uncertainty after \
                   the fit over the one before.",
         )
-        .most(0, MOST_MOVES, "each moved by less.")
+        .most(MOST_MOVES, MOST_MOVES, "each moved by less.")
         .head("Input", |a| &a.input[..])
         .number("Standard uncertainty u", |a| &a.standard_uncertainty[..])
         .number("Moved by, in u", |a| fixed(a.moved_in_u, 2))
@@ -94,7 +76,7 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
 
 /// The fit of the free-flight window: plateaus, modes, candidates.
 pub(super) fn flight(result: &DropResult) -> Chapter {
-    let chapter = Chapter::new("Fit of the flight").only(Medium::Page);
+    let chapter = Chapter::new("Fit of the flight");
     let Some(fit) = &result.flight else { return chapter };
     let modes = ReportTable::of(&fit.modes)
         .caption(if fit.modes.is_empty() {
@@ -161,7 +143,7 @@ fn total(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>)
 /// What each input contributes to the intervals, largest first, and what they come to.
 pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     let budget = &result.budget;
-    let chapter = Chapter::new("Uncertainty").only(Medium::Page);
+    let chapter = Chapter::new("Uncertainty");
     if budget.is_empty() {
         return chapter;
     }
@@ -203,39 +185,53 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     chapter.with(ChapterPart::lead(lead)).with(table).with_all(untested)
 }
 
-/// The defaults that a formal report must not rest on, as a cask file states them, the largest share first:
-/// each carries more than a tenth of the variance of the speed, or of k where there is no speed, percent.
-pub(super) fn weighty_defaults(result: &DropResult, file: &CaskFile) -> Vec<(String, f64)> {
-    const WEIGHS_PERCENT: f64 = 10.0;
+/// A formal report must not rest on an assumption that carries more of the variance, percent.
+const WEIGHS_PERCENT: f64 = 10.0;
+
+/// What is assumed, each with the percent that it carries of the variance of the speed, or of k where there
+/// is no speed; the largest first.
+fn assumptions(result: &DropResult, file: &CaskFile) -> Vec<(Assumption, f64)> {
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
-    let mut all: Vec<(String, f64)> = Vec::new();
+    let mut all: Vec<(Assumption, f64)> = Vec::new();
     for (input, percent) in shares(&result.budget, change) {
-        let Some(stated) = to_state(file, input) else { continue };
-        match all.iter_mut().find(|known| known.0 == stated) {
-            Some(known) => known.1 += percent,
-            None => all.push((stated, percent)),
+        let Some(assumed) = assumption(file, input) else { continue };
+        match all.iter_mut().find(|(known, _)| *known == assumed) {
+            Some((_, known)) => *known += percent,
+            None => all.push((assumed, percent)),
         }
     }
-    all.retain(|(_, percent)| *percent > WEIGHS_PERCENT);
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all
 }
 
-/// Those defaults, each with its share; `None` where there is none.
-pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
-    let mut of_what =
-        if result.slap_down.speed.is_some() { " of the speed's variance" } else { " of k's variance" };
-    let mut named = Vec::new();
-    let mut before = "";
-    let all = weighty_defaults(result, file);
-    for (stated, percent) in &all {
-        // Keys of one table stand behind its name once.
-        let (table, key) = stated.split_once(' ')?;
-        let shown = if table == before { key } else { stated };
-        named.push(format!("{shown} ({percent:.0} %{of_what})"));
-        (before, of_what) = (table, "");
+/// How many assumptions a formal report must not rest on.
+pub(super) fn weighty_assumptions(result: &DropResult, file: &CaskFile) -> usize {
+    assumptions(result, file).iter().filter(|(_, percent)| *percent > WEIGHS_PERCENT).count()
+}
+
+/// "assumes …; state yours in `[tolerance]`": what the intervals rest on that nobody stated, in short by its
+/// names alone; `None` where all of weight is stated.
+pub(super) fn assumed(result: &DropResult, file: &CaskFile, is_short: bool) -> Option<String> {
+    let is_heavy = |percent: f64| percent > WEIGHS_PERCENT;
+    let mut named = assumptions(result, file);
+    named.retain(|(assumed, percent)| assumed.is_unknown || is_heavy(*percent));
+    let mut of_what = match result.slap_down.speed {
+        _ if is_short => " of it",
+        Some(_) => " of the variance",
+        None => " of k's variance",
+    };
+    let mut said = Vec::new();
+    for (assumed, percent) in &named {
+        let words = if is_short { assumed.name } else { &assumed.words };
+        said.push(if is_heavy(*percent) {
+            format!("{words} ({percent:.0} %{})", std::mem::take(&mut of_what))
+        } else {
+            words.to_owned()
+        });
     }
-    (!named.is_empty()).then(|| format!("by default {}; enter yours", named.join(", ")))
+    let tables = distinct(named.iter().map(|(assumed, _)| format!("`{}`", assumed.table))).join(", ");
+    let place = if is_short { String::new() } else { format!(" in {tables}") };
+    (!said.is_empty()).then(|| format!("assumes {}; state yours{place}", said.join(", ")))
 }
 
 /// The inputs whose changes of a quantity are known, with the percent of its variance that each carries; none
@@ -267,7 +263,7 @@ fn known_from(input: &Contribution, result: &DropResult, file: &CaskFile) -> Tab
         result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input.input));
     match input.tolerance {
         _ if is_closure => "closure".into(),
-        Some(_) if to_state(file, input).is_some() => TableCell::marked("", "default"),
+        Some(_) if assumption(file, input).is_some() => TableCell::marked("", "default"),
         Some(_) => "cask file".into(),
         None if input.input.is_empty() => MISSING.into(),
         None => "recording".into(),
@@ -276,7 +272,7 @@ fn known_from(input: &Contribution, result: &DropResult, file: &CaskFile) -> Tab
 
 #[cfg(test)]
 mod tests {
-    use super::super::document::ReportDocument;
+    use super::super::document::{Medium, ReportDocument};
     use super::super::{as_html, sample};
     use super::*;
     use crate::data::FlightModelScore;

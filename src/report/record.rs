@@ -1,16 +1,14 @@
 //! What a cask file says of the test to the head of its report, its sensors and other channels, its settings,
 //! its photographs and its lines to sign.
 
-use super::document::{
-    Chapter, ChapterPart, Fact, Medium, PartContent, ReportTable, TableCell, TableShape, Words,
-};
+use super::document::{Chapter, ChapterPart, Fact, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, interval, optional, optional_fixed, plain, significant};
 use super::text::{Style, determined, json_word};
 use super::words::contact_words;
 use crate::data::keys::quantity_words;
 use crate::data::{
     CaskFile, ChannelSpec, Contact, Contribution, DropResult, Extreme, Limit, LimitState, ObservedBeside,
-    OtherSummary, Photo, Setting, SpectralLine, TOLERANCES, TestRecord,
+    OtherSummary, Photo, Program, Setting, SpectralLine, TOLERANCES, TestRecord,
 };
 
 /// The heading of the report: the test's number and title, and of the cask what is not stated.
@@ -26,32 +24,36 @@ fn date_words(date: &str) -> String {
     format!("{day}, {} {zone}", time.get(..5).unwrap_or(time)).trim_end().to_owned()
 }
 
-/// Who tested what, where and when, beside the heading; nothing where the cask file does not say.
-pub(super) fn head(test: &TestRecord) -> Chapter {
+/// Who tested what, where and when, and against which limits; what the cask file should say of it and does
+/// not, in so many words.
+pub(super) fn head(result: &DropResult) -> Chapter {
+    let test = &result.test;
     let date = test.date.as_deref().map(date_words);
     let temperature = test.temperature_c.map(|t| format!("{} °C", plain(t, 4)));
+    let not_stated = |words: &Option<String>| Some(words.clone().unwrap_or_else(|| "not stated".to_owned()));
+    let no_limits = result.limits.is_empty().then(|| "none stated".to_owned());
     let words = [
-        ("Date", &date),
-        ("Place", &test.place),
-        ("Carried out by", &test.operator),
-        ("Customer", &test.customer),
-        ("Specimen", &test.specimen),
-        ("Temperature of the specimen", &temperature),
-        ("Target", &test.target),
-        ("Remarks", &test.remarks),
+        ("Date of the test", not_stated(&date)),
+        ("Place", test.place.clone()),
+        ("Carried out by", not_stated(&test.operator)),
+        ("Customer", not_stated(&test.customer)),
+        ("Specimen", not_stated(&test.specimen)),
+        ("Temperature of the specimen", temperature),
+        ("Target", test.target.clone()),
+        ("Limits", no_limits),
+        ("Remarks", test.remarks.clone()),
+        ("Analysed", Some(program(result))),
     ];
-    let stated = words.into_iter().filter_map(|(name, words)| Some(Fact::words(name, words.clone()?)));
-    let facts: Vec<Fact> =
-        stated.chain(test.more.iter().map(|(name, words)| Fact::words(name, words))).collect();
-    let chapter = Chapter::new("The test").only(Medium::Page);
-    if facts.is_empty() { chapter } else { chapter.with(ChapterPart::facts("", facts)) }
+    let stated = words.into_iter().filter_map(|(name, words)| Some(Fact::words(name, words?)));
+    let more = test.more.iter().map(|(name, words)| Fact::words(name, words));
+    Chapter::new("The test").with(ChapterPart::facts("", stated.chain(more).collect()))
 }
 
-/// The test's number, title, place and date in a line, as far as they are stated.
-pub(super) fn line(test: &TestRecord) -> Option<ChapterPart> {
-    let words: Vec<&str> =
-        [&test.id, &test.title, &test.place, &test.date].into_iter().flatten().map(|w| &w[..]).collect();
-    (!words.is_empty()).then(|| ChapterPart::line(words.join(" · ")).only(Medium::Terminal))
+/// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
+pub(super) fn program(result: &DropResult) -> String {
+    let program = result.program.as_ref();
+    let words = program.map_or_else(|| format!("dropcheck {}", result.version), Program::words);
+    result.analysed.as_ref().map_or_else(|| words.clone(), |when| format!("{words}, {when}"))
 }
 
 /// What was seen otherwise beside the result.
@@ -67,7 +69,6 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
         .head("Quantity", |seen| quantity_words(seen.name))
         .number("Observed", |seen| interval(Some(&seen.observed)))
         .text("By", |seen| seen.by.as_deref().unwrap_or(MISSING))
-        .only(Medium::Page)
         .number("Result", |seen| interval(seen.result.as_ref()))
         .number("E_n", |seen| optional_fixed(seen.e_n, 2))
         .text("Agree", agrees);
@@ -174,7 +175,7 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
         let lasts_ms = plain(1e3 * drop.contact_duration_s, 5);
         of_drop.push(fact("First impact lasts", "contact.duration_s", lasts_ms, "ms"));
     }
-    Chapter::new(heading).only(Medium::Page).with(PartContent::Beside([
+    Chapter::new(heading).with(PartContent::Beside([
         vec![ChapterPart::facts(format!("Cask {}", cask.name), of_cask)],
         vec![ChapterPart::facts("Drop and contact", of_drop)],
     ]))
@@ -190,7 +191,6 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
             "Sensors: places from the first end along the axis and off it, the sign of a reading away \
                   from the target or towards the second end.",
         )
-        .shape(TableShape::Items)
         .head("Channel", |s| &s.name[..])
         .text("End, axis", |s| format!("{}, {}", json_word(s.end), json_word(s.axis)))
         .number("Place, m", |s| plain(s.position_m, 5))
@@ -224,51 +224,52 @@ fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
 }
 
-/// What the numbers take for granted since the cask file does not state it, with the interval that it has in
-/// them; `None` where there is nothing or no number.
-pub(super) fn assumed(file: &CaskFile, budget: &[Contribution]) -> Option<String> {
-    let (cask, known) = (&file.cask, &file.tolerances);
-    let is_input = |key: &str| budget.iter().any(|input| input.tolerance == Some(key));
-    let is_left_out = |key: &str| file.defaults.iter().any(|default| default == key);
-    let cog = format!("centre of gravity {} ± {} m", plain(cask.cog_m, 4), plain(known.cog_m, 2));
-    let inertia = plain(100.0 * known.inertia, 2);
-    let all = [
-        (is_input("cog_m") && is_left_out("cask.cog_m"), cog),
-        (
-            is_input("inertia_percent") && is_left_out("cask.inertia_kg_m2"),
-            format!("inertia of a uniform block ± {inertia} %"),
-        ),
-        (
-            is_input("friction_percent") && file.has_open_friction(),
-            match file.contact {
-                Contact::Coulomb(most) => format!("impulse ratio anywhere up to {}", plain(most, 4)),
-                _ => "friction anywhere from none to sticking".to_owned(),
-            },
-        ),
-    ];
-    let all: Vec<String> = all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words).collect();
-    (!all.is_empty()).then(|| all.join(", "))
+/// What the numbers rest on in place of an input that nobody stated.
+#[derive(PartialEq)]
+pub(super) struct Assumption {
+    /// "drop angle".
+    pub(super) name: &'static str,
+    /// "drop angle ± 0.4°".
+    pub(super) words: String,
+    /// The table of the cask file in which it is stated.
+    pub(super) table: &'static str,
+    /// Whether the input has no usual value: it counts however little it weighs.
+    pub(super) is_unknown: bool,
 }
 
-/// The default that an input of the budget rests on, as a cask file states it, such as "[tolerance]
-/// `angle_deg` = 0.4"; `None` where it rests on none.
-pub(super) fn to_state(file: &CaskFile, input: &Contribution) -> Option<String> {
-    let key = input.tolerance?;
-    // Nobody knows a part of what nobody states.
-    let unstated = match key {
-        "friction_percent" if file.contact == Contact::Unknown => Some(("contact", "friction")),
-        "cog_m" => Some(("cask", "cog_m")),
-        "inertia_percent" => Some(("cask", "inertia_kg_m2")),
+/// What is assumed of an input of the budget; `None` where the cask file states it.
+pub(super) fn assumption(file: &CaskFile, input: &Contribution) -> Option<Assumption> {
+    let (key, cask, known) = (input.tolerance?, &file.cask, &file.tolerances);
+    let is_left_out = |key: &str| file.defaults.iter().any(|default| default == key);
+    let row = TOLERANCES.iter().find(|row| row.key == key)?;
+    let name = if key == "friction_percent" { "friction" } else { row.name };
+    let unknown = |table, words| Some(Assumption { name, words, table, is_unknown: true });
+    match (key, file.contact) {
+        ("cog_m", _) if is_left_out("cask.cog_m") => unknown(
+            "[cask]",
+            format!("centre of gravity {} ± {} m", plain(cask.cog_m, 4), plain(known.cog_m, 2)),
+        ),
+        ("inertia_percent", _) if is_left_out("cask.inertia_kg_m2") => {
+            unknown("[cask]", format!("inertia of a uniform block ± {} %", plain(100.0 * known.inertia, 2)))
+        }
+        ("friction_percent", Contact::Unknown) => {
+            unknown("[contact]", "friction from none to sticking".to_owned())
+        }
+        ("friction_percent", Contact::Coulomb(most)) if file.has_open_friction() => {
+            unknown("[tolerance]", format!("impulse ratio up to {}", plain(most, 4)))
+        }
+        _ if is_default(file, key) => {
+            // A length is known to so many millimetres, whatever its share of the cask is.
+            let (value, unit) = if key.ends_with("_m") {
+                (1e3 * row.in_file(*known, cask), " mm")
+            } else {
+                row.shown(*known)
+            };
+            let words = format!("{} ± {}{unit}", row.name, plain(value, 3));
+            Some(Assumption { name, words, table: "[tolerance]", is_unknown: false })
+        }
         _ => None,
-    };
-    let is_left_out = |(table, key): &(&str, &str)| {
-        *table == "contact" || file.defaults.iter().any(|default| *default == format!("{table}.{key}"))
-    };
-    if let Some((table, key)) = unstated.filter(is_left_out) {
-        return Some(format!("[{table}] {key}"));
     }
-    let row = TOLERANCES.iter().find(|row| row.key == key && is_default(file, key))?;
-    Some(format!("[tolerance] {key} = {}", plain(row.in_file(file.tolerances, &file.cask), 3)))
 }
 
 /// The tolerances, and the corrections that are switched off; without what `said` says already.
@@ -311,24 +312,19 @@ pub(super) fn others(result: &DropResult) -> Chapter {
     let table = ReportTable::of(&result.other_channels)
         .class("")
         .caption(CAPTION)
-        .head(Words::or("Channel", "channel"), |c| &c.name[..])
-        .text(Words::or("Unit", "unit"), |c| &c.unit[..])
+        .head("Channel", |c| &c.name[..])
+        .text("Unit", |c| &c.unit[..])
         .code("Source", |c| &c.source[..])
-        .only(Medium::Page)
         .number("Rate", |c| format!("{} Hz", plain(c.sample_rate_hz, 6)))
-        .only(Medium::Page)
-        .number(Words::or("Rest", "rest"), |c| optional(c.rest, 4))
-        .number(Words::or("Noise", "noise"), |c| optional(c.noise, 2))
-        .number(Words::or("Smallest", "smallest"), |c| value(c.smallest))
+        .number("Rest", |c| optional(c.rest, 4))
+        .number("Noise", |c| optional(c.noise, 2))
+        .number("Smallest", |c| value(c.smallest))
         .number("at ms", |c| at_ms(c.smallest))
-        .number(Words::or("Largest", "largest"), |c| value(c.largest))
+        .number("Largest", |c| value(c.largest))
         .number("at ms", |c| at_ms(c.largest))
         .number("Strongest line", |c| c.strongest_line.map_or_else(|| MISSING.to_owned(), line))
-        .only(Medium::Page)
         .text("Serial", |c| c.sensor.serial.clone().unwrap_or_else(|| MISSING.to_owned()))
-        .only(Medium::Page)
-        .code("Findings", |c| if c.findings.is_empty() { MISSING.to_owned() } else { codes(c).join(" ") })
-        .only(Medium::Page);
+        .code("Findings", |c| if c.findings.is_empty() { MISSING.to_owned() } else { codes(c).join(" ") });
     chapter.with(table).with(ChapterPart::picture("other_channels", ""))
 }
 

@@ -1,7 +1,7 @@
 //! What single channels read in the impacts to a table, and the choice of the low-pass to a table of what
 //! each would have made of the first impact.
 
-use super::document::{Chapter, ChapterPart, ReportTable, TableShape, Words};
+use super::document::{Chapter, ChapterPart, ReportTable};
 use super::rounding::{interval, optional, optional_fixed};
 use super::text::json_word;
 use crate::data::{DropResult, End, Estimate, FilteredPeak, RigidBodyDeceleration, Shock};
@@ -13,7 +13,7 @@ const CAPTION: &str = "At the report's low-pass, and unfiltered. An acceleration
 
 /// The chapter; empty where no channel shows an impact.
 pub(super) fn shocks(result: &DropResult) -> Chapter {
-    let chapter = Chapter::new(Words::or("Shocks of every channel", "Shocks"));
+    let chapter = Chapter::new("Shocks of every channel");
     if result.shocks.is_empty() {
         return chapter;
     }
@@ -21,18 +21,15 @@ pub(super) fn shocks(result: &DropResult) -> Chapter {
     let table = ReportTable::of(&result.shocks)
         .class("")
         .caption(CAPTION)
-        .shape(TableShape::Fitting)
-        .head(Words::or("Channel", "channel"), |s| &s.channel[..])
-        .text(Words::or("Impact", "impact"), |s| json_word(s.event))
-        .number(Words::or("Peak", "peak"), |s| Words::or(with_interval(result, s, true), optional(s.peak, 4)))
-        .number(Words::or("Unfiltered", "raw"), |s| {
-            Words::or(with_interval(result, s, false), optional(s.peak_unfiltered, 4))
-        })
-        .text(Words::or("Unit", "unit"), |s| &s.unit[..])
-        .number(Words::or("At, ms", "at ms"), |s| optional_fixed(millis(s.time_s), 2))
-        .number(Words::or("Length, ms", "ms long"), |s| optional_fixed(millis(s.duration_s), 2))
-        .number(Words::or("Change of velocity, m/s", "m/s"), |s| optional_fixed(s.velocity_change_m_s, 2))
-        .number(Words::or("Displacement, mm", "mm"), |s| optional_fixed(millis(s.displacement_m), 1));
+        .head("Channel", |s| &s.channel[..])
+        .text("Impact", |s| json_word(s.event))
+        .number("Peak", |s| with_interval(result, s, true))
+        .number("Unfiltered", |s| with_interval(result, s, false))
+        .text("Unit", |s| &s.unit[..])
+        .number("At, ms", |s| optional_fixed(millis(s.time_s), 2))
+        .number("Length, ms", |s| optional_fixed(millis(s.duration_s), 2))
+        .number("Change of velocity, m/s", |s| optional_fixed(s.velocity_change_m_s, 2))
+        .number("Displacement, mm", |s| optional_fixed(millis(s.displacement_m), 1));
     chapter.with(table)
 }
 

@@ -77,17 +77,39 @@ pub(super) fn turns(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
+/// What stands behind a number.
+const UNITS: [&str; 19] = [
+    "%", "°", "m", "mm", "s", "ms", "g", "kg", "kN", "MN", "kJ", "Hz", "kHz", "m/s", "m/s²", "rad/s", "°/s",
+    "°C", "V",
+];
+
+/// Whether no line ends between these words: a number, its interval and its unit belong together.
+fn is_one(before: &str, word: &str) -> bool {
+    let unit = word.trim_end_matches(['.', ',', ';', ':', ')']);
+    let last = before.rsplit('\u{a0}').next().unwrap_or_default();
+    let is_number = last.trim_start_matches(['(', '−', '+', '-']).starts_with(|c: char| c.is_ascii_digit())
+        && last.ends_with(|c: char| c.is_ascii_digit());
+    before.ends_with('±') || word.starts_with('±') || (is_number && UNITS.contains(&unit))
+}
+
 /// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays
-/// whole, and so does what a no-break space joins.
+/// whole, and so does what a no-break space joins, and a number with its unit.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
     let text = printable(text);
-    let mut broken: Vec<String> = Vec::new();
+    let mut words: Vec<String> = Vec::new();
     for word in text.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty()) {
+        match words.last_mut().filter(|before| is_one(before, word)) {
+            Some(before) => before.extend(["\u{a0}", word]),
+            None => words.push(word.to_owned()),
+        }
+    }
+    let mut broken: Vec<String> = Vec::new();
+    for word in words {
         let has_room = |line: &&mut String| line.chars().count() + 1 + word.chars().count() <= room;
         match broken.last_mut().filter(has_room) {
-            Some(line) => line.extend([" ", word]),
-            None => broken.push(word.to_owned()),
+            Some(line) => line.extend([" ", &word]),
+            None => broken.push(word),
         }
     }
     broken.extend(broken.is_empty().then(String::new));
@@ -105,20 +127,6 @@ pub(super) fn tail(text: &str, width: usize) -> String {
     }
     let kept: String = text.chars().skip(length + 1 - width).collect();
     format!("…{kept}")
-}
-
-/// [`wrap`] in at most so many lines; what is left out has an ellipsis in its place.
-pub(super) fn clamped(text: &str, width: usize, indent: usize, most: usize) -> String {
-    let all = wrap(text, width, indent);
-    if all.lines().count() <= most {
-        return all;
-    }
-    let kept: String = all.split_inclusive('\n').take(most).collect();
-    let mut kept = kept.trim_end();
-    while kept.lines().last().is_some_and(|line| line.chars().count() + 2 > width) {
-        kept = kept.rsplit_once(' ').map_or("", |(before, _)| before);
-    }
-    format!("{kept} …\n")
 }
 
 /// "1 note", "3 notes".
@@ -145,15 +153,26 @@ pub(super) fn verdict_style(verdict: Verdict) -> Style {
     }
 }
 
-/// What is determined and what is not, or how much is to be read first.
+/// "2 errors (`clipped` A1), 1 warning (`gap` A2)"; `None` without either.
+pub(super) fn grave(result: &DropResult) -> Option<String> {
+    let place = |f: &Finding| match &f.channel {
+        Some(channel) => format!("`{}` {channel}", json_word(f.code)),
+        None => format!("`{}`", json_word(f.code)),
+    };
+    let of_severity = |severity| {
+        let all: Vec<&Finding> = result.quality.iter().filter(|f| f.severity == severity).collect();
+        let places = distinct(all.iter().map(|f| place(f))).join(", ");
+        (!all.is_empty()).then(|| format!("{} ({places})", counted(all.len(), &json_word(severity))))
+    };
+    let all: Vec<String> = [Severity::Error, Severity::Warning].into_iter().filter_map(of_severity).collect();
+    (!all.is_empty()).then(|| all.join(", "))
+}
+
+/// What is determined and what is not, or what is to be read first.
 pub(super) fn verdict_sentence(result: &DropResult) -> String {
-    let gravest = result.quality.iter().map(|f| f.severity).max().filter(|s| *s > Severity::Note);
-    let count = result.quality.iter().filter(|f| Some(f.severity) == gravest).count();
-    let first = gravest.map_or("no check found a problem".to_owned(), |severity| {
-        format!("before use, read {}", counted(count, &json_word(severity)))
-    });
     match (result.k, result.slap_down.speed) {
-        (Some(_), Some(_)) => format!("k and the slap-down speed are determined; {first}."),
+        (Some(_), Some(_)) => grave(result)
+            .map_or_else(|| "No check found a problem.".to_owned(), |all| format!("Before use, read {all}.")),
         (Some(_), None) => "k is valid, the slap-down speed is not determined.".into(),
         (None, Some(_)) => "The slap-down speed is valid, k is not determined.".into(),
         (None, None) => "Not determined: k and the slap-down speed.".into(),
@@ -272,6 +291,17 @@ mod tests {
         let text = wrap(&"word ".repeat(40), 30, 4);
         assert!(text.lines().all(|line| line.chars().count() <= 30 && line.starts_with("    ")));
         assert_eq!(text.split_whitespace().count(), 40);
+    }
+
+    #[test]
+    fn no_line_ends_between_a_number_and_its_unit() {
+        let text = "a word 20.37 ± 0.63 m/s, −0.1 % (5 mm) of a channel ± 2 % at 15 kN s";
+        for width in 10..60 {
+            for line in wrap(text, width, 0).lines().skip(1) {
+                let units = ["±", "0.63", "m/s", "%", "mm", "2 %", "kN"];
+                assert!(units.iter().all(|unit| !line.starts_with(unit)), "{width}: {line}");
+            }
+        }
     }
 
     #[test]

@@ -113,6 +113,7 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
                limit. Outliers: ";
     // Of two drops either is as far off their mean as the other.
     let outliers = answer.stdout.split(sum).nth(1).unwrap_or_else(|| panic!("{}", answer.stdout));
+    let outliers = outliers.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(outliers.contains("T1 (k 0.556") && outliers.contains("T5 (k 0.506"), "{outliers}");
     let page = fs::read_to_string(series.path("full/campaign.html")).expect("a page");
     for part in

@@ -25,7 +25,7 @@ fn untested(recording: &str, cask: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_example_has_its_word_and_its_numbers_on_sixteen_lines() {
+fn every_example_has_its_word_and_its_numbers_on_ten_lines() {
     let folder = root().join("fixtures/examples");
     let mut seen = 0;
     for entry in std::fs::read_dir(&folder).expect("the examples") {
@@ -39,15 +39,22 @@ fn every_example_has_its_word_and_its_numbers_on_sixteen_lines() {
         let output = analyze(&name(&path), &name(&cask), &[]);
         let text = String::from_utf8(output.stdout).expect("UTF-8");
         let lines: Vec<&str> = text.lines().collect();
-        assert!((7..=16).contains(&lines.len()), "{}: {text}", path.display());
+        assert!((5..=10).contains(&lines.len()) && !text.contains('…'), "{}: {text}", path.display());
         assert!(lines.iter().all(|line| line.chars().count() <= 80), "{text}");
         assert!(
             ["DATA SOUND", "REVIEW", "PARTLY USABLE", "NOT TO BE USED"]
                 .iter()
-                .any(|word| lines[1].starts_with(word))
+                .any(|word| lines[0].starts_with(word))
         );
-        for row in ["Slap-down speed ", "Restitution k ", "Findings "] {
+        for row in ["Slap-down speed ", "Restitution k "] {
             assert!(lines.iter().any(|line| line.starts_with(row)), "{row}: {text}");
+        }
+        // No line ends between a number and its unit.
+        let ends = |line: &&str| line.ends_with('±') || line.ends_with(|c: char| c.is_ascii_digit());
+        let begins =
+            |line: &str| ["%", "±", "m/s", "g ", "mm", "ms"].iter().any(|unit| line.starts_with(unit));
+        for pair in lines.windows(2) {
+            assert!(!(ends(&pair[0]) && begins(pair[1].trim_start())), "{text}");
         }
         seen += 1;
     }

@@ -96,7 +96,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
                 LegendKey::Curve(line) => {
                     let points = vec![(left, y), (left + 48.0, y)];
                     let (stroke, opacity) = (line.stroke.max(3), line.opacity.max(FAINTEST));
-                    svg.line(&Curve { points, stroke, opacity, ..line.clone() });
+                    svg.line(&Curve { opacity, stroke, points, ..line.clone() });
                 }
                 LegendKey::Points(points) => point(svg, points, (left + 36.0, y)),
             }

@@ -51,7 +51,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
                 .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
                 .with_all(advice(study).map(ChapterPart::text))
                 .with_all(figures(study).map(ChapterPart::from)),
-            tested(file, "What was asked").with(asked),
+            tested(file, "What was asked").with(asked).only(Medium::Page),
             monte_carlo(study),
             Chapter::new("Predictions")
                 .with_all(predictions(&study.rows, Medium::Terminal))
