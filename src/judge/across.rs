@@ -16,6 +16,8 @@ pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
         (events.first_contact_s()?, events.separation_s()?, events.slap_down_s()?);
     let is_lost = [&signal.clipped, &signal.gaps].iter().any(|s| signal.touches(s, contact_s, struck_s));
     let [from, left, to] = [contact_s, left_s, struck_s].map(|at_s| signal.index_from(at_s));
+    // From the last sample of the fall.
+    let from = from.saturating_sub(1);
     let velocity_m_s = running_integral(signal.force_m_s2.get(from..to)?, 1.0 / signal.sample_rate_hz);
     let (mean_m_s, _) = mean_and_rms(velocity_m_s.get(left - from..)?);
     let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
