@@ -1,8 +1,7 @@
 //! What sensors of the skin read across the plane of the drop, and what one alone cannot tell, to findings.
 
 use crate::data::{ChannelFinding, Events, Finding, Signal};
-use crate::numerics::quadrature::running_integral;
-use crate::numerics::robust::mean_and_rms;
+use crate::numerics::as_f64;
 
 /// Velocity across the plane that a planar motion does not hold any more, m/s: 2 % of a slap-down's.
 const NOT_PLANAR_M_S: f64 = 0.3;
@@ -16,10 +15,13 @@ pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
         (events.first_contact_s()?, events.separation_s()?, events.slap_down_s()?);
     let is_lost = [&signal.clipped, &signal.gaps].iter().any(|s| signal.touches(s, contact_s, struck_s));
     let [from, left, to] = [contact_s, left_s, struck_s].map(|at_s| signal.index_from(at_s));
-    // From the last sample of the fall.
-    let from = from.saturating_sub(1);
-    let velocity_m_s = running_integral(signal.force_m_s2.get(from..to)?, 1.0 / signal.sample_rate_hz);
-    let (mean_m_s, _) = mean_and_rms(velocity_m_s.get(left - from..)?);
+    let mut velocity_m_s = 0.0;
+    let mut flight_m_s = Vec::new();
+    for (index, force) in signal.force_m_s2.iter().enumerate().take(to).skip(from) {
+        velocity_m_s += force / signal.sample_rate_hz;
+        flight_m_s.extend((index >= left).then_some(velocity_m_s));
+    }
+    let mean_m_s = flight_m_s.iter().sum::<f64>() / as_f64(flight_m_s.len().max(1));
     let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
     let found = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
     (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.on(&signal.name))
