@@ -52,8 +52,9 @@ const LIKELY_FACTOR: RangeInclusive<f64> = 0.1..=10.0;
 /// Adds what explains the analysis where something speaks against it: the usual slips with which everything
 /// closes, or else the stated numbers of which another one does it.
 pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
-    let doubt = severity_of_doubt(&found.result, file.drop.impact_velocity_m_s);
-    let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
+    let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
+    let taken = is_motion_taken(&found.result.quality).then_some(Severity::Warning);
+    let Some(severity) = doubt.or(taken).filter(|_| !is_too_large(recording)) else { return };
     let stated = Contradicted { recording, file };
     // Where all closes without one channel, nothing else is wrong.
     let left_out = found.result.quality.iter().find(|f| is_left_out(f)).and_then(|f| f.channel.as_ref());
@@ -74,7 +75,8 @@ pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut An
         let own = numbers.filter(|(slip, _)| is_of_it(std::slice::from_ref(slip)));
         best(own.filter_map(|number| stated.cured_by_number(number)).chain(by_clock(near)).collect())
     };
-    let cures = if is_usual { by_slips } else { by_number() };
+    // A number that is a little off contradicts something; without that it only has a finding go away.
+    let cures = if is_usual || doubt.is_none() { by_slips } else { by_number() };
     if cures.len() <= MOST_NAMED {
         found.result.causes = cures.iter().flat_map(|cure| cure.causes.clone()).collect();
     }
@@ -330,10 +332,9 @@ fn is_left_out(finding: &Finding) -> bool {
     matches!(finding.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }))
 }
 
-/// How severe the findings are that a slip may explain: those that take the motion, of which none takes a
-/// channel, and warnings on what the cask file says of the channels.
-fn severity_of_doubt(result: &DropResult, v0_m_s: f64) -> Option<Severity> {
-    let findings = &result.quality;
+/// How severe the findings are that a mistake may explain: errors of which none takes a channel, or a warning
+/// on what the cask file says of the channels.
+fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     // The end that a channel was left out of may lack one now.
     if findings.iter().any(is_left_out) {
         return Some(Severity::Warning);
@@ -343,14 +344,19 @@ fn severity_of_doubt(result: &DropResult, v0_m_s: f64) -> Option<Severity> {
         FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
         _ => f.takes(ResultPart::Channel),
     };
-    let of = |severity| findings.iter().filter(move |f| f.severity == severity);
-    if of(Severity::Error).next().is_some() {
-        return (!of(Severity::Error).any(is_lost)).then_some(Severity::Error);
+    let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
+    if errors.peek().is_some() {
+        return (!errors.any(is_lost)).then_some(Severity::Error);
     }
-    let takes_motion = |f: &Finding| f.takes(ResultPart::Motion);
-    let is_taken = of(Severity::Warning).any(takes_motion) && !of(Severity::Warning).any(is_lost);
-    let is_doubted = is_taken || of(Severity::Warning).any(|f| f.effect.doubts_cask_file());
-    is_doubted.then_some(Severity::Warning)
+    let warns = |f: &Finding| f.severity == Severity::Warning && f.effect.doubts_cask_file();
+    findings.iter().any(warns).then_some(Severity::Warning)
+}
+
+/// Whether warnings take the motion and no channel, which a usual slip has as well: ends on two clocks ring as
+/// no cask does.
+fn is_motion_taken(findings: &[Finding]) -> bool {
+    let warns = |part| findings.iter().any(move |f| f.severity > Severity::Note && f.takes(part));
+    warns(ResultPart::Motion) && !warns(ResultPart::Channel)
 }
 
 /// What is usually confused, as far as it may be by what is stated.
