@@ -352,8 +352,7 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     findings.iter().any(warns).then_some(Severity::Warning)
 }
 
-/// Whether warnings take the motion and no channel, which a usual slip has as well: ends on two clocks ring as
-/// no cask does.
+/// Whether warnings take the motion and no channel, as where ends on two clocks seem to ring as no cask does.
 fn is_motion_taken(findings: &[Finding]) -> bool {
     let warns = |part| findings.iter().any(move |f| f.severity > Severity::Note && f.takes(part));
     warns(ResultPart::Motion) && !warns(ResultPart::Channel)

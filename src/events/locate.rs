@@ -144,7 +144,7 @@ impl<'a> Changes<'a> {
             self.of_second_end().filter_map(of_far).min_by(f64::total_cmp)
         };
         let stirs_s = struck.foot_s(least_m_s).zip(earliest_s(&|far| far.foot_s(least_m_s)));
-        let again_s = struck.struck_again_s().zip(earliest_s(&|far| far.struck_most_s()));
+        let again_s = struck.struck_again_s().zip(earliest_s(&|far| far.stirs_s(far.largest_m_s() / 2.0)));
         stirs_s.into_iter().chain(again_s).map(|(struck_s, far_s)| far_s - struck_s).collect()
     }
 
@@ -233,11 +233,6 @@ impl<'a> Changing<'a> {
         let is_foot = |c: &f64| (c - before_m_s).abs() < FOOT * (changes[stirs] - before_m_s).abs();
         let foot = changes[..stirs].iter().rposition(is_foot).unwrap_or(stirs);
         Some(self.end_s(foot) - WIDTH_S)
-    }
-
-    /// Where the width begins over which the velocity changes by half of its largest change, s.
-    fn struck_most_s(&self) -> Option<f64> {
-        self.stirs_s(self.largest_m_s() / 2.0)
     }
 
     /// Where the width begins over which the velocity changes notably once more after the first time, s.

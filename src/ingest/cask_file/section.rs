@@ -26,6 +26,12 @@ pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[SENSORS
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
 
+/// Tables that only scenes have.
+const OF_SCENES: [&str; 4] = ["first_end", "second_end", "mode", "body"];
+
+/// Quotes that an editor for letters sets.
+const TYPOGRAPHIC: [char; 7] = ['“', '”', '„', '‘', '’', '«', '»'];
+
 /// The tables whose keys are the user's own.
 const OWN_NAMES: [&str; 2] = ["more", "columns"];
 
@@ -152,6 +158,14 @@ impl<'a> Document<'a> {
             (format!("{value} has a decimal comma"), format!("write a decimal point: {point}"))
         } else if let Some((number, unit)) = number_with_unit(value) {
             (format!("{value} has a unit behind the number"), unit_mend(number, unit))
+        } else if let Some(quote) = line.chars().find(|c| TYPOGRAPHIC.contains(c)) {
+            (
+                format!("{quote} is a typographic quote"),
+                "write straight ones, such as name = \"A1\"".to_owned(),
+            )
+        } else if line.starts_with('[') && error.message().starts_with("duplicate key") {
+            let mend = "each of several has two brackets, as [[channel]]; keep one of any other table";
+            (format!("{} stands more than once", line.trim()), mend.to_owned())
         } else {
             let said = error.message().lines().next().unwrap_or("this is no TOML");
             (format!("this is not TOML: {said}"), FORM.to_owned())
@@ -220,6 +234,10 @@ impl<'a> Section<'a> {
             .collect();
         let (title, all) = (titled(self.name), known.join(", "));
         let hint = match nearest(word, &known) {
+            _ if self.name.is_empty() && OF_SCENES.contains(&word) => {
+                "a file with it is a scene, of which `dropcheck synth` makes a recording and its cask file; "
+                    .into()
+            }
             _ if !others.is_empty() => format!("{word} belongs in {}; ", others.join(" or ")),
             Some(near) => format!("did you mean {near}? "),
             None => String::new(),

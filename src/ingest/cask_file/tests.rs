@@ -240,7 +240,9 @@ fn more_channels_than_any_test_has_are_refused() {
 
 #[test]
 fn slips_in_channels_are_told_with_line_and_remedy() {
-    let cases: [(&str, &str, &[&str]); 22] = [
+    let cases: [(&str, &str, &[&str]); 24] = [
+        ("name = \"A1\"", "name = “A1”", &["“ is a typographic quote", "straight ones"]),
+        ("[contact]", "[first_end]\n[contact]", &["knows no table first_end", "`dropcheck synth`"]),
         ("end = \"first\"", "end = \"frist\"", &["end cannot be \"frist\"", "did you mean \"first\"?"]),
         ("end = \"first\"", "end = first", &["this is not TOML", "words stand between two quotes"]),
         ("end = \"first\"\n", "", &["[[channel]] has no end", "slaps down"]),
@@ -268,6 +270,8 @@ fn slips_in_channels_are_told_with_line_and_remedy() {
     let single = format!("{SHORT}[channel]\nname = \"A1\"\n");
     let message = told(&of(&single).unwrap_err());
     assert!(message.contains("[[channel]], with two brackets"), "{message}");
+    let message = told(&of(&format!("{single}[channel]\nname = \"A2\"\n")).unwrap_err());
+    assert!(message.contains("[channel] stands more than once"), "{message}");
 }
 
 fn check(cases: &[(&str, &str, &[&str])]) {
