@@ -7,8 +7,8 @@
 //! - no slap-down where the record goes on: with a longer search (`analyse_once`);
 //! - an angular-rate sensor, and no rotation stated: once before, for the rotation (`with_rotation`);
 //! - a contradiction and three transverse channels: without each of them (`second_look`);
-//! - a contradiction that stays: with each usual slip put right, and else with each number that would explain
-//!   it, up to twice (`causes`).
+//! - a contradiction that stays, and a motion that only its ringing takes: with each usual slip put right; a
+//!   contradiction else with each number that would explain it, up to twice (`causes`).
 
 mod causes;
 mod check;
