@@ -13,6 +13,7 @@ use crate::data::{
 use crate::numerics::robust;
 use crate::{events, judge};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
@@ -67,7 +68,10 @@ pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut An
     let clocks = stated.clocks_behind_s(found).into_iter().map(|behind_s| stated.earlier(behind_s));
     let own_clocks = clocks.filter(|slip| is_of_it(std::slice::from_ref(slip)));
     let (far, near): (Vec<Slip>, Vec<Slip>) = own_clocks.partition(|slip| slip.from.abs() > NEAR_S);
-    let by_clock = |slips: Vec<Slip>| slips.into_par_iter().filter_map(|slip| stated.cured_by_clock(slip));
+    // One clock is sought from several sides.
+    let by_clock = |slips: Vec<Slip>| {
+        slips.into_par_iter().filter_map(|slip| stated.cured_by_clock(slip)).min_by(less_doubted)
+    };
     let by_slips = best(by_usual.chain(by_clock(far)).collect());
     let is_usual = !by_slips.is_empty();
     let by_number = || {
@@ -287,14 +291,13 @@ fn is_doubted_place(result: &DropResult, name: &str) -> bool {
     result.quality.iter().any(|f| doubts(f) && f.channel.as_deref() == Some(name))
 }
 
+fn less_doubted((a, _): &(Doubt, Cure), (b, _): &(Doubt, Cure)) -> Ordering {
+    a.partial_cmp(b).unwrap_or(Ordering::Equal)
+}
+
 /// Those that do as well as the best, in their order.
 fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
-    tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
-    // One clock is sought from several sides.
-    let mut is_first = true;
-    tried.retain(|(_, cure)| {
-        cure.slips.iter().all(|slip| slip.key != "time") || std::mem::take(&mut is_first)
-    });
+    tried.sort_by(less_doubted);
     let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
     let least = tried.first().map(|(doubt, _)| clearly(doubt));
     tried.retain(|(doubt, _)| least.is_some_and(|least| *doubt < least));
