@@ -5,9 +5,9 @@ use super::Integrated;
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{ChannelPulse, End, MotionState, PulseLength, Setup, Signal, transverse};
-use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::quadrature::running_integral;
+use crate::numerics::{as_f64, reduce};
 use std::f64::consts::PI;
 
 /// A second maximum of the force, as a share of the larger; and the share of the lower one that the force
@@ -20,6 +20,9 @@ const TWO_TOUCHES: f64 = 0.35;
 /// and in 23 of 132 others.
 const LEFT: f64 = 0.1;
 const MEAN_SHARE: f64 = 0.125;
+/// k is open from there on, as the times are, where the rotation gains no more than this share of all after
+/// it: else k would be known up to ten times less in 28 of 520 sound drops that hold it.
+const ENDED: f64 = 0.05;
 /// A corner that comes down faster than this share of the impact velocity has not left.
 const COMES_DOWN: f64 = -0.1;
 
@@ -30,6 +33,8 @@ pub struct ContactCourse {
     pub ends: [MotionState; 2],
     /// Vertical velocity of the struck corner as it touches, m/s, up positive.
     pub struck_m_s: f64,
+    /// The same after each step: the cask turns on as nothing strikes it.
+    pub corner_m_s: Vec<f64>,
     /// Horizontal velocity gained by S, and vertical velocity gained but for gravity, m/s: the impulse over
     /// the mass.
     pub impulse_m_s: [f64; 2],
@@ -69,6 +74,7 @@ impl ContactCourse {
         let fallen_m_s = setup.gravity_m_s2 * (ends[1].time_s - ends[0].time_s);
         Some(Self {
             struck_m_s: corner(setup, &ends[0], setup.cog_m).1,
+            corner_m_s: states[1..].iter().map(|s| corner(setup, s, setup.cog_m).1).collect(),
             impulse_m_s: [
                 gained(|s| s.horizontal_velocity_m_s),
                 gained(|s| s.vertical_velocity_m_s) + fallen_m_s,
@@ -118,7 +124,7 @@ impl ContactCourse {
 pub struct FirstTouch {
     /// The lowest that the force falls to, as a share of the lower of the two maxima about it.
     pub dip: f64,
-    /// k of what is given by then.
+    /// k by the corner's velocity then.
     pub k: f64,
     /// How long before the contact's end the corner may have left for the first time, s; 0 where it had not.
     pub earlier_s: f64,
@@ -133,14 +139,21 @@ impl ContactCourse {
         let [up] = self.low_passed([&self.up_m_s2], cutoff_hz);
         let by_rotation = dips(&up);
         let at_sensor = dips(&self.at_struck_sensor(integrated)?);
-        let whole = self.up_m_s2.iter().sum::<f64>();
-        let given = self.up_m_s2.iter().scan(0.0, |sum, f| {
-            *sum += f;
-            Some(*sum)
-        });
-        let ks: Vec<f64> = given.map(|given| (1.0 + k) * given / whole - 1.0).collect();
-        let left = by_rotation.iter().zip(&ks).position(|(dip, k)| *dip < LEFT && *k > COMES_DOWN);
-        let rest = &ks[left.unwrap_or(ks.len())..];
+        let last_m_s = self.corner_m_s.last()?;
+        let k_then = |corner_m_s: &f64| k - (corner_m_s - last_m_s) / self.struck_m_s;
+        let ks: Vec<f64> = self.corner_m_s.iter().map(k_then).collect();
+        let whole = reduce::sum(&self.up_m_s2);
+        // From where on the force may have ended, if the rotation gains no more than a share of it after that.
+        let ended = |most: f64| {
+            let mut gains = whole;
+            let lets_go = |&i: &usize| {
+                gains -= self.up_m_s2[i];
+                let at_sensor = at_sensor[i] < LEFT && gains < most * whole;
+                (by_rotation[i] < LEFT || at_sensor) && ks[i] > COMES_DOWN
+            };
+            (0..ks.len()).find(lets_go).unwrap_or(ks.len())
+        };
+        let rest = &ks[ended(ENDED)..];
         let square: f64 = rest.iter().map(|later| (later - k).powi(2)).sum();
         let lowest = |dips: &[f64]| (0..dips.len()).min_by(|&a, &b| dips[a].total_cmp(&dips[b]));
         let (rotation_at, sensor_at) = (lowest(&by_rotation)?, lowest(&at_sensor)?);
@@ -154,7 +167,7 @@ impl ContactCourse {
         (is_by_rotation || dip < LEFT).then(|| FirstTouch {
             dip,
             k,
-            earlier_s: (end.time_s - begin.time_s) * as_f64(rest.len()) / as_f64(ks.len()),
+            earlier_s: (end.time_s - begin.time_s) * (1.0 - as_f64(ended(1.0)) / as_f64(ks.len())),
             k_moves: (square / as_f64(rest.len().max(1))).sqrt(),
         })
     }
@@ -320,9 +333,15 @@ mod tests {
             vertical_velocity_m_s: 0.0,
             height_m: 0.0,
         };
+        let whole: f64 = up_m_s2.iter().sum();
+        let gain_m_s = |corner_m_s: &mut f64, up: &f64| {
+            *corner_m_s += 14.0 * up / whole;
+            Some(*corner_m_s)
+        };
         ContactCourse {
             ends: [at(0.0), at(0.01)],
             struck_m_s: -10.0,
+            corner_m_s: up_m_s2.iter().scan(-10.0, gain_m_s).collect(),
             impulse_m_s: [0.0, 1.0],
             at_cog_m_s2: up_m_s2.clone(),
             at_end_m_s2: up_m_s2.clone(),
