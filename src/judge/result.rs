@@ -192,8 +192,7 @@ fn of_flight(
     pull: &Pull,
 ) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
-    let mut findings = Vec::from_iter(unresolved(flight));
-    findings.extend(bends(flight, signals, v0_m_s));
+    let mut findings = bends(flight, signals, v0_m_s);
     findings.extend(swings(flight, signals, v0_m_s, cask));
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
@@ -245,11 +244,13 @@ fn shifted(
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
 }
 
-/// Modes that the flight is too short to tell from one another.
-fn unresolved(flight: &FlightFit) -> Option<Finding> {
+/// Modes that the flight is too short to tell from one another, or from a contact whose force has
+/// `two_maxima`: of 4 drawn drops with less than a period behind those, one passed with ω 3 half-widths off.
+pub fn judge_unresolved(flight: &FlightFit, two_maxima: bool) -> Option<Finding> {
+    let is_open = !flight.resolves_modes() || (two_maxima && flight.periods() < 1.0);
     let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
     let found = DropFinding::Unresolved { flight_s: flight.to_s - flight.from_s, modes_hz };
-    (!flight.resolves_modes()).then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+    is_open.then(|| Finding::from(found).between(flight.from_s, flight.to_s))
 }
 
 /// Modes that are none, each on the channel that shows it most.

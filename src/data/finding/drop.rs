@@ -157,10 +157,10 @@ pub enum DropFinding of Drop {
          1e3 * flight_time.value, 1e3 * flight_time.u95);
     /// The flight is too short to tell its modes from one another.
     Unresolved { flight_s: f64, modes_hz: Vec<f64> } => (Code::FlightFit, Warning, Motion),
-        ("the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to it \
-         ({} Hz): they may stand for a contact that was not over, so k and the slap-down speed are not \
-         determined; look at the curves, and state only what they show",
-         1e3 * flight_s, modes_hz.len(), joined(modes_hz, |f| format!("{f:.0}"), ", "));
+        ("the {:.1} ms of flight are too short for the modes that were fitted to it ({} Hz): they may stand \
+         for a contact that was not over, so k and the slap-down speed are not determined; look at the \
+         curves, and state only what they show",
+         1e3 * flight_s, joined(modes_hz, |f| format!("{f:.0}"), ", "));
     /// No flight after the slap-down determines what the second impact gives.
     SecondUntold { recorded_s: f64, is_open: bool } => (Code::SecondImpact, Note, SecondImpact),
         ("the {:.0} ms that are recorded after the slap-down do not show the end of the second end's impact: \
