@@ -34,8 +34,9 @@ const ONE_MODE: DropClass = DropClass {
     name: "one mode, 2 to 5 periods",
     make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (2.0 + 3.0 * share) / flight_s)],
 };
-const SLOW_MODE: DropClass = DropClass {
-    name: "slow mode, 0.7 to 1.2 periods",
+/// Slower than any cask bends: the program is to refuse it (`swings`).
+const SWINGING: DropClass = DropClass {
+    name: "moves as a whole, 0.7 to 1.2 periods",
     make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (0.7 + 0.5 * share) / flight_s)],
 };
 
@@ -65,7 +66,7 @@ const CLASSES: [WayClass; 7] = [
     (DropClass { name: "clean", ..CALM }, None),
     (NOISY, None),
     (ONE_MODE, None),
-    (SLOW_MODE, None),
+    (SWINGING, None),
     (LIMITER, None),
     (DropClass { name: "clipped by 10 %", ..ONE_MODE }, Some(("clip_first", 10.0))),
     (DropClass { name: "length off by 1 %", ..ONE_MODE }, Some(("stated_length", 1.0))),
