@@ -18,7 +18,7 @@ use super::text::distinct;
 use crate::data::keys::{CHANNEL, TABLES, Takes};
 use crate::data::shown::short;
 use crate::data::{Comparison, Estimate, Verdict};
-use columns::NamedQuantity;
+use columns::{Columns, NamedQuantity};
 use drop_curves::DropCurves;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -74,6 +74,9 @@ pub struct BatchRow {
     quantities: Vec<NamedQuantity>,
     #[serde(skip)]
     curves: Option<DropCurves>,
+    /// The manifest's own columns.
+    #[serde(skip)]
+    carried: Columns,
 }
 
 /// What Windows takes for a device, whatever ending follows.
@@ -183,6 +186,7 @@ impl BatchRow {
             at: DropPoint::of(line),
             quantities: columns::quantities(line),
             curves: part(line, "/curves"),
+            carried: columns::carried(line).map(|(name, value)| (name.clone(), value.clone())).collect(),
         }
     }
 }
@@ -238,8 +242,13 @@ impl Batch {
             let first = self.recordings.entry(hash).or_insert_with(|| row.id.clone());
             row.same_recording_as = Some(first.clone()).filter(|first| *first != row.id);
         }
+        self.carried.extend(row.carried.keys().cloned());
         self.rows.push(row);
-        self.carried.extend(columns::carried(line).map(|(name, _)| name.clone()));
+    }
+
+    /// Whether any recording has a name of its own in the manifest, which its file does not show.
+    fn has_ids(&self) -> bool {
+        self.rows.iter().any(|row| !row.recording.contains(&row.id))
     }
 
     /// Whether a file that begins so is a `campaign.csv` of this program.

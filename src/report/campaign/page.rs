@@ -13,8 +13,8 @@ use crate::report::json::in_a_line;
 use crate::report::rounding::{
     MISSING, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
-use crate::report::text::Style;
-use serde_json::json;
+use crate::report::text::{Style, counted};
+use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
 
 const REPEATS: &str = "Drops at angles within their tolerance of each other are repeats; k holds for one \
@@ -49,17 +49,19 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").with(ChapterPart::note(more))));
     let places = DropSeries::places(series);
     let rows = in_order(batch, &places);
-    chapters.push(recordings(&rows, count, &places));
+    chapters.push(recordings(batch, &rows, &places));
     ReportDocument {
         page: Frame {
             title: format!("{heading} · {}", batch.source),
             product: "Campaign of drop tests",
             heading,
-            about: format!(
-                "{} · {count} recordings · {} casks · {angles} angles",
-                batch.source,
-                series.len()
-            ),
+            about: [
+                batch.source.clone(),
+                counted(count, "recording"),
+                counted(series.len(), "cask"),
+                counted(angles, "angle"),
+            ]
+            .join(" · "),
             footer: "campaign.csv and campaign.json have the results and settings of every recording as \
                      numbers; each recording has its own report.",
             style: include_str!("../live/campaign.css"),
@@ -155,10 +157,12 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
             count => format!("{} ({})", significant(pool.pooled.chi_square, 2), count - 1),
         })
         .text("scatter is", word);
-    Chapter::new(series.name.clone())
-        .with_all(["speed", "k"].map(|what| ChapterPart::picture(&DropSeries::name_of(number, what), "")))
-        .with(repeats)
-        .with(ChapterPart::note(REPEATS))
+    let chapter = Chapter::new(series.name.clone());
+    if series.pools.is_empty() {
+        return chapter.with(ChapterPart::text("No recording of this cask gave a number."));
+    }
+    let name = |quantity| ChapterPart::picture(&DropSeries::name_of(number, quantity), "");
+    chapter.with_all(series.drawn_quantities().map(name)).with(repeats)
 }
 
 /// A row's name, leading to its report.
@@ -175,7 +179,7 @@ fn encoded(path: &str) -> String {
         .collect()
 }
 
-fn recordings(rows: &[&BatchRow], all: usize, places: &HashMap<u32, RowPlace>) -> Chapter {
+fn recordings(batch: &Batch, rows: &[&BatchRow], places: &HashMap<u32, RowPlace>) -> Chapter {
     let place = |row: &BatchRow| places.get(&row.at.number).copied().unwrap_or_default();
     let e_n = |row: &BatchRow, quantity: PooledQuantity| optional_fixed(place(row).e_n[quantity as usize], 2);
     let both = |values: [Option<f64>; 2], factor: f64| {
@@ -188,6 +192,8 @@ fn recordings(rows: &[&BatchRow], all: usize, places: &HashMap<u32, RowPlace>) -
             mark: ["", "outlier"][usize::from(place(row).is_out)],
             ..linked(row)
         })
+        .soft("recording", |row| row.recording.rsplit('/').next().unwrap_or_default())
+        .if_any(batch.has_ids())
         .tag("verdict", |row| tag(row))
         .soft("cask", |row| row.at.cask.clone())
         .number("angle °", |row| {
@@ -203,11 +209,17 @@ fn recordings(rows: &[&BatchRow], all: usize, places: &HashMap<u32, RowPlace>) -
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
         .text("findings", |row| row.codes.join(", "))
         .if_any(rows.iter().any(|row| !row.codes.is_empty()));
-    let more = (rows.len() < all)
+    let own = |row: &BatchRow, name: &str| {
+        row.carried.get(name).and_then(Value::as_str).unwrap_or_default().to_owned()
+    };
+    let table = batch.carried.iter().fold(table, |table, name| table.soft(&name[..], |row| own(row, name)));
+    let more = (rows.len() < batch.rows.len())
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
-    Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(
-        "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
+    Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(REPEATS)).with(
+        ChapterPart::note(
+            "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
          they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies absorbed, \
          in the first and the second impact.",
-    ))
+        ),
+    )
 }

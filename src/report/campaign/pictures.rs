@@ -17,26 +17,42 @@ const MEAN_DEG: f64 = 0.5;
 /// Fewer drops show no trend.
 const LEAST_TREND: usize = 3;
 
-const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
-
 impl DropSeries<'_> {
     /// Its pictures; `number` tells their files from those of other series.
     pub(super) fn pictures(&self, number: usize) -> Vec<Picture> {
-        vec![self.speeds(&Self::name_of(number, "speed")), self.ks(&Self::name_of(number, "k"))]
+        let picture = |quantity: PooledQuantity| match quantity {
+            PooledQuantity::Speed => self.speeds(&Self::name_of(number, quantity)),
+            PooledQuantity::K => self.ks(&Self::name_of(number, quantity)),
+        };
+        self.drawn_quantities().map(picture).collect()
+    }
+
+    /// The speed of any drop, which the prediction stands beside; k only of drops enough for a trend.
+    pub(super) fn drawn_quantities(&self) -> impl Iterator<Item = PooledQuantity> {
+        let least = [(PooledQuantity::Speed, 1), (PooledQuantity::K, LEAST_TREND)];
+        least.into_iter().filter(|(quantity, least)| self.measured(*quantity) >= *least).map(|(it, _)| it)
     }
 
     /// The name of a picture of the series with this number.
-    pub(super) fn name_of(number: usize, what: &str) -> String {
-        format!("campaign-{what}-{number}")
+    pub(super) fn name_of(number: usize, quantity: PooledQuantity) -> String {
+        format!("campaign-{}-{number}", quantity.words()[0].trim_start_matches("slap_down_"))
+    }
+
+    /// How many drops have a value of it.
+    fn measured(&self, quantity: PooledQuantity) -> usize {
+        self.rows.iter().filter(|row| quantity.of(row).is_some_and(|e| e.value.is_finite())).count()
     }
 
     fn speeds(&self, name: &str) -> Picture {
         let mut speed = self.panel("Slap-down speed", "slap-down speed, m/s");
-        speed.height = 520;
         (speed.fills, speed.lines) = predicted(&self.curves);
         speed.marks = self.marks();
         let mut ratio = self.panel("Measured over predicted", "ratio");
-        ratio.height = 240;
+        // A drop or two, or three, leave room for the one beside the other.
+        let is_short = self.measured(PooledQuantity::Speed) < LEAST_TREND;
+        if !is_short {
+            (speed.height, ratio.height) = (520, 240);
+        }
         if let Some((from, to)) = ratio.x.range {
             ratio.lines.push(Curve::new(GREY, vec![(from, 1.0), (to, 1.0)]));
         }
@@ -44,26 +60,26 @@ impl DropSeries<'_> {
             self.drawn(speed, |row| PooledQuantity::Speed.of(row), |row| self.angle(row)),
             self.drawn(ratio, relative, |row| self.angle(row)),
         ];
-        let k = self.k.map_or_else(String::new, |[low, high]| {
+        let k = self.k.filter(|[low, high]| low < high).map_or_else(String::new, |[low, high]| {
             format!(", from {} to {}", plain(low, 3), plain(high, 3))
         });
         let caption = format!(
-            "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one \
-             another. Bands: the analytical model over the measured range of k{k}. Below: measured over \
+            "Slap-down speed: measured with 95 % intervals over the stated drop angle; repeats stand beside \
+             one another. Bands: the analytical model over the measured range of k{k}. Ratio: measured over \
              predicted with each drop's own k. Hollow: with errors, in no mean. Ringed: outlier."
         );
-        Plate::new(name, format!("{}: slap-down speed over the drop angle", self.name), caption)
-            .or(NOTHING)
-            .picture(&panels)
+        let title = format!("{}: slap-down speed over the drop angle", self.name);
+        let columns = if is_short { 2 } else { 1 };
+        Plate { columns, ..Plate::new(name, title, caption) }.picture(&panels)
     }
 
     fn ks(&self, name: &str) -> Picture {
         let k = |row: &BatchRow| PooledQuantity::K.of(row);
-        let mut panels = vec![self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row))];
-        if self.rows.len() >= LEAST_TREND {
-            let trend = Panel::new("k over the test number", "test number in the campaign", "k", 330);
-            panels.push(self.drawn(trend, k, |row| Some(row.at.number.into())).with_air(0.03));
-        }
+        let trend = Panel::new("k over the test number", "test number in the campaign", "k", 330);
+        let mut panels = [
+            self.drawn(self.panel("k over the drop angle", "k"), k, |row| self.angle(row)),
+            self.drawn(trend, k, |row| Some(row.at.number.into())).with_air(0.03),
+        ];
         // Over the number the drops at several angles stand among one another.
         let has_mean = |pool: &&Pool| pool.quantity == PooledQuantity::K && !pool.is_contradictory();
         for pool in self.pools.iter().filter(has_mean) {
@@ -74,7 +90,7 @@ impl DropSeries<'_> {
         let caption = "The coefficient of restitution with its 95 % interval. Dashed: mean of the repeats at \
                        an angle, without outliers. Hollow: with errors, in no mean. Ringed: outlier.";
         let plate = Plate { columns: 2, ..Plate::new(name, format!("{}: restitution", self.name), caption) };
-        plate.or(NOTHING).picture(&panels)
+        plate.picture(&panels)
     }
 
     fn panel(&self, title: &str, y: &str) -> Panel {

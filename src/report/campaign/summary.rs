@@ -6,7 +6,7 @@ use super::{Batch, BatchRow};
 use crate::data::{Estimate, Verdict};
 use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable, TableCell, TableShape};
 use crate::report::rounding::{MISSING, fixed, interval, percent, plain};
-use crate::report::text::{Style, tail, verdict_style, verdict_word};
+use crate::report::text::{Style, counted, tail, verdict_style, verdict_word};
 use std::cmp::Reverse;
 use std::collections::HashSet;
 use std::path::Path;
@@ -91,9 +91,9 @@ impl Batch {
         let again = few(self.rows.iter().filter_map(named));
         let again = if again.is_empty() { again } else { format!(" Listed twice, counted once: {again}.") };
         let exceeded = self.rows.iter().filter(|row| !row.exceeded.is_empty()).count();
-        let (all, failed) = (self.rows.len(), count(None));
+        let (all, failed) = (counted(self.rows.len(), "recording"), count(None));
         format!(
-            "{all} recordings: {sound} sound, {review} for review, {fail} partly or not usable, {failed} not \
+            "{all}: {sound} sound, {review} for review, {fail} partly or not usable, {failed} not \
              analysed, {exceeded} beyond a limit. Outliers: {outliers}.{again}"
         )
     }
@@ -117,6 +117,8 @@ impl Batch {
 /// Columns of a terminal with room for cask and angle, and what these take.
 const WIDE: usize = 100;
 const CASK_AND_ANGLE: usize = 32;
+/// What the names of tests take of it at most.
+const LONGEST_ID: usize = 14;
 
 impl Batch {
     /// The table, `width` columns wide; below it what was found, reasons of failures, and the sum.
@@ -129,8 +131,10 @@ impl Batch {
         let places = DropSeries::places(&series);
         let is_out = |row: &BatchRow| places.get(&row.at.number).is_some_and(|place| place.is_out);
         let is_wide = columns >= WIDE;
+        let longest = self.rows.iter().map(|row| row.id.chars().count() + 2).max().unwrap_or_default();
+        let ids = if self.has_ids() { longest.min(LONGEST_ID) } else { 0 };
         // A recording's name leaves room for the other columns.
-        let room = columns - 52 - if is_wide { CASK_AND_ANGLE } else { 0 };
+        let room = columns - 52 - ids - if is_wide { CASK_AND_ANGLE } else { 0 };
         let folder = self.common_folder();
         let name = |row: &BatchRow, width: usize| {
             let own = folder.and_then(|folder| Path::new(&row.recording).strip_prefix(folder).ok());
@@ -139,6 +143,8 @@ impl Batch {
         let angle =
             |row: &BatchRow| row.at.angle_deg.map_or_else(|| MISSING.to_owned(), |angle| plain(angle, 4));
         let table = ReportTable::of(&self.rows)
+            .head("id", |row| tail(&row.id, ids.saturating_sub(2)))
+            .if_any(ids > 0)
             .head("recording", |row| name(row, room))
             .text("cask", |row| tail(&row.at.cask, 12))
             .if_any(is_wide)
@@ -152,7 +158,8 @@ impl Batch {
             .if_any(is_wide && self.rows.iter().any(is_out))
             .shape(TableShape::Fitting)
             .most(MOST_LINES, MOST_LINES, "campaign.csv has all of them");
-        let names = |rows: &[&BatchRow]| few(rows.iter().map(|row| name(row, columns - 10))).into();
+        let place = |row: &&BatchRow| if ids > 0 { row.id.clone() } else { name(row, columns - 10) };
+        let names = |rows: &[&BatchRow]| few(rows.iter().map(place)).into();
         let place = folder
             .map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), columns - 14)));
         let chapter = Chapter::new("")

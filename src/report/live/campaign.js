@@ -13,7 +13,8 @@ for (const table of document.querySelectorAll("table.sortable")) {
     b.append(...head.childNodes);
     head.append(b);
     head.setAttribute("aria-sort", "none");
-    const isNumber = head.classList.contains("n");
+    const isOfNumbers = rows.every((row) => /^[−-]?\d*\.?\d*$/.test(row.cells[column].textContent));
+    const isNumber = isOfNumbers || head.classList.contains("n");
     b.onclick = () => {
       const down = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
       for (const other of table.tHead.rows[0].cells) if (other.hasAttribute("aria-sort")) other.setAttribute("aria-sort", "none");
@@ -28,6 +29,10 @@ for (const table of document.querySelectorAll("table.sortable")) {
       body.append(...[...rows].sort(order));
     };
   });
+  body.onclick = (event) => {
+    const link = event.target.closest("tr").querySelector("a");
+    if (link && !event.target.closest("a, input") && getSelection().isCollapsed) link.click();
+  };
   const bar = document.createElement("div");
   bar.className = "filter";
   const label = document.createElement("label");
@@ -36,16 +41,32 @@ for (const table of document.querySelectorAll("table.sortable")) {
   label.append("Only rows with ", input);
   const count = document.createElement("span");
   const tell = () => { count.textContent = `${rows.filter((row) => !row.hidden).length} of ${rows.length}`; };
+  const choices = [];
   input.oninput = () => {
     const words = input.value.toLowerCase().split(/\s+/);
-    for (const row of rows) row.hidden = !words.every((word) => row.textContent.toLowerCase().includes(word));
+    const isShown = (row) => words.every((word) => row.textContent.toLowerCase().includes(word))
+      && choices.every(([column, chosen]) => !chosen.selectedIndex || row.cells[column].textContent === chosen.value);
+    for (const row of rows) row.hidden = !isShown(row);
     tell();
   };
   const hint = document.createElement("span");
   hint.className = "soft";
   const HINT = "Tick two drops to compare their numbers and curves.";
   hint.textContent = HINT;
-  bar.append(label, count, hint);
+  bar.append(label);
+  // A choice for each column of words or of the manifest whose few values recur.
+  [...table.tHead.rows[0].cells].forEach((head, column) => {
+    const cells = rows.map((row) => row.cells[column]), values = [...new Set(cells.map((cell) => cell.textContent))];
+    if (!cells[0].matches(".u, .tag") || values.length < 2 || values.length > 20 || head.textContent === "recording") return;
+    const name = document.createElement("label"), chosen = document.createElement("select");
+    values.sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
+    chosen.append(new Option("all", ""), ...values.map((value) => new Option(value || "(empty)", value)));
+    chosen.oninput = input.oninput;
+    choices.push([column, chosen]);
+    name.append(`${head.textContent} `, chosen);
+    bar.append(name);
+  });
+  bar.append(count, hint);
   table.before(bar);
   tell();
 
