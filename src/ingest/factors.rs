@@ -3,35 +3,17 @@
 
 use super::refusal::Refusal;
 use super::statement::number_and_unit;
-use super::vocabulary::{self, has_part, plain};
+use super::vocabulary::{self, has_listed_part, has_part, has_word, plain};
 use super::{RawChannel, error};
 use crate::data::{ChannelSpec, Samples, acceleration_unit_m_s2};
 use std::collections::BTreeMap;
-
-/// Parts of names, as [`plain`] has them, of a factor between stored numbers and a quantity.
-const FACTORS: &str = "scal skal factor faktor gain verst resol aufl lsb tovolt bitvolt volts perbit \
-                       percount perdigit perunit countsper calib kalib coef koef mult slope steigung \
-                       conver umrechn sensit empfind polynom formula";
-/// Parts of names of what is no factor, whatever its value.
-const OTHERS: &str = "time zeit date datum start begin trigger delay duration dauer version firmware \
-                      software revis model serial seri number nummer channel kanal count anzahl samples \
-                      rows zeilen index temp humid feucht mass weight gewicht height höhe hoehe length \
-                      länge laenge width breite angle winkel position distance abstand speed geschw press \
-                      druck filter cutoff grenz bandwidth frequ frequenz rate bits latitude longitude \
-                      altitude year month page offset min x0 xorg xoff xzero deltax max peak spitze mean \
-                      mittel rms sum std battery gravity test versuch operator level pegel";
-/// Parts of such names where nothing else explains them.
-const WEAK_FACTORS: &str = "range bereich span bits adc const konst";
-/// Words for stored numbers that are in no unit.
-const COUNTS: [&str; 12] =
-    ["lsb", "lsbs", "count", "counts", "cts", "digit", "digits", "raw", "adc", "adu", "bit", "bits"];
 
 /// Whether a name says by itself that its number turns stored numbers into a quantity.
 pub(super) fn is_factor(name: &str) -> bool {
     let plain = plain(name);
     let is_ratio = plain.ends_with("tog") || plain.ends_with("toms2") || plain.ends_with("perg");
     let is_sensor = plain.contains("sensor") && !has_part("scal skal factor faktor gain", &plain);
-    (is_ratio || has_part(FACTORS, &plain)) && !plain.contains("fullscale") && !is_sensor
+    (is_ratio || has_listed_part("factor", &plain)) && !plain.contains("fullscale") && !is_sensor
 }
 
 /// `name = text` where a number in it may be a factor of the samples beside it, and nothing else explains it.
@@ -53,8 +35,8 @@ pub(super) fn unexplained(name: &str, text: &str) -> Option<String> {
         };
         let unit = if unit.is_empty() { words.get(at + 1).copied().unwrap_or_default() } else { unit };
         let number = if unit == "%" { number / 100.0 } else { number };
-        let is_explained = has_part(OTHERS, &label);
-        let is_named = is_factor(&label) || (has_part(WEAK_FACTORS, &label) && !is_explained);
+        let is_explained = has_listed_part("no factor", &label);
+        let is_named = is_factor(&label) || (has_listed_part("weak factor", &label) && !is_explained);
         let is_idle = number == 0.0 || number - 1.0 == 0.0 || is_other_unit(unit);
         is_open |= !is_idle && (is_named || (number.fract() != 0.0 && !is_explained));
         is_new = true;
@@ -91,7 +73,7 @@ fn number_of(word: &str) -> Option<(f64, &str)> {
 fn is_other_unit(unit: &str) -> bool {
     let lower = unit.to_lowercase();
     let is_of_samples = acceleration_unit_m_s2(unit).is_some()
-        || COUNTS.contains(&lower.as_str())
+        || has_word("unit of counts", &lower)
         || matches!(&*lower, "v" | "mv" | "µv" | "uv" | "volt" | "volts" | "-" | "–" | "1" | "%")
         || lower.ends_with("/g");
     vocabulary::is_unit(unit) && !is_of_samples
@@ -102,7 +84,7 @@ fn is_other_unit(unit: &str) -> bool {
 pub(super) fn settled(spec: &ChannelSpec, raw: &RawChannel) -> Result<(), Refusal> {
     let unit = raw.recorded_unit().unwrap_or_default();
     let bare = unit.trim_matches(['[', ']', '(', ')']).to_lowercase();
-    let are_counts = COUNTS.contains(&bare.as_str());
+    let are_counts = has_word("unit of counts", &bare);
     let is_quantity = acceleration_unit_m_s2(unit).is_some()
         || matches!(&*bare, "" | "-" | "1" | "v" | "mv" | "µv" | "uv" | "volt" | "volts");
     let are_whole = || are_whole(&raw.uniform.samples);

@@ -8,29 +8,11 @@ use std::path::Path;
 /// What makes a file that needs more than is built in one that does not.
 pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
 
-const AGAIN: &str = "copy the file from the logger again";
 /// What begins the words for what the C library alone reads, or may.
 pub(super) const BEYOND: &str = "only the HDF5 library reads ";
 
-const BAD_SUM: &str = "a check sum does not fit: the data are damaged";
-
-/// Part of the library's words, what they mean, and what to do.
-#[rustfmt::skip]
-const MEANINGS: [(&str, &str, &str); 8] = [
-    ("truncated file", "the file was not closed or is cut off",
-     "copy it from the logger again; what is missing cannot be had back"),
-    ("already open for write", "the program that wrote the file never closed it",
-     "in a copy of the file, run `h5clear -s FILE` and try again; what was written last may be missing"),
-    ("file signature not found", "the file is not HDF5, or its beginning is damaged", AGAIN),
-    ("unable to lock file", "another program has the file open for writing",
-     "close that program, or read a copy"),
-    ("required filter", "the data are compressed by a filter that is not built in", REPACK),
-    ("checksum", BAD_SUM, AGAIN),
-    ("data error detected by fletcher32", BAD_SUM, AGAIN),
-    ("filter returned failure", "a block of it cannot be unpacked: the data are damaged or their filter is \
-                                 not built in",
-     "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"),
-];
+/// Parts of the library's words, what they mean, and what to do, with tabs between them.
+const MEANINGS: &str = include_str!("meanings.tsv");
 
 /// A fault of the whole file, which has so many bytes.
 pub(super) fn of_file(path: &Path, bytes: u64, fault: Refusal) -> IngestError {
@@ -56,12 +38,14 @@ pub(super) fn meaning(words: &[Bytes]) -> Option<Refusal> {
         return Some(Refusal::new(format!("{beyond}, which this page has not"), mend));
     }
     let all = words.join(": ").to_lowercase();
-    let (part, problem, remedy) = MEANINGS.iter().find(|(part, ..)| all.contains(part))?;
+    let mut meanings = MEANINGS.lines().filter_map(|line| line.split_once('\t'));
+    let (part, meaning) = meanings.find(|(part, _)| all.contains(part))?;
+    let (problem, remedy) = meaning.split_once('\t')?;
     // The library gives the sizes for a file that is cut off.
     let detail = words.iter().find(|word| word.to_lowercase().contains(part));
     let sizes = detail.and_then(|detail| detail.split_once("file: "));
     let sizes = sizes.map_or(String::new(), |(_, sizes)| format!(" ({sizes})"));
-    Some(Refusal::new(format!("{problem}{sizes}"), *remedy))
+    Some(Refusal::new(format!("{problem}{sizes}"), remedy))
 }
 
 fn texts(words: &[Bytes]) -> Vec<String> {
