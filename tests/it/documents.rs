@@ -32,13 +32,14 @@ fn written_pages() -> Vec<PathBuf> {
 }
 
 /// The pages beside fixtures, finite elements, fuzzing, module and packages.
-fn pages_beside() -> [PathBuf; 5] {
+fn pages_beside() -> [PathBuf; 6] {
     [
         "fixtures/README.md",
         "fixtures/reference/fe/README.md",
         "tests/fuzz/README.md",
         "python/README.md",
         "packaging/RELEASING.md",
+        "packaging/START.md",
     ]
     .map(|name| root().join(name))
 }
