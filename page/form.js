@@ -40,6 +40,14 @@ class Form {
     return paths;
   }
 
+  /** Sources of channels that the recording has not, however it is written where it has them. */
+  strangers() {
+    const plain = (source) => source.toLowerCase().replace(/^\/|\s*[[(].*$/g, "").replaceAll("/", ".");
+    const known = new Set(this.sources.map(plain));
+    const sources = this.channels().filter(({ file, source }) => !isStated(file) && typeof source === "string");
+    return known.size ? sources.map(({ source }) => source).filter((source) => isStated(source) && !known.has(plain(source))) : [];
+  }
+
   channels() {
     return this.values.channel ?? [];
   }
@@ -64,6 +72,8 @@ class Form {
     if (shape !== this.drawnFor) this.draw();
     this.drawnFor = shape;
     const missing = new Set(this.missing());
+    const strange = this.strangers();
+    this.channels().forEach(({ source }, i) => strange.includes(source) && missing.add(`channel.${i}.source`));
     for (const [path, field] of this.fields) {
       const value = path.split(".").reduce((at, part) => at?.[part], values);
       const text = field.input.tagName === "SELECT" && isStated(value) ? String(value) : shown(value);

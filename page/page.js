@@ -1,10 +1,9 @@
 // A recording and a form to the report: what the person does, in its order.
 
-const CASK_NAME = "cask.toml";
 const EMPTY = "[cask]\n\n[drop]\n";
 
 /** What the page holds: the recording, its listing, and the text of the cask file, which is the truth. */
-const state = { recording: null, listing: null, text: EMPTY, isOwn: false, asked: 0, files: [], analysed: null };
+const state = { recording: null, listing: null, text: EMPTY, caskName: "cask.toml", isOwn: false, asked: 0, files: [], analysed: null };
 let form;
 let drawing;
 let waiting;
@@ -143,7 +142,8 @@ async function opened(file) {
     refuse("form-refusal", { problem: `${file.name}: not text in UTF-8`, mend: "save it as UTF-8 in an editor" });
     return;
   }
-  state.isOwn = true;
+  Object.assign(state, { isOwn: true, caskName: file.name });
+  byId("save-cask").textContent = `Save ${file.name}`;
   form.drawnFor = null;
   byId("anew").hidden = !state.recording;
   await inTurn(shownAnew);
@@ -195,9 +195,12 @@ async function shownAnew() {
   }
   form.show(values);
   const missing = form.missing();
-  say("form-word", missing.length ? `${stillOpen(missing.length)}.` : "Nothing is missing.");
+  const strange = form.strangers();
+  const are = strange.length === 1 ? "source is" : "sources are";
+  const inRecording = strange.length ? ` ${strange.length} ${are} not in ${state.recording.name}: ${strange.join(", ")}.` : "";
+  say("form-word", (missing.length ? `${stillOpen(missing.length)}.` : inRecording ? "" : "Nothing is missing.") + inRecording);
   try {
-    await forForm.ask({ op: "check", cask: withExamples(state.text) });
+    await forForm.ask({ op: "check", cask: withExamples(state.text), cask_name: state.caskName });
   } catch (refusal) {
     const isOpen = refusal.key ? missing.includes(refusal.key) : missing.length > 0;
     if (!isOpen && !form.blame(refusal.key, told(inField(refusal)))) refuse("form-refusal", refusal);
@@ -207,7 +210,7 @@ async function shownAnew() {
 }
 
 /** A refusal under its field, which needs no line of the text. */
-const inField = ({ problem, mend }) => ({ problem: problem.replace(/^cask\.toml, line \d+: /, ""), mend });
+const inField = ({ problem, mend }) => ({ problem: problem.replace(/^.{0,200}?, line \d+: /, ""), mend });
 
 /** The text with an example in each place that is still open: what is wrong beside these is told at once. */
 function withExamples(text) {
@@ -294,10 +297,12 @@ async function analysed() {
   byId("result").hidden = true;
   byId("stop").hidden = false;
   try {
-    const question = { op: "report", name: state.recording.name, cask: state.text };
+    const question = { op: "report", name: state.recording.name, cask: state.text, cask_name: state.caskName,
+      analysed: new Date().toISOString().replace(/\.\d+/, "") };
     const work = forRecording.ask(question, state.recording);
     const answer = await during("progress", `Analysing ${question.name} …`, work);
-    state.analysed = question.cask;
+    Object.assign(state, { analysed: question.cask, reportName: `${question.name.replace(/\.\w{1,5}$/, "")}-report.html` });
+    byId("save-report").textContent = `Save ${state.reportName}`;
     toldStale();
     state.files = answer.header.names.map((name, i) => [name, answer.bodies[i]]);
     const [[, report], ...others] = state.files;
@@ -371,10 +376,10 @@ function listen() {
     Object.assign(state, { text: byId("text").value, isOwn: true });
     return shownAnew();
   }));
-  byId("save-cask").onclick = () => queue.then(() => save(CASK_NAME, state.text));
+  byId("save-cask").onclick = () => queue.then(() => save(state.caskName, state.text));
   byId("analyse").onclick = () => whenReady(analysed);
   byId("stop").onclick = () => forRecording.stop();
-  byId("save-report").onclick = () => save(...state.files[0]);
+  byId("save-report").onclick = () => save(state.reportName, state.files[0][1]);
   byId("print").onclick = () => byId("report-frame").contentWindow.print();
 }
 

@@ -1,7 +1,7 @@
 //! What the page asks, and what the program says to it.
 
 use crate::cask_text;
-use dropcheck::data::{Analysis, CaskFile, Listing};
+use dropcheck::data::{Analysis, CaskFile, Listing, Program};
 use dropcheck::ingest::{self, IngestError, Limits, RecordingFile};
 use dropcheck::{report, stages};
 use miette::{IntoDiagnostic, Report, miette};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What the cask file is called.
+/// What the cask file is called that was not opened from a disk.
 const CASK_NAME: &str = "cask.toml";
 
 /// What reading may take of the 4 GiB that a page can have; the recording and the analysis need as much.
@@ -26,6 +26,10 @@ struct Header {
     /// The text of the cask file.
     #[serde(default)]
     cask: String,
+    /// What it is called.
+    cask_name: Option<String>,
+    /// When it is asked, as RFC 3339 writes it: the module has no clock.
+    analysed: Option<String>,
     /// A key: `cask.length_m`, `channel.0.position_m`.
     #[serde(default)]
     path: String,
@@ -96,8 +100,12 @@ impl Question {
         RecordingFile::in_memory(Path::new(&self.header.name), &self.recording)
     }
 
+    fn cask_name(&self) -> &str {
+        self.header.cask_name.as_deref().unwrap_or(CASK_NAME)
+    }
+
     fn cask_file(&self) -> Result<CaskFile, Report> {
-        Ok(ingest::cask_file::of_text(Path::new(CASK_NAME), &self.header.cask)?)
+        Ok(ingest::cask_file::of_text(Path::new(self.cask_name()), &self.header.cask)?)
     }
 
     fn listing(&self) -> Result<Listing, Report> {
@@ -124,12 +132,16 @@ impl Question {
         if let Some((key, what, _)) = other_files.into_iter().find(|(.., is_named)| *is_named) {
             return Err(miette!(
                 help = format!("take {key} here, or analyse by the dropcheck command"),
-                "{CASK_NAME}: the {what} lies in a file of its own, which a page cannot open"
+                "{}: the {what} lies in a file of its own, which a page cannot open",
+                self.cask_name()
             ));
         }
         let recording =
             stages::read_within(self.recording(), &file, Limits::of_memory(MEMORY_BYTES), &|_| ())?;
-        Ok(dropcheck::analyze(&recording, &file))
+        let mut analysis = dropcheck::analyze(&recording, &file);
+        analysis.result.program = Some(Program::this());
+        analysis.result.analysed.clone_from(&self.header.analysed);
+        Ok(analysis)
     }
 
     /// Every file of the report.
