@@ -41,6 +41,9 @@ pub static TABLES: [KeyTable; 17] = [
     table("limit", "one of the two or both", &LIMIT),
 ];
 
+/// The tables that a house file may have, which cask files name.
+pub static OF_HOUSE: [KeyTable; 2] = [table("tolerance", "", &TOLERANCE), table("report", "", &REPORT)];
+
 /// What a person calls the quantity of a key of `[observed]` or `[limits]`, one name for both tables.
 pub fn quantity_words(name: &str) -> &str {
     OBSERVED.iter().chain(&LIMITS).find(|key| key.name == name).map_or(name, |key| key.remark)

@@ -5,6 +5,7 @@ mod body;
 mod cells;
 pub(crate) mod channel;
 pub(super) mod fault;
+mod house;
 mod list;
 mod overrides;
 mod range;
@@ -75,9 +76,15 @@ pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, IngestError> {
 }
 
 fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, IngestError> {
-    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
-    // With a sensor list it is the text with its tables: what a result is made again from.
-    let whole = if cask_file.text.is_empty() { bytes } else { cask_file.text.as_bytes() };
+    let own = text(path, bytes, &CASK_FILE)?;
+    let mut cask_file = checked(path, own, photos)?;
+    let whole = house::text_with_house(path, own, &cask_file.cask, photos)?;
+    if let Some(whole) = &whole {
+        cask_file = checked(path, whole, photos)?;
+    }
+    // With house file and sensor list it is the text with theirs: what a result is made again from.
+    let whole = whole.as_ref().map_or(bytes, String::as_bytes);
+    let whole = if cask_file.text.is_empty() { whole } else { cask_file.text.as_bytes() };
     let sha256 = super::unchanged::hexadecimal(&Sha256::digest(whole));
     let text = String::from_utf8_lossy(whole).into_owned();
     Ok(CaskFile { sha256, text, ..cask_file })

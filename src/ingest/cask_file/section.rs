@@ -20,8 +20,14 @@ pub(crate) struct Kind {
     pub tables: &'static [KeyTable],
 }
 
+/// The key of the cask file that names the house file.
+pub(super) const HOUSE: &str = "house";
+
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", root: &[SENSORS], tables: &keys::TABLES };
+pub(crate) const CASK_FILE: Kind =
+    Kind { name: "the cask file", root: &[SENSORS, HOUSE], tables: &keys::TABLES };
+/// The file of a house, which cask files name.
+pub(super) const HOUSE_FILE: Kind = Kind { name: "the house file", root: &[], tables: &keys::OF_HOUSE };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
@@ -151,13 +157,13 @@ impl<'a> Document<'a> {
         let start = span.start.min(self.text.len());
         let from = self.text.as_bytes()[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
         let line = self.text.get(from..).unwrap_or("").lines().next().unwrap_or("");
-        let value = line.split_once('=').map_or("", |(_, value)| value);
+        let (key, value) = line.split_once('=').unwrap_or_default();
         let value = value.split('#').next().unwrap_or("").trim();
         let point = value.replace(',', ".");
         let (message, mend) = if value.contains(',') && point.parse::<f64>().is_ok() {
             (format!("{value} has a decimal comma"), format!("write a decimal point: {point}"))
         } else if let Some((number, unit)) = number_with_unit(value) {
-            (format!("{value} has a unit behind the number"), unit_mend(number, unit))
+            (format!("{value} has a unit behind the number"), unit_mend(key.trim(), number, unit))
         } else if let Some(quote) = line.chars().find(|c| TYPOGRAPHIC.contains(c)) {
             (
                 format!("{quote} is a typographic quote"),

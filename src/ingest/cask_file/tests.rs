@@ -126,8 +126,16 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
         ("mass_kg = 4466", "mass = 4466", &["did you mean mass_kg?"]),
         ("mass_kg = 4466\n", "", &["[cask] has no mass_kg", "mass_kg = 4466.0"]),
         ("mass_kg = 4466", "mass_kg = 4466,0", &["line 4", "decimal comma", "4466.0"]),
-        ("mass_kg = 4466", "mass_kg = \"4466 kg\"", &["the text \"4466 kg\"", "number only, 4466"]),
-        ("mass_kg = 4466", "mass_kg = 4466 kg", &["unit behind the number", "number only, 4466"]),
+        (
+            "mass_kg = 4466",
+            "mass_kg = \"4466 kg\"",
+            &["the text \"4466 kg\"", "write the number alone in kg: 4466"],
+        ),
+        (
+            "mass_kg = 4466",
+            "mass_kg = 4466 kg",
+            &["unit behind the number", "write the number alone in kg: 4466"],
+        ),
         ("mass_kg = 4466", "mass_kg = \"4466\"", &["without quotes: mass_kg = 4466"]),
         ("mass_kg = 4466", "mass_kg = -1", &["mass_kg is -1", "0.001 to 1000000", "in kg"]),
         ("mass_kg = 4466", "mass_kg = nan", &["nan, not a number", "dropcheck init"]),

@@ -32,7 +32,7 @@ impl Section<'_> {
     fn number_mend(&self, key: &str, value: &DeValue) -> String {
         let plain = value.as_str().unwrap_or_default().trim().replace(',', ".");
         match number_with_unit(&plain) {
-            Some((number, unit)) => unit_mend(number, unit),
+            Some((number, unit)) => unit_mend(key, number, unit),
             None if plain.parse::<f64>().is_ok() => format!("write it without quotes: {key} = {plain}"),
             None if is_left_open(value) => {
                 "write what it is: `dropcheck init` leaves nan where only you know it".into()

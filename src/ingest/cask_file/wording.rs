@@ -42,29 +42,24 @@ pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
     (number.parse::<f64>().is_ok() && is_unit).then_some((number, unit.trim()))
 }
 
-pub(super) fn unit_mend(number: &str, unit: &str) -> String {
-    format!(
-        "write the number only, {number}: the unit is in the key's name (convert it if {unit} is another)"
-    )
+/// How to write the number of a key that has its unit behind it: converted where that is no guess.
+pub(super) fn unit_mend(key: &str, number: &str, unit: &str) -> String {
+    const PARTS: [(&str, &str, f64); 5] =
+        [("km/h", "m/s", 3.6), ("mm", "m", 1e3), ("cm", "m", 1e2), ("ms", "s", 1e3), ("t", "kg", 1e-3)];
+    let own = unit_of(key);
+    let part = PARTS.iter().find(|(from, to, _)| *from == unit && *to == own);
+    let converted = part.and_then(|(.., parts)| Some(format!("{:?}", number.parse::<f64>().ok()? / parts)));
+    match converted.or_else(|| (unit == own).then(|| number.to_owned())) {
+        Some(number) => format!("write the number alone in {own}: {number}"),
+        None => format!("write the number alone, converted from {unit}: the unit is in the key's name"),
+    }
 }
 
-/// ", in kg", from the key's ending.
+/// "kg", from the key's ending; nothing where it has none.
 pub(super) fn unit_of(key: &str) -> &'static str {
-    const ENDINGS: [(&str, &str); 14] = [
-        ("inertia_kg_m2", ", in kg m²"),
-        ("_m_s2", ", in m/s²"),
-        ("_m_s", ", in m/s"),
-        ("_kg", ", in kg"),
-        ("_n_m", ", in N/m"),
-        ("_m", ", in m"),
-        ("_hz", ", in Hz"),
-        ("_s", ", in s"),
-        ("_ms", ", in ms"),
-        ("_g", ", in g"),
-        ("_n", ", in N"),
-        ("_percent", ", in percent"),
-        ("_deg", ", in degrees"),
-        ("sensitivity", ", in mV per g; a sensor mounted the other way round has polarity = -1"),
-    ];
-    ENDINGS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)
+    const ENDINGS: &str = "inertia_kg_m2 kg m²|_m_s2 m/s²|_m_s m/s|_kg kg|_n_m N/m|_m m|_hz Hz|_s s|_ms ms|\
+                           _g g|_n N|_percent percent|_deg degrees|sensitivity mV per g; a sensor mounted \
+                           the other way round has polarity = -1";
+    let mut endings = ENDINGS.split('|').filter_map(|ending| ending.split_once(' '));
+    endings.find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)
 }
