@@ -23,7 +23,7 @@ pub struct Arguments {
     /// The recording: MCAP, HDF5, CSV or ISO-MME, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
-    #[arg(short, long, required_unless_present = "from")]
+    #[arg(short, long)]
     cask: Option<PathBuf>,
     /// Repeat the analysis recorded in this result.json, with the cask file in it, and say what differs
     #[arg(long, value_name = "RESULT", conflicts_with_all = ["cask", "without"])]
@@ -139,6 +139,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     #[cfg(not(debug_assertions))]
     std::thread::spawn(rerun::program_sha256);
     let Arguments { recording, cask, from, rest, .. } = arguments;
+    if cask.is_none() && from.is_none() {
+        return Err(without_cask(recording));
+    }
     let inputs = [Some(recording), cask.as_ref(), from.as_ref(), rest.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     refuse_names(recording, cask.as_deref())?;
@@ -226,15 +229,40 @@ fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> 
     Ok(())
 }
 
+/// That no cask file is named, with the command that names the one beside the recording; it is the user's to
+/// say that it is the right one.
+fn without_cask(recording: &Path) -> miette::Report {
+    let folder = recording.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let beside = std::fs::read_dir(folder.unwrap_or(Path::new("."))).into_iter().flatten().flatten();
+    let names = beside.map(|file| recording.with_file_name(file.file_name()));
+    let mut casks: Vec<PathBuf> =
+        names.filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
+    casks.retain(|path| ingest::cask_file::parse(path).is_ok());
+    let recording = quoted(recording);
+    let mend = match &casks[..] {
+        [cask] => format!("if it is that beside it: `dropcheck analyze {recording} --cask {}`", quoted(cask)),
+        _ => format!(
+            "write `dropcheck analyze {recording} --cask CASK.toml`; `dropcheck init {recording}` writes a \
+             cask file to fill in"
+        ),
+    };
+    miette!(help = mend, "there is no --cask, the cask file of {recording}")
+}
+
+/// A path as a word for a shell.
+fn quoted(path: &Path) -> String {
+    let path = report::printable(&path.display().to_string());
+    if path.contains(' ') { format!("\"{path}\"") } else { path }
+}
+
 /// Refuses a recording that is none to see by its name.
 fn refuse_names(recording: &Path, cask: Option<&Path>) -> miette::Result<()> {
     let [is_toml, cask_is_toml] = [Some(recording), cask]
         .map(|path| path.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case("toml")));
-    let shown = |path: &Path| report::printable(&path.display().to_string());
     let mend = "write it into a file, and name that";
     ensure!(recording != Path::new("-"), help = mend, "- stands for standard input, which is not read");
-    let cask = cask.map_or_else(|| "CASK.toml".to_owned(), shown);
-    let recording = shown(recording);
+    let cask = cask.map_or_else(|| "CASK.toml".to_owned(), quoted);
+    let recording = quoted(recording);
     let mend = format!("write `dropcheck analyze {cask} --cask {recording}`");
     ensure!(!is_toml || cask_is_toml, help = mend, "{recording} is a cask file by its name, and {cask} none");
     Ok(())
