@@ -116,6 +116,7 @@ class Asker {
 const forForm = new Asker();
 const forPrediction = new Asker();
 const forLook = new Asker();
+const forDemands = new Asker();
 const forRecording = new Asker();
 
 /** Bytes as another program may hand them over. */

@@ -209,6 +209,20 @@ async function shownAnew() {
   foretold();
 }
 
+/** What the recording asks for by this cask file, such as a rate or a column of times, as the analysis would say it. */
+async function demanded() {
+  const { recording, text } = state;
+  if (!recording || form.firstAtFault()) return;
+  await forDemands.stop();
+  try {
+    await forDemands.ask({ op: "read", name: recording.name, cask: text, cask_name: state.caskName }, recording);
+  } catch (refusal) {
+    if (refusal.message === STOPPED || text !== state.text || recording !== state.recording) return;
+    form.blame(refusal.key ?? fieldNamed(refusal), told(inField(refusal)));
+    say("form-word", `The recording asks for more: ${refusal.problem}.`);
+  }
+}
+
 /** A refusal under its field, which needs no line of the text. */
 const inField = ({ problem, mend }) => ({ problem: problem.replace(/^.{0,200}?, line \d+: /, ""), mend });
 
@@ -252,6 +266,7 @@ async function drawnAnew() {
 /** The prediction, once nothing more is typed for a while. */
 function foretold() {
   waiting = setTimeout(async () => {
+    demanded();
     const { cask, drop, contact, tolerance } = form.values;
     const isOpen = form.missing().some((path) => !path.startsWith("channel."));
     try {

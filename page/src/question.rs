@@ -1,7 +1,7 @@
 //! What the page asks, and what the program says to it.
 
 use crate::cask_text;
-use dropcheck::data::{Analysis, CaskFile, Listing, Program};
+use dropcheck::data::{Analysis, CaskFile, Listing, Program, Recording};
 use dropcheck::ingest::{self, IngestError, Limits, RecordingFile};
 use dropcheck::{report, stages};
 use miette::{IntoDiagnostic, Report, miette};
@@ -84,6 +84,7 @@ impl Question {
             "values" => cask_text::values(cask)?.to_string().into_bytes(),
             "edit" => cask_text::edited(cask, path, value.as_deref())?.into_bytes(),
             "check" => self.cask_file().map(|_| Vec::new())?,
+            "read" => self.read(&self.cask_file()?).map(|_| Vec::new())?,
             "setup" => report::setup_picture(&self.cask_file()?).into_bytes(),
             "predict" => {
                 let file = self.cask_file()?;
@@ -123,8 +124,8 @@ impl Question {
         Ok(files.swap_remove(0).1)
     }
 
-    fn analysis(&self) -> Result<Analysis, Report> {
-        let file = self.cask_file()?;
+    /// The recording by the cask file: what an analysis would ask for is refused here.
+    fn read(&self, file: &CaskFile) -> Result<Recording, Report> {
         let other_files = [
             ("`rest` out of [recording]", "rest", file.rest.is_some()),
             ("[simulation] out", "calculation", file.simulation.is_some()),
@@ -136,8 +137,12 @@ impl Question {
                 self.cask_name()
             ));
         }
-        let recording =
-            stages::read_within(self.recording(), &file, Limits::of_memory(MEMORY_BYTES), &|_| ())?;
+        Ok(stages::read_within(self.recording(), file, Limits::of_memory(MEMORY_BYTES), &|_| ())?)
+    }
+
+    fn analysis(&self) -> Result<Analysis, Report> {
+        let file = self.cask_file()?;
+        let recording = self.read(&file)?;
         let mut analysis = dropcheck::analyze(&recording, &file);
         analysis.result.program = Some(Program::this());
         analysis.result.analysed.clone_from(&self.header.analysed);
