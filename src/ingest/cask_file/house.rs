@@ -60,7 +60,9 @@ mod tests {
     fn with(house: Option<&str>, cask: &str) -> Result<CaskFile, String> {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("a")).unwrap();
-        house.map(|house| std::fs::write(folder.path().join("house.toml"), house).unwrap());
+        if let Some(house) = house {
+            std::fs::write(folder.path().join("house.toml"), house).unwrap();
+        }
         let path = folder.path().join("a/cask.toml");
         std::fs::write(&path, cask).unwrap();
         parse(&path).map_err(|error| format!("{error} {}", miette::Diagnostic::help(&error).unwrap()))

@@ -40,8 +40,8 @@ impl Section<'_> {
                 let unit = if key.ends_with("_deg") { " degrees" } else { "" };
                 (format!(", outside {}{unit}", allowed.words()), why)
             }
-            Allowed::FromZero => (": it must not be below 0".into(), &check[..]),
-            _ => (": it must be above 0".into(), &check[..]),
+            Allowed::FromZero => (": it must not be below 0".into(), check),
+            _ => (": it must be above 0".into(), check),
         };
         Err(self.refuse(key, format!("{what}{must}"), mend))
     }
