@@ -296,3 +296,20 @@ fn a_missing_wall_is_told_and_no_soft_link_followed_without_it() {
     assert!(!std::fs::read_to_string(&trace).unwrap().contains("other.h5"));
     assert!(!made.inspect().stdout.contains("keeps from no other file"));
 }
+
+/// A key of the index of chunks, changed so that the library does not find the last of A1 and reads zeros.
+#[test]
+fn samples_of_a_chunk_that_the_index_does_not_lead_to_are_named() {
+    let mut bytes = std::fs::read(fixture("vhlw-rest.h5")).unwrap();
+    let node = bytes.windows(5).position(|five| five == b"TREE\x01").unwrap();
+    bytes[node + 24 + 3 * 32 + 22] = 0xff;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("r.h5");
+    std::fs::write(&path, bytes).unwrap();
+    let answer = crate::run::analyze(&path, &fixture("vhlw-rest.toml"));
+    assert!(
+        answer.status == 2 && answer.stderr.contains("/daq/A1 lacks its samples 12865 to 17149"),
+        "{}",
+        answer.stderr
+    );
+}

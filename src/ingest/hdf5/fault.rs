@@ -8,6 +8,8 @@ use std::path::Path;
 /// What makes a file that needs more than is built in one that does not.
 pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
 
+/// What mends a damaged copy.
+pub(super) const AGAIN: &str = "copy the file from the logger again";
 /// What begins the words for what the C library alone reads, or may.
 pub(super) const BEYOND: &str = "only the HDF5 library reads ";
 

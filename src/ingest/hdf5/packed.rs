@@ -3,13 +3,10 @@
 
 use super::answer::{Dataset, Packing, RecordField, Slab, Storage, StoredChunk};
 use super::column::{DatasetColumn, Place};
-use super::fault::REPACK;
+use super::fault::{AGAIN, REPACK};
 use crate::data::Samples;
-use crate::ingest::Limits;
 use crate::ingest::number_type::{NumberType, for_number_types};
-use crate::ingest::recording_file::OpenFile;
-use crate::ingest::refusal::Refusal;
-use crate::ingest::{RecordingFile, unpack};
+use crate::ingest::{Limits, RecordingFile, recording_file::OpenFile, refusal::Refusal, unpack};
 use rayon::prelude::*;
 use std::io::{Read, Seek, SeekFrom};
 
@@ -62,17 +59,48 @@ impl DatasetColumn {
                 let problem = format!(
                     "cannot be unpacked from {stored}: damaged, or by other filters than deflate and shuffle"
                 );
-                return Err(Refusal::of(
-                    &self.source,
-                    problem,
-                    format!("copy the file from the logger again, or {REPACK}"),
-                ));
+                let mend = format!("{AGAIN}, or {REPACK}");
+                return Err(Refusal::of(&self.source, problem, mend));
             }
             Place::Whole => Slab::Whole,
             Place::Row => Slab::Row(self.index),
             Place::Column => Slab::Column(self.index),
         };
-        self.file.values(&self.path, slab, self.length, self.number.is_wide())
+        let read = self.file.values(&self.path, slab, self.length, self.number.is_wide())?;
+        let problem = |(from, upto)| {
+            format!("lacks its samples {from} to {upto}: the damaged index leads to no chunk of them")
+        };
+        let lost = self.lost_rows(&read).map(|rows| Refusal::of(&self.source, problem(rows), AGAIN));
+        lost.map_or(Ok(read), Err)
+    }
+
+    /// The first and last number of a chunk that the library does not find, and takes for zeros that were
+    /// never written, though the index lists it with other numbers, or lists one in its stead elsewhere.
+    fn lost_rows(&self, read: &Samples) -> Option<(usize, usize)> {
+        let Storage::Chunked { shape, chunks: Some(listed) } = &self.dataset.storage else { return None };
+        let value_bytes = usize::try_from(self.dataset.value_bytes).ok()?;
+        let (rows, packing, index) = (0, Packing::Plain, self.index);
+        let layout = ChunkLayout { rows, columns: 1, value_bytes, packing, field: None, index };
+        let (layout, chunks) = layout.in_chunks(&self.dataset, shape, listed)?;
+        if matches!(self.place, Place::Row) || self.dataset.shape.as_ref()?.first() != Some(&self.length) {
+            return None;
+        }
+        let is_moved = chunks.iter().any(|chunk| chunk.row >= self.length)
+            || chunks.windows(2).any(|two| two[0].row == two[1].row);
+        let source = RecordingFile { path: &self.file.path, in_memory: self.file.in_memory.as_ref() };
+        let (mut file, mut packed, mut bytes) = (source.opened().ok()?, Vec::new(), Vec::new());
+        let mut is_lost = |row: usize, upto: usize| {
+            let is_blank = (row..upto).all(|i| read.get(i).to_bits() == 0);
+            let chunk = chunks.iter().find(|chunk| chunk.row == row);
+            is_blank
+                && chunk.map_or(is_moved, |chunk| {
+                    let unpacked = layout.unpack(&mut file, chunk, &mut packed, &mut bytes);
+                    unpacked.is_some() && layout.columns == 1 && layout.has_number(&bytes, upto - row)
+                })
+        };
+        let upto = |row: usize| row.saturating_add(layout.rows).min(self.length);
+        let mut stretches = (0..self.length).step_by(layout.rows.max(1));
+        stretches.find(|&row| is_lost(row, upto(row))).map(|row| (row + 1, upto(row)))
     }
 }
 
@@ -205,6 +233,13 @@ impl ChunkLayout<'_> {
         }
         bytes.resize(whole, 0);
         (unpack::inflate(packed, true, bytes)? == whole).then_some(())
+    }
+
+    /// Whether one of the first `count` values in the bytes of a chunk of one column is not zero.
+    fn has_number(&self, bytes: &[u8], count: usize) -> bool {
+        let is_shuffled = self.packing == Packing::ShuffledDeflated;
+        let (next, within) = if is_shuffled { (1, self.rows) } else { (self.value_bytes, 1) };
+        (0..count).any(|i| (0..self.value_bytes).any(|byte| bytes[i * next + byte * within] != 0))
     }
 
     /// The chunk's share of the column out of its bytes; `None` where it is short of it.
