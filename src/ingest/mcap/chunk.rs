@@ -79,6 +79,11 @@ impl Chunk {
         self.header.as_ref().filter(|_| self.fault.is_none()).map_or(0, |header| header.uncompressed)
     }
 
+    /// Whether it states a sum of its own.
+    pub(super) fn has_sum(&self) -> bool {
+        self.header.as_ref().is_none_or(|header| header.check_sum != 0)
+    }
+
     /// The name of its compression, where its header can be read.
     pub(super) fn compression(&self) -> Option<&str> {
         self.header.as_ref().map(|header| header.compression.as_str())

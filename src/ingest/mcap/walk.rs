@@ -231,9 +231,6 @@ impl<'a> Walk<'a> {
 
     /// A chunk, which waits until there are enough to be unpacked beside one another.
     fn chunk(&mut self, claimed: u64, available: u64) -> Result<ControlFlow<()>, IngestError> {
-        // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's
-        // length.
-        self.file.get_mut().sum = None;
         let part_bytes = self.request.limits.part_bytes();
         self.hold("one of its chunks takes", claimed.min(available), part_bytes)?;
         let mut chunk =
@@ -244,6 +241,10 @@ impl<'a> Walk<'a> {
         std::mem::swap(&mut self.body, &mut chunk.body);
         self.at += RECORD_HEADER_BYTES + claimed.min(available);
         chunk.begin();
+        // The sum of all is for what has none of its own; Rust's writer leaves chunks without one out of it.
+        if chunk.has_sum() || self.scanned.library.starts_with("mcap-rust") {
+            self.file.get_mut().sum = None;
+        }
         self.hold("one of its chunks claims to unpack to", chunk.claim(), part_bytes)?;
         self.claimed_bytes = self.claimed_bytes.saturating_add(chunk.claim());
         self.keep_within()?;
