@@ -2,7 +2,7 @@
 //! of a cask file, one row a key.
 
 use super::cask::Cask;
-use super::key::{FROM_ZERO, Key, Takes};
+use super::key::{Key, Takes, within};
 use ToleranceUnit::{Degrees, Metres, MetresOf, MetresPerSecond, Percent};
 
 /// The unit of a tolerance in the cask file; it is held in SI units or as a share.
@@ -75,6 +75,9 @@ impl Tolerance {
     }
 }
 
+/// Ten times a percentage, and the longest cask: beyond, an analysis draws without end.
+const WIDEST: f64 = 1000.0;
+
 /// Declares the tolerances. A row has the field and what it holds, the key with its unit and its default, the
 /// name in the report, and the remark in the form that `init` writes; where the default depends on the cask,
 /// the words for it and an example.
@@ -101,7 +104,7 @@ macro_rules! tolerances {
         pub const TOLERANCE: [Key; TOLERANCES.len()] = [$(
             Key {
                 name: $key,
-                takes: FROM_ZERO,
+                takes: within(0.0, WIDEST, "half-width of the 95 % interval, in the unit that ends the key"),
                 default: [$($default_words,)? stringify!($default)][0],
                 example: [$($example,)? stringify!($default)][0],
                 remark: $remark,
