@@ -29,10 +29,8 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
         let refused = |refusal| error::of_channel(path, &stated.name, refusal);
         if let Some(rows) = &stated.rows {
             let problem = format!("{rows} picks rows of a file, and these are samples in memory");
-            return Err(refused(Refusal::new(
-                problem,
-                "take `where` out, and hand over the samples of this sensor alone",
-            )));
+            let mend = "take `where` out, and hand over the samples of this sensor alone";
+            return Err(refused(Refusal::new(problem, mend)));
         }
         let said = |rate_hz| Statement::by(format!("rate_hz = {rate_hz}"), rate_hz, 0.0);
         let claims = Claims {

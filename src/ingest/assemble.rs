@@ -1,11 +1,7 @@
 //! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
 
 use super::error::{self, IngestError};
-use super::factors;
-use super::refusal::Refusal;
-use super::repeats;
-use super::shown;
-use super::{RawChannel, RawRecording};
+use super::{RawChannel, RawRecording, factors, refusal::Refusal, repeats, shown};
 use crate::data::{
     CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, OtherChannels, OtherSpec, Recording,
     RecordingFormat, SAMPLE_RATES_HZ, STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2, rate_unit_rad_s,
@@ -171,33 +167,27 @@ fn scale_of(spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, Ref
             .map(|text| ChannelFinding::OtherUnit { stated: name.to_owned(), recorded: text.to_owned() });
         return Ok(UnitScale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
     }
+    let source = &spec.source;
     let Some(text) = recorded else {
         return Err(Refusal::new(
-            format!("neither the recording nor the cask file says the unit of {}", spec.source),
+            format!("neither the recording nor the cask file says the unit of {source}"),
             "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of \
              the cask file",
         ));
     };
-    match acceleration_unit_m_s2(text) {
-        Some(m_s2) => Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
-        None if matches!(&text.trim().to_lowercase()[..], "v" | "mv" | "volt" | "volts") => {
-            Err(Refusal::new(
-                format!("the recording gives {} in {text:?}, a voltage", spec.source),
-                format!(
-                    "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in \
-                     this channel of the cask file"
-                ),
-            ))
-        }
-        None => Err(Refusal::new(
-            format!(
-                "the recording gives {} in {text:?}, which is no unit of acceleration known here",
-                spec.source
-            ),
-            "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel \
-             of the cask file",
-        )),
+    if let Some(m_s2) = acceleration_unit_m_s2(text) {
+        return Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None });
     }
+    let (what, mend) = if matches!(&text.trim().to_lowercase()[..], "v" | "mv" | "volt" | "volts") {
+        let unit =
+            format!("write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet)");
+        ("a voltage", unit)
+    } else {
+        let check = "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\"";
+        ("which is no unit of acceleration known here", check.to_owned())
+    };
+    let problem = format!("the recording gives {source} in {text:?}, {what}");
+    Err(Refusal::new(problem, format!("{mend} in this channel of the cask file")))
 }
 
 /// The unit of a channel that takes no part in the motion, any text; its samples stay as they are.

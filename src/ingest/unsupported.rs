@@ -95,21 +95,15 @@ pub(super) fn named(head: &[u8]) -> Option<(&'static str, Remedy)> {
 /// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length
 /// of the name, which follows with a zero byte (MathWorks, MAT-file format, appendix on level 4).
 fn is_matlab_4(head: &[u8]) -> bool {
-    let (words, _) = head.as_chunks::<4>();
-    let [kind, rows, columns, imaginary, length, ..] = words else { return false };
     let is_level_4 = |read: fn([u8; 4]) -> u32, least_type: u32| {
-        let [kind, rows, columns, imaginary, length] =
-            [kind, rows, columns, imaginary, length].map(|word| read(*word));
-        let is_type = kind.checked_sub(least_type).is_some_and(|kind| kind <= 52 && kind % 10 <= 2);
-        let name = head.get(20..20 + length.min(64) as usize);
-        let is_name = name.and_then(|name| name.split_last()).is_some_and(|(end, name)| {
-            *end == 0
-                && !name.is_empty()
-                && name.iter().all(|&byte| byte == b'_' || byte.is_ascii_alphanumeric())
-        });
-        is_type && rows > 0 && columns > 0 && imaginary <= 1 && is_name
+        let [kind, rows, columns, imaginary, length] = head.as_chunks().0.first_chunk()?.map(read);
+        let kind = kind.checked_sub(least_type)?;
+        let (end, name) = head.get(20..20 + length.min(64) as usize)?.split_last()?;
+        let is_name = name.iter().all(|&byte| byte == b'_' || byte.is_ascii_alphanumeric());
+        let is_type = kind <= 52 && kind % 10 <= 2 && imaginary <= 1;
+        Some(is_type && rows > 0 && columns > 0 && *end == 0 && !name.is_empty() && is_name)
     };
-    is_level_4(u32::from_le_bytes, 0) || is_level_4(u32::from_be_bytes, 1000)
+    [is_level_4(u32::from_le_bytes, 0), is_level_4(u32::from_be_bytes, 1000)].contains(&Some(true))
 }
 
 /// Texts with numbers in them that are no table of samples.

@@ -50,12 +50,8 @@ pub(super) fn table_bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
 fn courses(analysis: &Analysis) -> Vec<AccelerationCourse<'_>> {
     let rate_hz = |time_s: &[f64]| Some(as_f64(time_s.len().checked_sub(1)?) / (time_s.last()? - time_s[0]));
     let in_motion = analysis.curves.channels.iter().filter_map(|curve| {
-        let force_m_s2 = curve.raw_m_s2.clone();
-        Some(AccelerationCourse {
-            channel: &curve.channel,
-            sample_rate_hz: rate_hz(&curve.time_s)?,
-            force_m_s2,
-        })
+        let (force_m_s2, sample_rate_hz) = (curve.raw_m_s2.clone(), rate_hz(&curve.time_s)?);
+        Some(AccelerationCourse { channel: &curve.channel, sample_rate_hz, force_m_s2 })
     });
     let contact_s = analysis.result.events.first_contact_s().unwrap_or(f64::INFINITY);
     let others = analysis.curves.others.iter().filter_map(move |curve| {
@@ -63,11 +59,8 @@ fn courses(analysis: &Analysis) -> Vec<AccelerationCourse<'_>> {
         let falls = curve.time_s.partition_point(|t| *t < contact_s);
         let (level, _) = robust::mean_and_rms(&curve.values[..falls]);
         let force_m_s2 = curve.values.iter().map(|value| unit_m_s2 * (value - level)).collect();
-        Some(AccelerationCourse {
-            channel: &curve.channel,
-            sample_rate_hz: rate_hz(&curve.time_s)?,
-            force_m_s2,
-        })
+        let sample_rate_hz = rate_hz(&curve.time_s)?;
+        Some(AccelerationCourse { channel: &curve.channel, sample_rate_hz, force_m_s2 })
     });
     in_motion.chain(others).collect()
 }

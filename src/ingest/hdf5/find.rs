@@ -133,11 +133,8 @@ pub(super) fn channels(
             return Err(Refusal::of(path, problem, "save each channel as a dataset of its own"));
         }
         _ => {
-            return Err(Refusal::of(
-                path,
-                format!("has {} dimensions", shape.len()),
-                "only one and two dimensions are read; save the channel as a dataset of its own",
-            ));
+            let mend = "only one and two dimensions are read; save the channel as a dataset of its own";
+            return Err(Refusal::of(path, format!("has {} dimensions", shape.len()), mend));
         }
     };
     let dataset = Rc::new(dataset.clone());

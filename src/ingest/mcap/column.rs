@@ -3,10 +3,7 @@
 use super::numbers::{Extent, append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
-use crate::ingest::counting::SteadyNumbers;
-use crate::ingest::factors;
-use crate::ingest::refusal::Refusal;
-use crate::ingest::time_base::PREFIX;
+use crate::ingest::{counting::SteadyNumbers, factors, refusal::Refusal, time_base::PREFIX};
 
 mod based;
 

@@ -5,15 +5,10 @@ use super::files::MmeFiles;
 use super::header::{HeadedText, HeaderLine};
 use super::index::IndexedChannel;
 use crate::data::{Finding, Samples, TableFinding};
-use crate::ingest::Limits;
-use crate::ingest::clock::Claims;
-use crate::ingest::error::IngestError;
-use crate::ingest::lines;
-use crate::ingest::number;
-use crate::ingest::refusal::Refusal;
-use crate::ingest::statement::Statement;
 use crate::ingest::time_base::{self, Uniform};
-use crate::ingest::vocabulary::Meaning;
+use crate::ingest::{IngestError, Limits, clock::Claims, lines, number, refusal::Refusal};
+use crate::ingest::{statement::Statement, vocabulary::Meaning};
+use crate::numerics::as_count;
 
 /// Names of the lines that are applied.
 const UNIT: &str = "Unit";
@@ -115,19 +110,19 @@ impl<'a> ChannelFile<'a> {
 
     /// Holds the numbers against the count that is stated; without it, or below it, a last line that is not
     /// ended was cut.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "compared with a count only")]
     fn hold_count(&mut self) -> Result<(), IngestError> {
-        let stated = self.number(COUNT)?.map(|stated| stated as u64);
+        let stated = self.number(COUNT)?.map(as_count);
         let rows = self.values.len();
         let last = self.text.above + rows as u64;
-        if let Some(stated) = stated.filter(|stated| *stated < rows as u64) {
+        if let Some(stated) = stated.filter(|stated| *stated < rows) {
             return Err(self.text.fault(last, format!("it is number {rows}, and {COUNT} is {stated}")));
         }
-        let is_short = stated != Some(rows as u64);
+        let is_short = stated != Some(rows);
         let is_cut = is_short && !self.text.rest.ends_with(b"\n") && self.values.pop().is_some();
         let cut = is_cut.then_some(TableFinding::CutLine { line: last });
         let zeros = self.text.has_zeros.then_some(TableFinding::ZeroBytes { line: last + 1 });
-        let missing = stated.filter(|_| is_short).map(|stated| TableFinding::RowsMissing { stated, rows });
+        let missing = |stated: usize| TableFinding::RowsMissing { stated: stated as u64, rows };
+        let missing = stated.filter(|_| is_short).map(missing);
         self.issues.extend(zeros.or(cut).into_iter().chain(missing).map(Finding::from));
         Ok(())
     }

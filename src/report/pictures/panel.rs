@@ -1,7 +1,7 @@
 //! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the
 //! size, so that its whole-pixel coordinates stay fine.
 
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, extent};
 use std::ops::Range;
 
 /// Width of a picture in drawing units.
@@ -247,8 +247,7 @@ impl PanelAxis {
         if let Some((from, to)) = self.range {
             return from..to;
         }
-        let (low, high) =
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = extent(values);
         if self.scale == AxisScale::Logarithmic {
             return low..high.max(low * 10.0) * 10f64.powf(air);
         }
