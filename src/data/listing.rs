@@ -17,6 +17,9 @@ pub struct ListedChannel {
     /// Which rows of it these are, where it holds those of several sensors: what to write as `where`.
     #[serde(rename = "where", skip_serializing_if = "Option::is_none")]
     pub rows: Option<RowsOf>,
+    /// What to write as `time`, where channels have times of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
     /// What it is: "number", "array", "dataset", "column", "topic" (nothing numeric could be decoded).
     pub kind: String,
     /// Number of samples (numbers), where it is known.

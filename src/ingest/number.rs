@@ -185,13 +185,13 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
 /// What stands for no value, after a sign and "#": of spreadsheets, of C libraries, of loggers whose
 /// converter ran over its range.
 #[rustfmt::skip]
-const MISSING: [&str; 36] = [
+const MISSING: [&str; 41] = [
     "nan", "nan(ind)", "inf", "infinity", "∞", "null", "none", "na", "n/a", "nv", "novalue", "no value",
     "-", "--",
     "value!", "wert!", "div/0!", "num!", "zahl!", "ref!", "bezug!", "name?", "null!", "1.#qnan", "1.#ind",
     "1.#inf",
     "ol", "ovl", "ovld", "over", "overload", "overrange", "overflow",
-    "err", "error", "n.a.",
+    "err", "error", "n.a.", "nichtzahl", "\\n", "<na>", "no data", "Überlauf",
 ];
 
 /// Whether a cell says that there is no value: `-`, `NaN`, `#N/A`, `-OVL`, `######`, `>400`.

@@ -168,6 +168,7 @@ pub(super) mod tests {
 
     pub(in super::super) fn listed(source: &str, kind: &str, unit: Option<&str>) -> ListedChannel {
         ListedChannel {
+            time: None,
             source: source.into(),
             rows: None,
             kind: kind.into(),

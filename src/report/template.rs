@@ -154,7 +154,8 @@ fn head(listing: &Listing) -> Vec<String> {
         let mark = if table.keys.iter().any(|key| key.is_asked) { "" } else { "# " };
         out.push(entry(&format!("{mark}[{}]", table.name), table.remark));
         out.extend(table.keys.iter().map(|key| {
-            match time.filter(|_| (table.name, key.name) == ("recording", "time")) {
+            let is_for_all = (table.name, key.name) == ("recording", "time");
+            match time.filter(|_| is_for_all && listing.channels.iter().all(|c| c.time.is_none())) {
                 Some(time) => entry(&format!("# time = {}", quoted(&time.source)), key.remark),
                 None => key_line(key),
             }
@@ -219,6 +220,9 @@ fn channel(out: &mut Vec<String>, index: usize, listed: &ListedChannel) {
             }
             // They stand beside the unit and the coupling that need them.
             "sensitivity" | "time_constant_s" => continue,
+            "time" if let Some(time) = &listed.time => {
+                entry(&format!("# time = {}", quoted(time)), key.remark)
+            }
             "where" if let Some(rows) = &listed.rows => {
                 format!("where = {{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is))
             }

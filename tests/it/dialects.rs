@@ -186,3 +186,58 @@ fn what_is_wrong_with_a_table_is_said_as_it_is() {
     let numbered = complaint("x-axis,1,2\nsecond,g,g", &keysight).1;
     assert!(numbered.contains("no column is headed \"A1\""), "{numbered}");
 }
+
+#[test]
+fn layouts_of_loggers_give_the_numbers_of_the_plain_table() {
+    let rows = sound();
+    let plain = analyze(&fixture("anf10-plain.csv"), &fixture("anf10-plain.toml")).json();
+    let k = number(&plain, "/k/value").expect("k");
+    let us = |at: usize| 900_000 + 80 * at;
+    let stamp = |at: usize| format!("2026/11/20 12:34:{}", 56 + us(at) / 1_000_000);
+    let values = |at: usize, mark: &str| format!("{}{mark}{}", rows[at][0], rows[at][1]);
+    let slower = |at: usize| rows.get(2 * at).map_or_else(String::new, |row| row[1].to_string());
+    let labview = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t2\t\n\
+                   Y_Unit_Label\tg\tg\nX_Dimension\tTime\tTime\nX0\t0.0\t0.0\nDelta_X\t8.0E-5\t1.6E-4\n\
+                   ***End_of_Header***\nA1\tA2\tComment";
+    let msr = "*CREATOR\nMSR\n*STARTTIME\n2026-11-20;12:34:56;\n*CHANNEL\nTIME;A1;A2\n*UNIT\n;G;G\n*DATA";
+    let graphtec = "Vendor,GRAPHTEC Corporation\nSampling interval,80us\nNumber,Date&Time,ms,A1,A2,Alarm\n\
+                    NO.,Time,ms,g,g,A";
+    let layouts: [(&str, &dyn Fn(usize) -> String); 5] = [
+        (graphtec, &|at| {
+            let ms = us(at) % 1_000_000;
+            format!("{},{},{}.{:03},{},LL", at + 1, stamp(at), ms / 1000, ms % 1000, values(at, ","))
+        }),
+        (msr, &|at| {
+            format!(
+                "2026-11-20 12:34:{}.{:06};{}",
+                56 + us(at) / 1_000_000,
+                us(at) % 1_000_000,
+                values(at, ";")
+            )
+        }),
+        ("stamp.sec,stamp.nsec,A1,A2", &|at| {
+            format!(
+                "{},{},{}",
+                1_795_000_000 + us(at) / 1_000_000,
+                us(at) % 1_000_000 * 1000,
+                values(at, ",")
+            )
+        }),
+        (labview, &|at| format!("{}\t{}", rows[at][0], slower(at))),
+        ("Delta : 0.00008 sec.\nA1 [g];A2 [g]", &|at| values(at, ";")),
+    ];
+    for (head, row) in layouts {
+        let answer = analyzed(&table(head, (0..rows.len()).map(row)), false);
+        assert_ne!(answer.status, 2, "{head}: {}", answer.stderr);
+        let own = number(&answer.json(), "/k/value").expect("k");
+        assert!((own - k).abs() < 0.001, "{head}: {own} for {k}");
+    }
+}
+
+/// The end of one recording of a second and the beginning of the next fall back as a clock within each second.
+#[test]
+fn recordings_of_a_second_that_follow_one_another_are_not_joined() {
+    let row = |at: usize| format!("{:.4},{at},{}", timed(at % 12_500), at % 7);
+    let answer = analyzed(&table("Time [s],A1,A2", (0..25_000).map(row)), false);
+    assert!(answer.status == 2 && answer.stderr.contains("falls back by 1 s"), "{}", answer.stderr);
+}

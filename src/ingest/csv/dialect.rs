@@ -43,7 +43,10 @@ impl Dialect {
         for (delimiter, decimal) in DIALECTS.iter().flat_map(|(own, marks)| marks.map(|mark| (*own, mark))) {
             let dialect = Self { delimiter: Delimiter(delimiter), decimal };
             let Some(judged) = dialect.judge(&lines) else { continue };
-            if best.as_ref().is_none_or(|(_, held)| judged.score > held.score) {
+            // A tab behind the last value is an empty cell: a column of a slower rate has ended.
+            let is_more = |held: &Judged| delimiter == b'\t' && judged.columns > held.columns;
+            let is_better = |held: &Judged| judged.score + i64::from(is_more(held)) > held.score;
+            if best.as_ref().is_none_or(|(_, held)| is_better(held)) {
                 best = Some((dialect, judged));
             }
         }
@@ -125,8 +128,10 @@ impl Dialect {
             .filter(|&c| if has_plain { is_plain(c) } else { judged.is_numeric[c] })
             .map(|c| cells[c])
             .collect();
-        let values = decisive.iter().filter(|cell| self.is_value(cell)).count();
+        // A clock time above numbers is no value: loggers state when they began.
+        let is_value = |cell: &str| self.is_value(cell) && !(has_plain && stamp::is_stamp(cell.as_bytes()));
+        let values = decisive.iter().filter(|cell| is_value(cell)).count();
         2 * values >= decisive.len()
-            && decisive.iter().all(|cell| self.is_value(cell) || number::is_missing(cell.as_bytes()))
+            && decisive.iter().all(|cell| is_value(cell) || number::is_missing(cell.as_bytes()))
     }
 }

@@ -52,7 +52,10 @@ pub(super) fn header(
         }
         (line, cells)
     };
-    let mut nearest: Vec<(usize, Vec<String>)> = filled.clone().take(MOST_LINES).map(cells).collect();
+    // MSR's loggers mark what follows: `*CHANNEL`, `*UNIT`, `*DATA`.
+    let is_mark = |(_, cells): &(usize, Vec<String>)| matches!(&cells[..], [one] if one.starts_with('*'));
+    let mut nearest: Vec<(usize, Vec<String>)> =
+        filled.clone().map(cells).filter(|it| !is_mark(it)).take(MOST_LINES).collect();
     // Rigol's oscilloscopes head "X,CH1,Start,Increment", and below "Sequence,Volt,-0.05,1e-6" stand fewer
     // cells.
     let mut interval = None;
@@ -65,7 +68,12 @@ pub(super) fn header(
     }
     let titled = |is: fn(&str) -> bool| filled.clone().map(cells).find(|(_, cells)| is(&cells[0]));
     let of_title = titled(vocabulary::titles_units).filter(|(_, cells)| is_units(&cells[1..]));
-    let of_title = of_title.map(|(_, cells)| [vec![String::new()], cells[1..].to_vec()].concat());
+    // LabVIEW's title stands above no column where there is none of times.
+    let is_beside = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count() > judged.columns;
+    let of_title = of_title.map(|(_, cells)| {
+        let before = vec![String::new(); usize::from(!is_beside(&cells))];
+        [before, cells[1..].to_vec()].concat()
+    });
     let fitting = |cells: &[String]| fitting(cells.to_vec(), judged);
     // Keysight's oscilloscopes number their channels: `x-axis,1,2` above `second,Volt,Volt`.
     let is_numbered = |cells: &[String]| {

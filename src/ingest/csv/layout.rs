@@ -192,6 +192,12 @@ impl Layout {
         found.unwrap_or_else(|| number.map(|number| number - 1).into_iter().collect())
     }
 
+    /// What a cask file calls a column: its header, or its number where others have the same.
+    pub(super) fn unique_name(&self, column: usize) -> String {
+        let header = &self.columns[column].header;
+        if self.find(header).len() == 1 { header.clone() } else { (column + 1).to_string() }
+    }
+
     /// Every header.
     pub(super) fn names(&self) -> Vec<String> {
         self.columns.iter().map(|column| column.header.clone()).collect()

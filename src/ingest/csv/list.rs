@@ -1,9 +1,6 @@
 //! Delimited text to the list of its columns, on the clock that reading one of them would take.
 
-use super::super::clock::Claims;
-use super::super::error::IngestError;
-use super::super::lines::Text;
-use super::super::refusal::Refusal;
+use super::super::{clock::Claims, error::IngestError, lines::Text, refusal::Refusal};
 use super::super::{number, shown};
 use super::columns::HeldColumn;
 use super::complaint::{no_table, row_error};
@@ -148,8 +145,8 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         Vec::new()
     });
     listed_clocks.resize_with(clocks.len(), ListedClock::default);
-    for clock in &mut listed_clocks {
-        clock.is_one_of_several = clocks.len() > 1;
+    for (clock, column) in listed_clocks.iter_mut().zip(&clocks).filter(|_| clocks.len() > 1) {
+        clock.shown.time = column.map(|column| layout.unique_name(column));
     }
     issues.extend(layout.preamble.of_rows(rows, listed_clocks[0].samples));
     let mut channels = Vec::new();
@@ -168,6 +165,13 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         );
         for (sensor, rows_of) in named.into_iter().enumerate() {
             let mut listed = listed(column, &ranges[index], sensor, clock, rows);
+            if layout.preamble.has_several_rates() && time_column.is_none() {
+                let stated = layout.preamble.statements(index);
+                listed.sample_rate_hz = stated.first().map(|stated| stated.rate_hz);
+                let last = ranges[index][0].rows.last;
+                listed.samples = Some(last as u64 + 1);
+                listed.duration_s = listed.sample_rate_hz.map(|rate_hz| as_f64(last) / rate_hz);
+            }
             if sensors.is_some_and(|it| it.column == index) {
                 listed.unreadable = Some("tells the rows of several sensors apart".to_owned());
                 listed.range = None;
@@ -201,7 +205,7 @@ fn plan(layout: &Layout, time_column: Option<usize>) -> ColumnPlan {
         found.find(|column| layout.time_of(*column) == time_column).or(time_column).unwrap_or_default();
     let claims = Claims { stated: layout.preamble.statements(column), ..Claims::default() };
     let rows = sensors.map(|it| (it.column, it.named(None)[0].to_owned()));
-    ColumnPlan { column, time_column, rows, start_s: 0.0, claims }
+    ColumnPlan { column, time_column, rows, start_s: 0.0, ends_alone: false, claims }
 }
 
 /// When the samples of every column were taken.
@@ -213,7 +217,6 @@ struct ListedClock {
     times_s: Vec<f64>,
     /// With those that times show to be missing.
     samples: usize,
-    is_one_of_several: bool,
 }
 
 impl ListedClock {
@@ -257,7 +260,6 @@ impl ListedClock {
             samples: uniform.samples.len(),
             first_s,
             times_s: times.unwrap_or_default(),
-            is_one_of_several: false,
         }
     }
 }
@@ -273,7 +275,7 @@ fn listed(
 ) -> ListedChannel {
     let (range, own) = (&ranges[0], &ranges[sensor]);
     let is_empty = own.rows.count == 0;
-    let is_short = clock.is_one_of_several && own.rows.count < rows;
+    let is_short = clock.shown.time.is_some() && own.rows.count < rows;
     let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || own.rows.lie_between() || is_short);
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
     let (first_s, last_s) = (time_s(own.rows.first), time_s(own.rows.last));
@@ -302,7 +304,8 @@ fn listed(
         duration_s: duration_s.or(clock.shown.duration_s),
         gaps: clock.shown.gaps.filter(|_| !is_apart),
         range: (!is_empty && !column.is_stamped).then_some(own.rows.range),
-        encoding: "text".into(),
+        encoding: clock.shown.time.as_ref().map_or("text".into(), |time| format!("text, times in {time:?}")),
+        time: clock.shown.time.clone(),
         unreadable,
         ..ListedChannel::named(&column.header, "column")
     }

@@ -1,10 +1,6 @@
 //! A channel of the cask file to what it takes from the table.
 
-use super::super::clock::Claims;
-use super::super::error;
-use super::super::number;
-use super::super::refusal::Refusal;
-use super::super::times::Scale;
+use super::super::{clock::Claims, error, number, refusal::Refusal, times::Scale};
 use super::header::TableColumn;
 use super::layout::Layout;
 use super::time_column;
@@ -20,6 +16,8 @@ pub(super) struct ColumnPlan {
     pub rows: Option<(usize, String)>,
     /// When it begins where no times say it, s.
     pub start_s: f64,
+    /// Whether it may end before others, at a rate of its own.
+    pub ends_alone: bool,
     /// What is said of its rate apart from its times.
     pub claims: Claims,
 }
@@ -33,9 +31,10 @@ impl ColumnPlan {
         layout: &Layout,
     ) -> Result<Self, Refusal> {
         let Source::Path(source) = &spec.source else {
+            let mend = "write the column's header: source = \"A1\"";
             return Err(Refusal::new(
                 "source gives a topic and a field, but this recording is a table",
-                "write the column's header: source = \"A1\"",
+                mend,
             ));
         };
         let column = find(path, source, layout)?;
@@ -66,15 +65,19 @@ impl ColumnPlan {
             stated: layout.preamble.statements(column),
         };
         if time_column.is_none() && claims.is_empty() {
-            return Err(Refusal::new(
-                match no_times(layout) {
-                    Some(why) => format!("no column of times was found: {why}"),
-                    None => format!("no column of times was found among {}", layout.names().join(", ")),
-                },
-                "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
-            ));
+            let (why, mend) = match no_times(layout) {
+                Some(why) => (format!(": {why}"), "correct it in a copy"),
+                None => (
+                    format!(" among {}", layout.names().join(", ")),
+                    "name it under [recording]: time = \"…\"",
+                ),
+            };
+            let problem = format!("no column of times was found{why}");
+            return Err(Refusal::new(problem, format!("{mend}, or give this channel sample_rate_hz")));
         }
-        Ok(Self { column, time_column, rows, start_s: layout.preamble.start_s(column), claims })
+        let start_s = layout.preamble.start_s(column);
+        let ends_alone = layout.preamble.has_several_rates();
+        Ok(Self { column, time_column, rows, start_s, ends_alone, claims })
     }
 
     /// Whether the cask file says what to go by: a rate, or which column holds the times.
@@ -109,12 +112,12 @@ fn find(path: &Path, wanted: &str, layout: &Layout) -> Result<usize, Refusal> {
 /// No row is of the sensor `is`.
 pub(super) fn no_such_sensor(layout: &Layout, column: usize, is: &str) -> Refusal {
     let named = layout.sensors.iter().find(|it| it.column == column).map_or(Vec::new(), |it| it.named(None));
-    let holds =
-        if named.is_empty() { String::new() } else { format!(", which holds {}", error::handful(&named)) };
-    Refusal::new(
-        format!("no row has {is:?} in the column {:?}{holds}", layout.columns[column].header),
-        "write a word that stands there: where = { column = …, is = … }",
-    )
+    let header = &layout.columns[column].header;
+    let problem = format!("no row has {is:?} in the column {header:?}");
+    let Some(first) = named.first() else { return Refusal::new(problem, "write a word that stands there") };
+    let choice = RowsOf { column: header.clone(), is: (*first).to_owned() };
+    let mend = format!("write a word that stands there, as {choice}");
+    Refusal::new(format!("{problem}, which holds {}", error::handful(&named)), mend)
 }
 
 /// That no column holds times, with the one that looks most like it.

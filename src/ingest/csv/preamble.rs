@@ -4,9 +4,8 @@ use super::super::lines::Line;
 use super::cells::Delimiter;
 use super::header::{header_cells, name_and_unit};
 use crate::data::{Finding, TableFinding};
-use crate::ingest::factors;
-use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};
+use crate::ingest::{factors, statement::Statement, statement::number_and_unit};
 
 /// What closes the header of LabVIEW's measurement files, and that of the first segment in it.
 const END_OF_HEADER: &str = "***End_of_Header***";
@@ -40,14 +39,19 @@ impl Preamble {
         let interval = interval.and_then(|text| Statement::of("Increment", text, Meaning::Interval(1.0)));
         let rates = interval.into_iter().map(|stated| stated.at(1)).collect();
         let starts = labview_cells(above, delimiter, "X0");
-        let starts_s = starts.iter().map(|cell| cell.replace(',', ".").parse().unwrap_or(0.0)).collect();
-        let intervals = labview_rates(above, delimiter);
+        // Without columns of times the names of these lines may head none of the samples.
+        let is_no = labview_cells(above, delimiter, "X_Columns").get(1).is_some_and(|word| word == "No");
+        let first = usize::from(is_no && labview_cells(above, delimiter, "X_Value").is_empty());
+        let start_s = |cell: &String| cell.replace(',', ".").parse().unwrap_or(0.0);
+        let starts_s = starts.iter().skip(first).map(start_s).collect();
+        let intervals = labview_rates(above, delimiter).split_off(first.min(starts.len()));
         let mut preamble = Self { rates, intervals, starts_s, ..Self::default() };
         for line in above {
             preamble.factors.extend(factor_in(&line.text, delimiter));
             let Some((name, value)) = entry(&line.text, delimiter) else { continue };
             let Some((number, unit)) = number_and_unit(&value) else { continue };
-            match meaning(&name) {
+            // DASYLab's interval: `Delta : 0.0001 sec.`.
+            match meaning(if name == "Delta" { "dt" } else { &name }) {
                 Some(Meaning::Count) => preamble.counts.extend(number.parse::<u64>()),
                 // A bare number may be in Hz or kHz, in s or ms; that of Yokogawa's oscilloscopes is in s.
                 Some(meaning) if !unit.is_empty() || ends_in_unit(&name) || name == "HResolution" => {
@@ -73,6 +77,12 @@ impl Preamble {
         stated.dedup_by(|one, other| one.place == other.place);
         stated.extend(self.rates.iter().cloned());
         stated
+    }
+
+    /// Whether columns have rates of their own, so that one may end before another.
+    pub(super) fn has_several_rates(&self) -> bool {
+        let mut rates = self.intervals.iter().flatten();
+        rates.next().is_some_and(|first| rates.any(|other| other.place != first.place))
     }
 
     /// A warning where fewer rows are there than every count that is stated, also with the samples between

@@ -309,10 +309,10 @@ impl<'a> Table<'a> {
         let times_of = |plan: &ColumnPlan| Some(columns[wanted.slot(plan.time_column?)].values());
         let channels = samples.into_par_iter().zip(*plans).zip(own_rows);
         let uniform = |((samples, plan), is_own): ((Vec<f64>, &ColumnPlan), &Option<Vec<bool>>)| {
-            let Some(is_own) = is_own else { return on_base(Samples::F64(samples), base_of(plan), plan) };
+            let Some(is_own) = is_own else { return on_base(samples, base_of(plan), plan) };
             let times = times_of(plan).map(|times| picked(&times, is_own));
             let base = times.as_deref().map(|times| Base::Each(ChannelTimes::new(times)));
-            on_base(Samples::F64(picked(&samples, is_own)), base.as_ref(), plan)
+            on_base(picked(&samples, is_own), base.as_ref(), plan)
         };
         channels.map(uniform).collect()
     }
@@ -322,7 +322,11 @@ fn base(column: &HeldColumn) -> Base<'_> {
     column.even.map_or_else(|| Base::Each(ChannelTimes::new(&column.each)), Base::Even)
 }
 
-fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, Refusal> {
+fn on_base(mut samples: Vec<f64>, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, Refusal> {
+    if base.is_none() && plan.ends_alone {
+        samples.truncate(samples.iter().rposition(|sample| !sample.is_nan()).map_or(0, |last| last + 1));
+    }
+    let samples = Samples::F64(samples);
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
         Some(Base::Each(times)) => times.place(samples, &plan.claims),

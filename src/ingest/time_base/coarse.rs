@@ -10,8 +10,7 @@ use super::missing;
 use super::pieces::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times, usual_step};
-use crate::ingest::refusal::Refusal;
-use crate::ingest::shown::digits;
+use crate::ingest::{refusal::Refusal, shown::digits};
 use crate::numerics::{as_count, as_f64, extent};
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are
@@ -79,10 +78,8 @@ pub(super) fn place(
                 changes + 1
             ),
         };
-        return Err(Refusal::new(
-            problem,
-            "give sample_rate_hz for this channel, or name its times (`time`)",
-        ));
+        let mend = "give sample_rate_hz for this channel, or name its times (`time`)";
+        return Err(Refusal::new(problem, mend));
     }
     // Uneven changes tell no rate that could contradict a stated one.
     let even = steps.filter(|steps| steps.is_even || claims.is_empty());
@@ -176,8 +173,8 @@ fn no_rows_of_sensors(changes: &[usize], step_s: f64, count: usize, claims: &Cla
             digits(step_s, 3)
         ),
         format!(
-            "where the rows are of several sensors name the one that is meant: where = {{ column = …, is = … \
-             }}; where they are samples one after another write sample_rate_hz = {}",
+            "where the rows are of several sensors name the one that is meant (`where`); where they are \
+             samples one after another write sample_rate_hz = {}",
             digits(rate_hz, 6)
         ),
     ))
@@ -252,8 +249,7 @@ fn at_rate(
 
 /// Of what the points are above a line through the origin, the least and the width.
 fn range(points: impl Iterator<Item = (f64, f64)>, slope: f64) -> (f64, f64) {
-    let above = points.map(|(x, y)| y - slope * x);
-    let (low, high) = above.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    let (low, high) = extent(points.map(|(x, y)| y - slope * x));
     (low, high - low)
 }
 

@@ -2,10 +2,8 @@
 
 use super::error;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::usual_step;
-use crate::ingest::refusal::Refusal;
-use crate::ingest::shown::short;
-use crate::numerics::as_f64;
+use crate::ingest::{clock::usual_step, refusal::Refusal, shown::short};
+use crate::numerics::{as_f64, extent};
 use std::borrow::Cow;
 
 /// Times that rise with their samples.
@@ -55,13 +53,10 @@ pub(super) fn ordered<'a>(
         let (times_s, rows) = (&times_s[..filled], (0..filled).collect::<Vec<_>>());
         return ordered(times_s, self::rise(times_s), samples.picked(&rows), issues);
     }
-    let taken = Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false };
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(error::not_finite(index + 1, times_s[index]));
     }
-    if let Some(refusal) = wrapped(times_s) {
-        return Err(refusal);
-    }
+    let taken = Ordered { times_s: without_wraps(times_s)?, samples, is_coarse: false };
     Ok(taken.sorted(issues)?.without_doubles(issues))
 }
 
@@ -76,20 +71,30 @@ fn filled(times_s: &[f64], samples: &Samples) -> usize {
     if is_behind { filled } else { times_s.len() }
 }
 
-/// Times that count within each second, minute, hour or day, and fall back by one of it less an interval:
-/// `999.95, 0, 0.05` in ms, beside a column of whole seconds. Sorted they would put the end of a recording
-/// before its beginning.
-fn wrapped(times_s: &[f64]) -> Option<Refusal> {
+/// Times that go on where they count within each second, minute, hour or day, and fall back by one of it less
+/// an interval: `999.95, 0, 0.05` in ms, beside a column of whole seconds. Sorted they would put the end of a
+/// recording before its beginning.
+///
+/// # Errors
+/// They begin at 0, as two recordings do that follow one another.
+fn without_wraps(times_s: &[f64]) -> Result<Cow<'_, [f64]>, Refusal> {
     const WHOLE_S: [f64; 4] = [1.0, 60.0, 3600.0, 86_400.0];
-    let at = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1])?;
+    let falls: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
+    let Some(&at) = falls.first() else { return Ok(Cow::Borrowed(times_s)) };
     let interval_s = usual_step(times_s);
-    let (least_s, most_s) = times_s.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
-    let is_it = |whole_s: &f64| {
+    let (least_s, most_s) = extent(times_s.iter().copied());
+    let is_of = |at: usize, whole_s: f64| {
         let off_s = times_s[at - 1] - times_s[at] + interval_s - whole_s;
-        least_s >= 0.0 && most_s < *whole_s && off_s.abs() < interval_s / 2.0
+        least_s >= 0.0 && most_s < whole_s && off_s.abs() < interval_s / 2.0
     };
-    let whole_s = WHOLE_S.into_iter().find(is_it)?;
-    Some(Refusal::new(
+    let Some(whole_s) = WHOLE_S.into_iter().find(|whole_s| is_of(at, *whole_s)) else {
+        return Ok(Cow::Borrowed(times_s));
+    };
+    if times_s[0] > times_s[at] + 2.0 * interval_s && falls.iter().all(|&at| is_of(at, whole_s)) {
+        let gone = |i: usize| whole_s * as_f64(falls.partition_point(|&fall| fall <= i));
+        return Ok(times_s.iter().enumerate().map(|(i, time_s)| time_s + gone(i)).collect());
+    }
+    Err(Refusal::new(
         format!(
             "time number {} falls back by {whole_s} s: the times count within each, and something else holds \
              what has gone by",
