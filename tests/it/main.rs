@@ -7,6 +7,7 @@ mod campaign;
 mod check;
 mod command_line;
 mod csv_times;
+mod cures;
 mod damage;
 mod dialects;
 mod documents;
