@@ -234,7 +234,7 @@ fn layouts_of_loggers_give_the_numbers_of_the_plain_table() {
     }
 }
 
-/// The end of one recording of a second and the beginning of the next fall back as a clock within each second.
+/// The end of a recording of one second and the next beginning fall back as a clock within each second.
 #[test]
 fn recordings_of_a_second_that_follow_one_another_are_not_joined() {
     let row = |at: usize| format!("{:.4},{at},{}", timed(at % 12_500), at % 7);
