@@ -126,7 +126,9 @@ impl<'a> Changes<'a> {
         };
         let first = |changing: &Changing| {
             let least_m_s = (FIRST_SHARE * changing.largest_m_s()).max(LAST_SHARE_OF_FALL * v0_m_s);
-            let at_s = changing.stirs_s(least_m_s)?;
+            // What its first width shows is no strike, but hum, or a level that moves later.
+            let at = changing.stirs(least_m_s).filter(|at| *at >= 2 * changing.blocks)?;
+            let at_s = changing.end_s(at) - WIDTH_S;
             let delay_s = at_s - event.near_s;
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
             (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
@@ -328,6 +330,9 @@ mod tests {
         };
         let found = ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(0.863, -4.0), (0.923, 20.0)]).expect("ahead");
         assert!(found.channel == "A2" && (found.delay_s + 0.137).abs() < 0.005, "{found:?}");
+        let first = [(1.0, 18.0), (1.06, -6.0)];
+        let hums = ahead(&first, &[0.0, 0.02, 0.04].map(|at_s| (at_s, 20.0)));
+        assert_eq!(hums, None, "what swings from the first sample on");
         assert_eq!(ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(1.0, -4.0), (1.06, 20.0)]), None);
         // Exchanged ends: what is called the first one stirs as the other is struck.
         assert_eq!(ahead(&[(1.0, -4.0), (1.06, 20.0)], &[(1.0, 18.0), (1.06, -6.0)]), None);
