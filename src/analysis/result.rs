@@ -89,7 +89,7 @@ pub(super) fn of(
     }
     let ShownSignals { mut signals, .. } = shown;
     signals.truncate(recorded);
-    let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(file));
+    let (setup, (cutoff_hz, _)) = (sticking(file), motion::cutoff_hz(file.filter, file.cask.mass_kg));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
     let curves = move || Curves { channels: channels(), motion, ..Curves::default() };
     Analysis { openings, ..analysis(recording, file, result, curves) }
@@ -218,14 +218,10 @@ pub(super) struct ShownSignals {
 
 impl ShownSignals {
     pub fn of(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
-        let (cutoff_hz, _) = cutoff(file);
+        let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
         let signals = motion::around(signals, events, cutoff_hz);
         Self { smooth: motion::filtered(&signals, cutoff_hz), signals }
     }
-}
-
-fn cutoff(file: &CaskFile) -> (f64, &'static str) {
-    motion::cutoff_hz(file.filter, file.cask.mass_kg)
 }
 
 /// What the curves' low-pass would have changed had it been used for the numbers, in words.
@@ -254,7 +250,7 @@ fn setting(name: &str, value: impl Into<String>, origin: &str) -> Setting {
 
 /// What the curves are made with, and what that would have changed.
 fn of_curves(file: &CaskFile, effect: Option<String>) -> Vec<Setting> {
-    let (cutoff_hz, origin) = cutoff(file);
+    let (cutoff_hz, origin) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     let effect = effect.map(|effect| {
         setting("effect of that low-pass, had it been applied before integrating", effect, "from the data")
     });

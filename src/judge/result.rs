@@ -244,15 +244,6 @@ fn shifted(
         .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
 }
 
-/// Modes that the flight is too short to tell from one another, or from a contact whose force has
-/// `two_maxima`: of 4 drawn drops with less than a period behind those, one passed with ω 3 half-widths off.
-pub fn judge_unresolved(flight: &FlightFit, two_maxima: bool) -> Option<Finding> {
-    let is_open = !flight.resolves_modes() || (two_maxima && flight.periods() < 1.0);
-    let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
-    let found = DropFinding::Unresolved { flight_s: flight.to_s - flight.from_s, modes_hz };
-    is_open.then(|| Finding::from(found).between(flight.from_s, flight.to_s))
-}
-
 /// Modes that are none, each on the channel that shows it most.
 fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
     let of_mode = |i: usize| {

@@ -1,6 +1,6 @@
 //! A flight carried back to the separation to what a channel lost between that and the flight's fit.
 
-use crate::data::{ChannelFinding, Finding, FlightFit};
+use crate::data::{ChannelFinding, DropFinding, Finding, FlightFit};
 
 /// A velocity this far off its flight at the separation is not the flight's, m/s: 2 % of a slap-down. Of 118
 /// simulated sound drops one was off by 0.27 m/s; a cable that broke contact by 1.9.
@@ -19,6 +19,15 @@ pub fn judge_separation(flight: &FlightFit, left_s: f64) -> Option<Finding> {
         Some(found.between(left_s, flight.from_s))
     });
     missed.next().filter(|_| missed.next().is_none())
+}
+
+/// Modes that the flight is too short to tell from one another, or from a contact whose force has
+/// `two_maxima`: of 4 drawn drops with less than a period behind those, one passed with ω 3 half-widths off.
+pub fn judge_unresolved(flight: &FlightFit, two_maxima: bool) -> Option<Finding> {
+    let is_open = !flight.resolves_modes() || (two_maxima && flight.periods() < 1.0);
+    let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
+    let found = DropFinding::Unresolved { flight_s: flight.to_s - flight.from_s, modes_hz };
+    is_open.then(|| Finding::from(found).between(flight.from_s, flight.to_s))
 }
 
 #[cfg(test)]

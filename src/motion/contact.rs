@@ -156,18 +156,14 @@ impl ContactCourse {
         let rest = &ks[ended(ENDED)..];
         let square: f64 = rest.iter().map(|later| (later - k).powi(2)).sum();
         let lowest = |dips: &[f64]| (0..dips.len()).min_by(|&a, &b| dips[a].total_cmp(&dips[b]));
-        let (rotation_at, sensor_at) = (lowest(&by_rotation)?, lowest(&at_sensor)?);
+        let rotation_at = lowest(&by_rotation)?;
         let is_by_rotation = by_rotation[rotation_at] < TWO_TOUCHES;
-        let (dip, k) = if is_by_rotation {
-            (by_rotation[rotation_at], ks[rotation_at])
-        } else {
-            (at_sensor[sensor_at], ks[sensor_at])
-        };
-        let [begin, end] = &self.ends;
-        (is_by_rotation || dip < LEFT).then(|| FirstTouch {
-            dip,
-            k,
-            earlier_s: (end.time_s - begin.time_s) * (1.0 - as_f64(ended(1.0)) / as_f64(ks.len())),
+        let (dips, at) =
+            if is_by_rotation { (&by_rotation, rotation_at) } else { (&at_sensor, lowest(&at_sensor)?) };
+        (is_by_rotation || dips[at] < LEFT).then(|| FirstTouch {
+            dip: dips[at],
+            k: ks[at],
+            earlier_s: self.step_s * as_f64(ks.len() - ended(1.0)),
             k_moves: (square / as_f64(rest.len().max(1))).sqrt(),
         })
     }

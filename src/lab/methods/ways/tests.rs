@@ -129,7 +129,7 @@ fn the_flight_fit_tells_ringing_from_the_step() {
     // ms; three times that of a step of 1 m/s is 0.33 %, of 5 g fifty times as much. A mode's mean is known
     // to 0.5 % of it.
     for (class, bound_percent) in
-        [(CALM, 0.5), (NOISY, 16.5), (ONE_MODE, 0.5), (two_modes, 0.5), (SLOW_MODE, 0.5)]
+        [(CALM, 0.5), (NOISY, 16.5), (ONE_MODE, 0.5), (two_modes, 0.5), (SWINGING, 0.5)]
     {
         let worst = p95(prepared(&class, 8).iter().map(step_error_percent).collect());
         assert!(worst < bound_percent, "{}: {worst} % of the step", class.name);
