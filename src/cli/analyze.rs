@@ -5,6 +5,7 @@ use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, columns, note, print};
 use super::pdf;
 use super::progress::with_progress;
+use super::replace::parent_of;
 use super::rerun::{self, EarlierResult};
 use crate::analysis::{complete, read_within};
 use crate::data::keys::CORRECTIONS;
@@ -232,12 +233,11 @@ fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> 
 /// That no cask file is named, with the command that names the one beside the recording; it is the user's to
 /// say that it is the right one.
 fn without_cask(recording: &Path) -> miette::Report {
-    let folder = recording.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let beside = std::fs::read_dir(folder.unwrap_or(Path::new("."))).into_iter().flatten().flatten();
+    let beside = std::fs::read_dir(parent_of(recording)).into_iter().flatten().flatten();
     let names = beside.map(|file| recording.with_file_name(file.file_name()));
-    let mut casks: Vec<PathBuf> =
-        names.filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
-    casks.retain(|path| ingest::cask_file::parse(path).is_ok());
+    let is_toml = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
+    let casks: Vec<PathBuf> =
+        names.filter(|path| is_toml(path) && ingest::cask_file::parse(path).is_ok()).collect();
     let recording = quoted(recording);
     let mend = match &casks[..] {
         [cask] => format!("if it is that beside it: `dropcheck analyze {recording} --cask {}`", quoted(cask)),

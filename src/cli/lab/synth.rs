@@ -44,36 +44,30 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     Ok(Ending::Clear)
 }
 
-/// Where the recording goes.
-fn out(arguments: &Arguments) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene))
-}
-
 /// Where recording, cask file and truth go.
 fn paths(arguments: &Arguments) -> [PathBuf; 3] {
-    let out = out(arguments);
+    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     lab::report::synthetic_names(&name).map(|name| out.with_file_name(name))
 }
 
 /// Makes the recording and writes its files: recording, cask file, truth.
 pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], SyntheticRecording)> {
-    let out = out(arguments);
-    let format = format(&out, arguments.encoding.as_deref())?;
-    let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let names = lab::report::synthetic_names(&name);
-    let place = parent_of(&out);
+    let files = paths(arguments);
+    let format = format(&files[0], arguments.encoding.as_deref())?;
+    let names = files.each_ref().map(|file| file.file_name().unwrap_or_default().to_string_lossy());
+    let place = parent_of(&files[0]);
     // Whoever names a file may reach it by a link; the folder itself must be none.
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
-    let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
+    let folder = Folder::checked(&place, &names.each_ref().map(|name| &**name), &[&arguments.scene])?;
 
     let mut scene_file = lab::scene_file::read(&arguments.scene)?;
     if let Some(seed) = arguments.seed {
         scene_file.scene.seed = seed;
     }
     let recording = lab::synthesise(&scene_file.scene);
-    folder.write(&lab::report::synthetic_files(&scene_file, &recording, &name, format)?)?;
-    Ok((paths(arguments), recording))
+    folder.write(&lab::report::synthetic_files(&scene_file, &recording, &names[0], format)?)?;
+    Ok((files, recording))
 }
 
 fn default_out(scene: &Path) -> PathBuf {

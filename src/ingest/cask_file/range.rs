@@ -32,8 +32,8 @@ impl Section<'_> {
     /// Whether the range of `key` holds `number`, of which the refusal says `what`.
     pub(super) fn allows(&self, key: &str, number: f64, what: &str) -> Result<(), IngestError> {
         let Some(Takes::Number(allowed)) = self.row(key).map(|row| row.takes) else { return Ok(()) };
-        let check = ["check the value", unit_of(key)].join(", in ");
-        let check = check.trim_end_matches(", in ");
+        let in_unit = |unit| format!("check the value, in {unit}");
+        let check = &unit_of(key).map_or("check the value".into(), in_unit)[..];
         let (must, mend) = match allowed {
             _ if allowed.holds(number) => return Ok(()),
             Allowed::Within(_, _, why) | Allowed::ZeroOrWithin(_, _, why) => {

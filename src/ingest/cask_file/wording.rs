@@ -46,7 +46,7 @@ pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
 pub(super) fn unit_mend(key: &str, number: &str, unit: &str) -> String {
     const PARTS: [(&str, &str, f64); 5] =
         [("km/h", "m/s", 3.6), ("mm", "m", 1e3), ("cm", "m", 1e2), ("ms", "s", 1e3), ("t", "kg", 1e-3)];
-    let own = unit_of(key);
+    let own = unit_of(key).unwrap_or_default();
     let part = PARTS.iter().find(|(from, to, _)| *from == unit && *to == own);
     let converted = part.and_then(|(.., parts)| Some(format!("{:?}", number.parse::<f64>().ok()? / parts)));
     match converted.or_else(|| (unit == own).then(|| number.to_owned())) {
@@ -55,11 +55,13 @@ pub(super) fn unit_mend(key: &str, number: &str, unit: &str) -> String {
     }
 }
 
-/// "kg", from the key's ending; nothing where it has none.
-pub(super) fn unit_of(key: &str) -> &'static str {
-    const ENDINGS: &str = "inertia_kg_m2 kg m²|_m_s2 m/s²|_m_s m/s|_kg kg|_n_m N/m|_m m|_hz Hz|_s s|_ms ms|\
-                           _g g|_n N|_percent percent|_deg degrees|sensitivity mV per g; a sensor mounted \
-                           the other way round has polarity = -1";
-    let mut endings = ENDINGS.split('|').filter_map(|ending| ending.split_once(' '));
-    endings.find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)
+/// "kg", from the key's ending.
+pub(super) fn unit_of(key: &str) -> Option<&'static str> {
+    #[rustfmt::skip]
+    const ENDINGS: [(&str, &str); 14] = [
+        ("inertia_kg_m2", "kg m²"), ("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_kg", "kg"), ("_n_m", "N/m"), ("_m", "m"),
+        ("_hz", "Hz"), ("_s", "s"), ("_ms", "ms"), ("_g", "g"), ("_n", "N"), ("_percent", "percent"),
+        ("_deg", "degrees"), ("sensitivity", "mV per g; a sensor mounted the other way round has polarity = -1"),
+    ];
+    ENDINGS.iter().find(|(ending, _)| key.ends_with(ending)).map(|(_, unit)| *unit)
 }

@@ -95,7 +95,7 @@ impl DatasetColumn {
             is_blank
                 && chunk.map_or(is_moved, |chunk| {
                     let unpacked = layout.unpack(&mut file, chunk, &mut packed, &mut bytes);
-                    unpacked.is_some() && layout.columns == 1 && layout.has_number(&bytes, upto - row)
+                    unpacked.is_some() && layout.columns == 1 && bytes.iter().any(|byte| *byte != 0)
                 })
         };
         let upto = |row: usize| row.saturating_add(layout.rows).min(self.length);
@@ -233,13 +233,6 @@ impl ChunkLayout<'_> {
         }
         bytes.resize(whole, 0);
         (unpack::inflate(packed, true, bytes)? == whole).then_some(())
-    }
-
-    /// Whether one of the first `count` values in the bytes of a chunk of one column is not zero.
-    fn has_number(&self, bytes: &[u8], count: usize) -> bool {
-        let is_shuffled = self.packing == Packing::ShuffledDeflated;
-        let (next, within) = if is_shuffled { (1, self.rows) } else { (self.value_bytes, 1) };
-        (0..count).any(|i| (0..self.value_bytes).any(|byte| bytes[i * next + byte * within] != 0))
     }
 
     /// The chunk's share of the column out of its bytes; `None` where it is short of it.

@@ -209,17 +209,14 @@ fn recordings(batch: &Batch, rows: &[&BatchRow], places: &HashMap<u32, RowPlace>
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
         .text("findings", |row| row.codes.join(", "))
         .if_any(rows.iter().any(|row| !row.codes.is_empty()));
-    let own = |row: &BatchRow, name: &str| {
-        row.carried.get(name).and_then(Value::as_str).unwrap_or_default().to_owned()
-    };
-    let table = batch.carried.iter().fold(table, |table, name| table.soft(&name[..], |row| own(row, name)));
+    let table = batch.carried.iter().fold(table, |table, name| {
+        table.soft(&name[..], |row| row.carried.get(name).and_then(Value::as_str).unwrap_or_default())
+    });
     let more = (rows.len() < batch.rows.len())
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
-    Chapter::new("Recordings").with_all(more).with(table).with(ChapterPart::note(REPEATS)).with(
-        ChapterPart::note(
-            "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
-         they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies absorbed, \
-         in the first and the second impact.",
-        ),
-    )
+    let columns = "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
+                   they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies \
+                   absorbed, in the first and the second impact.";
+    let notes = [REPEATS, columns].map(ChapterPart::note);
+    Chapter::new("Recordings").with_all(more).with(table).with_all(notes)
 }
