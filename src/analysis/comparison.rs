@@ -85,8 +85,7 @@ fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &Cask
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     // An end whose channel was made of the other's does not show where it goes.
     found.retain(|f| impact.stand_in.is_none() || f.code != IssueCode::Swings);
-    let two_maxima = flown.tabulated.as_ref().is_some_and(|t| t.two_maxima().is_some());
-    found.extend(judge::judge_unresolved(flight, two_maxima));
+    found.extend(judge::judge_unresolved(flight, flown.tabulated.as_ref().and_then(Tabulated::two_maxima)));
     let left_s = events.separation_s().unwrap_or(flight.from_s);
     found.extend(judge::judge_separation(flight, left_s));
     let step = judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed);

@@ -23,11 +23,12 @@ pub fn judge_separation(flight: &FlightFit, left_s: f64) -> Option<Finding> {
 
 /// Modes that the flight is too short to tell from one another, or from a contact whose force has
 /// `two_maxima`: of 4 drawn drops with less than a period behind those, one passed with ω 3 half-widths off.
-pub fn judge_unresolved(flight: &FlightFit, two_maxima: bool) -> Option<Finding> {
-    let is_open = !flight.resolves_modes() || (two_maxima && flight.periods() < 1.0);
+pub fn judge_unresolved(flight: &FlightFit, two_maxima: Option<Finding>) -> Option<Finding> {
+    let flight_s = flight.to_s - flight.from_s;
+    let is_open = two_maxima.is_some_and(|_| flight.first_bending_hz(flight_s) * flight_s < 1.0);
     let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
-    let found = DropFinding::Unresolved { flight_s: flight.to_s - flight.from_s, modes_hz };
-    is_open.then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+    let found = DropFinding::Unresolved { flight_s, modes_hz };
+    (is_open || !flight.resolves_modes()).then(|| Finding::from(found).between(flight.from_s, flight.to_s))
 }
 
 #[cfg(test)]
