@@ -143,7 +143,7 @@ impl ContactCourse {
         let k_then = |corner_m_s: &f64| k - (corner_m_s - last_m_s) / self.struck_m_s;
         let ks: Vec<f64> = self.corner_m_s.iter().map(k_then).collect();
         let whole = reduce::sum(&self.up_m_s2);
-        // From where on the force may have ended, if the rotation gains no more than a share of it after that.
+        // From where on the force may have ended, if the rotation gains no more than a share of it later.
         let ended = |most: f64| {
             let mut gains = whole;
             let lets_go = |&i: &usize| {

@@ -214,9 +214,9 @@ fn recordings(batch: &Batch, rows: &[&BatchRow], places: &HashMap<u32, RowPlace>
     });
     let more = (rows.len() < batch.rows.len())
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
-    let columns = "Outliers first, then those with errors. E_n against the other repeats at the angle; within ±1 \
-                   they agree. Peaks: largest deceleration of the struck end of the rigid body, and energies \
-                   absorbed, in the first and the second impact.";
+    let columns = "Outliers first, then those with errors. E_n against the other repeats at the angle; \
+                   within ±1 they agree. Peaks: largest deceleration of the struck end of the rigid body, \
+                   and energies absorbed, in the first and the second impact.";
     let notes = [REPEATS, columns].map(ChapterPart::note);
     Chapter::new("Recordings").with_all(more).with(table).with_all(notes)
 }
