@@ -312,16 +312,14 @@ impl Search<'_> {
 
     /// The fits of the flight over what is clear of both contacts, the best first, and that window.
     fn fit(&self, attempt: &Attempt) -> (motion::Window, Vec<FlightFit>) {
-        let (signals, cog_m) = (&self.integrated.signals, self.file.cask.cog_m);
+        let cog_m = self.file.cask.cog_m;
         let before = attempt.fitted.as_ref().map(|(flight, _)| flight);
-        let events_s = [self.integrated.contact_s, attempt.separation.time_s];
         let before_rad_s = self.file.drop.angular_velocity_rad_s;
         let window = motion::Window {
             from_s: attempt.free_s,
             to_s: attempt.end_s - motion::BEFORE_SLAP_DOWN_S,
             drift: self.file.corrections.zero_shift,
-            angular_velocity_rad_s: before
-                .map_or(0.0, |f| motion::turned_rad_s(signals, f, before_rad_s, events_s)),
+            angular_velocity_rad_s: before.map_or(0.0, |flight| self.turned_rad_s(flight, attempt)),
         };
         // After R the modes ring on from both impacts: what drove them is not one force.
         let drive = || {
@@ -333,11 +331,26 @@ impl Search<'_> {
         (window, fits)
     }
 
-    /// Takes off the signals of both ends what rings in the flight.
+    /// The rotation that pulls outward in a flight, rad/s.
+    fn turned_rad_s(&self, flight: &FlightFit, attempt: &Attempt) -> f64 {
+        let events_s = [self.integrated.contact_s, attempt.separation.time_s];
+        motion::turned_rad_s(
+            &self.integrated.signals,
+            flight,
+            self.file.drop.angular_velocity_rad_s,
+            events_s,
+        )
+    }
+
+    /// Takes off the signals of both ends what rings and pulls in the flight.
     fn take_ringing_off(&self, (first, second): &mut Ends, attempt: &Attempt, flight: &FlightFit) {
         let beyond_s = self.flight_end_s(attempt.slap_down).max(attempt.end_s) + BEYOND_S;
-        let over_s = self.integrated.contact_s..beyond_s;
-        rayon::join(|| first.take_off(flight, over_s.clone()), || second.take_off(flight, over_s.clone()));
+        let turning_rad_s = self.turned_rad_s(flight, attempt);
+        let take_off = |end: &mut motion::RingingRemoved| {
+            let pull_m_s2 = end.pull_m_s2(&self.integrated.signals, turning_rad_s, self.file.cask.cog_m);
+            end.take_off(flight, self.integrated.contact_s..beyond_s, pull_m_s2);
+        };
+        rayon::join(|| take_off(first), || take_off(second));
     }
 
     /// Seeks slap-down and separation on signals free of ringing.

@@ -241,7 +241,13 @@ fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At 
 /// the means are wide rings.
 pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m_s2: f64) -> At {
     let rate_hz = signal.sample_rate_hz;
-    let earliest_s = struck.time_s - width_s(length_m);
+    let width_s = width_s(length_m);
+    let earliest_s = struck.time_s - width_s;
+    // A long flight rings less at its end than where it was fitted.
+    let [before, after] = [earliest_s - width_s, earliest_s].map(|time_s| signal.index_from(time_s));
+    let is_flight = earliest_s - width_s > from_s;
+    let shown_m_s2 = signal.force_m_s2.get(before..after).filter(|_| is_flight).map(reduce::peak);
+    let calm_m_s2 = shown_m_s2.map_or(calm_m_s2, |shown_m_s2| shown_m_s2.min(calm_m_s2));
     let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTS * calm_m_s2);
     let [from, to] = [from_s, struck.time_s].map(|time_s| signal.index_from(time_s));
     let Some(force) = signal.force_m_s2.get(from..to) else { return struck };
@@ -571,6 +577,10 @@ mod tests {
         assert!((found.time_s - 0.072).abs() < 2e-4 && found.u_s < 2e-4, "{found:?}");
         // What is over 3 ms before the rise was not the slap-down's.
         assert_eq!(departure(&bent(0.003), 5.0, struck, 0.03, 3.0), struck);
+        // Where it was fitted a long flight may have rung more than it does in the end.
+        let long = bent(0.0).cut(0, usize::MAX);
+        let found = departure(&long, 2.0, At { time_s: 0.078, ..struck }, 0.03, 30.0);
+        assert!((found.time_s - 0.072).abs() < 2e-4, "{found:?}");
         // Nor is what a short body does for as long as ringing.
         assert_eq!(departure(&bent(0.0), 1.0, struck, 0.03, 3.0), struck);
     }

@@ -1,6 +1,6 @@
 //! Signals and their flight fit to the same signals without ringing and zero shift.
 
-use super::flight::{centrifugal_arm_m, oscillation};
+use super::flight::{centrifugal_m_s2, oscillation};
 use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::{as_f64, reduce};
@@ -47,8 +47,18 @@ impl RingingRemoved {
         before.clear();
     }
 
-    /// Takes the fitted modes and zero shifts off between two times, s, instead of those taken off before.
-    pub fn take_off(&mut self, fit: &FlightFit, between_s: Range<f64>) {
+    /// What a rotation, rad/s, pulls outward at the sensors of `signals`, m/s²   (14), (15)
+    pub fn pull_m_s2(&self, signals: &[Signal], turning_rad_s: f64, cog_m: f64) -> f64 {
+        let of_part = |(name, weight): &(String, f64)| {
+            let signal = signals.iter().find(|signal| signal.name == *name)?;
+            Some(weight * centrifugal_m_s2(signal, turning_rad_s, cog_m))
+        };
+        self.parts.iter().filter_map(of_part).sum()
+    }
+
+    /// Takes the fitted modes and zero shifts, and this pull, off between two times, s, instead of those
+    /// taken off before.
+    pub fn take_off(&mut self, fit: &FlightFit, between_s: Range<f64>, pull_m_s2: f64) {
         self.restore();
         let (from, to) = (self.signal.index_from(between_s.start), self.signal.index_from(between_s.end));
         let to = to.max(from);
@@ -56,7 +66,8 @@ impl RingingRemoved {
         self.before.1.extend_from_slice(&self.signal.force_m_s2[from..to]);
         let plateaus: Vec<(&Plateau, f64)> =
             self.parts.iter().filter_map(|(name, weight)| Some((fit.plateau(name)?, *weight))).collect();
-        let shift_m_s2: f64 = plateaus.iter().map(|(p, weight)| weight * p.zero_shift_m_s2).sum();
+        let shifts_m_s2 = plateaus.iter().map(|(p, weight)| weight * p.zero_shift_m_s2);
+        let shift_m_s2 = pull_m_s2 + shifts_m_s2.sum::<f64>();
         for force in &mut self.signal.force_m_s2[from..to] {
             *force -= shift_m_s2;
         }
@@ -115,13 +126,13 @@ pub fn mirrored(
 ) -> Vec<Signal> {
     let mirror = |signal: &Signal| {
         let flown = signal.cut(signal.index_from(fit.from_s), usize::MAX);
-        let arm_m = centrifugal_arm_m(signal, cog_m);
+        let pull_m_s2 = centrifugal_m_s2(signal, turning_rad_s, cog_m);
         let mut calmed = RingingRemoved::new((flown, vec![(signal.name.clone(), 1.0)]));
-        calmed.take_off(fit, fit.from_s..f64::INFINITY);
+        calmed.take_off(fit, fit.from_s..f64::INFINITY, pull_m_s2);
         let mut calm = calmed.signal;
         let along = if signal.axis == Axis::Axial { -1.0 } else { 1.0 };
         for force in &mut calm.force_m_s2 {
-            *force = along * (*force + turning_rad_s * turning_rad_s * arm_m);
+            *force *= along;
         }
         let end = if signal.end == End::First { End::Second } else { End::First };
         Signal { end, position_m: length_m - signal.position_m, ..calm }
@@ -158,6 +169,18 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 mod tests {
     use super::*;
     use crate::data::example;
+
+    #[test]
+    fn a_sensor_on_the_skin_flies_without_a_pull() {
+        // 5 rad/s at 0.4 m below the axis: 10 m/s² from 10 ms on.
+        let off = Signal { name: "A1".into(), offset_m: -0.4, ..example::signal(1e4, vec![10.0; 300]) };
+        let mut end = RingingRemoved::new((off.clone(), vec![("A1".into(), 1.0), ("A2".into(), -1.0)]));
+        let pull_m_s2 = end.pull_m_s2(&[off], 5.0, 2.5);
+        end.take_off(&FlightFit::default(), 0.01..0.02, pull_m_s2);
+        let force_m_s2 = &end.signal().force_m_s2;
+        let mean = |range: Range<usize>| reduce::sum(&force_m_s2[range]) / 100.0;
+        assert!(mean(100..200).abs() < 1e-9 && (mean(0..100) - 10.0).abs() < 1e-9, "{pull_m_s2}");
+    }
 
     #[test]
     fn channels_off_the_axis_read_the_rotation_less_its_pull() {
