@@ -14,6 +14,9 @@ use std::path::Path;
 pub struct ListedChannel {
     /// What to write as `source` in a cask file.
     pub source: String,
+    /// Where its samples are, where `source` is a table of topic and field.
+    #[serde(skip)]
+    pub place: Option<Source>,
     /// Which rows of it these are, where it holds those of several sensors: what to write as `where`.
     #[serde(rename = "where", skip_serializing_if = "Option::is_none")]
     pub rows: Option<RowsOf>,
@@ -58,16 +61,9 @@ impl ListedChannel {
         samples.filter(|sample| is_number(*sample)).fold(None, wider)
     }
 
-    /// Where its samples are, for a reader: a listing may tell it as the table of topic and field.
+    /// Where its samples are, for a reader.
     pub(crate) fn origin(&self) -> Source {
-        let table = format!("source = {}", self.source).parse::<toml::Table>().ok().and_then(|t| {
-            let table = t.get("source")?.as_table().filter(|table| t.len() == 1 && table.len() <= 3)?;
-            let text = |key: &str| Some(table.get(key)?.as_str()?.to_owned());
-            let channel = table.get("channel").and_then(toml::Value::as_integer);
-            let channel = channel.and_then(|channel| u16::try_from(channel).ok());
-            Some(Source::TopicField { topic: text("topic")?, field: text("field")?, channel })
-        });
-        table.unwrap_or_else(|| Source::Path(self.source.clone()))
+        self.place.clone().unwrap_or_else(|| Source::Path(self.source.clone()))
     }
 }
 

@@ -168,10 +168,6 @@ pub(super) mod tests {
 
     pub(in super::super) fn listed(source: &str, kind: &str, unit: Option<&str>) -> ListedChannel {
         ListedChannel {
-            time: None,
-            source: source.into(),
-            rows: None,
-            kind: kind.into(),
             samples: Some(200_000),
             messages: Some(200),
             sample_rate_hz: Some(100_000.0),
@@ -181,7 +177,7 @@ pub(super) mod tests {
             gaps: Some(0),
             range: Some((-512.3, 498.1)),
             encoding: "protobuf dropcheck.AccelerationBlock".into(),
-            unreadable: None,
+            ..ListedChannel::named(source, kind)
         }
     }
 

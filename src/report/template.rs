@@ -381,7 +381,9 @@ mod tests {
 
     #[test]
     fn a_topic_with_a_dot_keeps_its_table() {
-        let listing = listing(vec![listed("{ topic = \"/a.b\", field = \"acc.z\" }", "number", None)]);
+        let place = Source::TopicField { topic: "/a.b".into(), field: "acc.z".into(), channel: None };
+        let own = listed("{ topic = \"/a.b\", field = \"acc.z\" }", "number", None);
+        let listing = listing(vec![ListedChannel { place: Some(place), ..own }]);
         let table = parsed(&cask_file(&listing).unwrap());
         assert_eq!(table["channel"][0]["source"]["field"].as_str(), Some("acc.z"));
     }

@@ -6,7 +6,7 @@ use super::plan::AskedField;
 use super::scanned::Scanned;
 use super::topic::{TopicChannel, TopicSeries};
 use super::walk::Walk;
-use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
+use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat, Source};
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::refusal::Refusal;
@@ -86,10 +86,12 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
             continue;
         };
         let Extent { samples, range, .. } = column.extent.clone().unwrap_or_default();
-        let source = if is_alone {
-            format!("{}.{path}", topic.name)
+        let (name, field) = (topic.name.clone(), path.to_string());
+        let (source, place) = if is_alone {
+            (format!("{name}.{field}"), None)
         } else {
-            format!("{{ topic = {:?}, field = \"{path}\", channel = {number} }}", topic.name)
+            let source = format!("{{ topic = {name:?}, field = \"{field}\", channel = {number} }}");
+            (source, Some(Source::TopicField { topic: name, field, channel: Some(*number) }))
         };
         if let Some(units) = column.unit_change()
             && !said_units
@@ -103,6 +105,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
             issues.push(drift.on(&source));
         }
         let mut channel = ListedChannel {
+            place,
             rows: one.rows.clone().filter(|_| has_sensors),
             samples: Some(samples as u64),
             messages: Some(messages),
