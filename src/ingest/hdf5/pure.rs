@@ -265,7 +265,11 @@ impl Store for InMemory {
 
     fn members(&mut self, group: &str) -> Members {
         let links = self.token(group).and_then(|address| self.links.of(&self.file, address).ok());
-        links.iter().flat_map(|links| links.iter()).map(|(name, link)| (name.clone(), link.kind())).collect()
+        links
+            .iter()
+            .flat_map(|links| links.iter())
+            .map(|(name, link)| (name.clone(), places::kind(link)))
+            .collect()
     }
 
     fn object(&mut self, path: &str) -> Result<Object, Vec<Bytes>> {

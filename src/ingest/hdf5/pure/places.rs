@@ -27,32 +27,17 @@ const SIZE: u8 = 8;
 /// Soft links lead to soft links so often.
 const DEEPEST: usize = 16;
 
-/// What a name in a group leads to.
-pub(super) enum LinkTo {
-    Hard(u64),
-    Soft(String),
-    External,
-}
-
-impl LinkTo {
-    pub(super) fn kind(&self) -> LinkKind {
-        match self {
-            Self::Hard(_) => LinkKind::Hard,
-            Self::Soft(_) => LinkKind::Soft,
-            Self::External => LinkKind::External,
-        }
-    }
-
-    fn of(target: LinkTarget) -> Self {
-        match target {
-            LinkTarget::Hard { address } => Self::Hard(address),
-            LinkTarget::Soft { path } => Self::Soft(path),
-            LinkTarget::External { .. } => Self::External,
-        }
+/// What a target is to who walks the groups.
+pub(super) fn kind(target: &LinkTarget) -> LinkKind {
+    match target {
+        LinkTarget::Hard { .. } => LinkKind::Hard,
+        LinkTarget::Soft { .. } => LinkKind::Soft,
+        LinkTarget::External { .. } => LinkKind::External,
     }
 }
 
-type Named = BTreeMap<String, LinkTo>;
+/// What the names in a group lead to.
+type Named = BTreeMap<String, LinkTarget>;
 
 /// The links in each group, by its address.
 #[derive(Default)]
@@ -68,7 +53,7 @@ impl Links {
         for message in &file.get_or_parse_header(address)?.messages {
             match message {
                 HdfMessage::Link(link) => {
-                    links.insert(link.name.clone(), LinkTo::of(link.target.clone()));
+                    links.insert(link.name.clone(), link.target.clone());
                 }
                 HdfMessage::LinkInfo(info) if info.fractal_heap_address != u64::MAX => {
                     let [heap, index] = [info.fractal_heap_address, info.btree_name_index_address];
@@ -102,9 +87,9 @@ impl Links {
         for name in path.split('/').filter(|name| !["", "."].contains(name)) {
             let links = self.of(file, at)?;
             at = match links.get(name) {
-                Some(LinkTo::Hard(address)) => *address,
-                Some(LinkTo::External) => return Ok(None),
-                Some(LinkTo::Soft(path)) if depth < DEEPEST => {
+                Some(LinkTarget::Hard { address }) => *address,
+                Some(LinkTarget::External { .. }) => return Ok(None),
+                Some(LinkTarget::Soft { path }) if depth < DEEPEST => {
                     let Some(address) = self.lead_from(file, at, path, depth + 1)? else { return Ok(None) };
                     address
                 }
@@ -123,7 +108,7 @@ fn add_of_heap(storage: &dyn Storage, heap: u64, index: u64, links: &mut Named) 
         let BTreeV2Record::LinkNameHash { heap_id, .. } = &record else { continue };
         let message = heap.get_object_storage(heap_id, storage, SIZE, SIZE)?;
         let link = link::parse(&mut Cursor::new(&message), SIZE, SIZE, message.len())?;
-        links.insert(link.name, LinkTo::of(link.target));
+        links.insert(link.name, link.target);
     }
     Ok(())
 }
@@ -140,9 +125,9 @@ fn add_of_table(storage: &dyn Storage, heap: u64, index: u64, links: &mut Named)
         for entry in SymbolTableNode::parse(&mut Cursor::new(&node), SIZE, SIZE)?.entries {
             let link = if entry.cache_type == 2 {
                 let path = Cursor::new(&entry.scratch).read_u32_le()?;
-                LinkTo::Soft(heap.get_string_storage(path.into(), storage)?)
+                LinkTarget::Soft { path: heap.get_string_storage(path.into(), storage)? }
             } else {
-                LinkTo::Hard(entry.object_header_address)
+                LinkTarget::Hard { address: entry.object_header_address }
             };
             links.insert(heap.get_string_storage(entry.link_name_offset, storage)?, link);
         }
