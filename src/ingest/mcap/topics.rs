@@ -13,7 +13,7 @@ use crate::ingest::{Limits, factors};
 use mcap::Schema;
 use mcap::records::{Channel, Record, SchemaHeader, op};
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a
@@ -67,8 +67,6 @@ pub(super) struct Topics<'a> {
     /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
     /// announce one of them under every number.
     by_type: HashMap<(String, u16, String), Option<usize>>,
-    /// The places of those whose first message with numbers must tell which fields there are.
-    undecided: BTreeSet<usize>,
     /// The topic of each channel, the first of an id, and its place in the file; `None` where its messages
     /// are not asked for.
     pub(super) by_channel: HashMap<u16, Option<(usize, usize)>>,
@@ -160,9 +158,6 @@ impl<'a> Topics<'a> {
         if let Some(leaves) = topic.message_type.as_ref().and_then(MessageType::leaves) {
             self.prepare(&mut topic, leaves);
         }
-        if topic.is_undecided() {
-            self.undecided.insert(self.all.len());
-        }
         self.all.push(topic);
         is_asked.then_some(self.all.len() - 1)
     }
@@ -207,7 +202,7 @@ impl<'a> Topics<'a> {
                 }
             }
         }
-        if !chunk.is_bad() && !self.undecided.is_empty() {
+        if !chunk.is_bad() && self.all.iter().any(Topic::is_undecided) {
             let messages = chunk.records().filter(|(opcode, _)| *opcode == op::MESSAGE);
             messages.for_each(|(_, body)| self.look_at(body));
         }
@@ -219,7 +214,7 @@ impl<'a> Topics<'a> {
         const TREE_BYTES: u64 = 32;
         let Some(message) = Message::parse(body) else { return };
         let Some(&Some((at, _))) = self.by_channel.get(&message.channel) else { return };
-        if !self.undecided.contains(&at) {
+        if !self.all[at].is_undecided() {
             return;
         }
         let mut topic = std::mem::take(&mut self.all[at]);
@@ -241,9 +236,6 @@ impl<'a> Topics<'a> {
             if has_signals || is_asked {
                 self.prepare(&mut topic, leaves);
             }
-        }
-        if !topic.is_undecided() {
-            self.undecided.remove(&at);
         }
         self.all[at] = topic;
     }
