@@ -280,8 +280,6 @@ const PACKED_ALONE: &str = "each message is packed by itself with zstd, as `ros2
 pub(super) struct Part {
     /// By the channel's place in the file, as far as one had a message.
     pub(super) gathered: Vec<Gathered>,
-    /// The channels with a message: a file may have thousands, and chunks of a message each.
-    touched: Vec<usize>,
     slots: Slots,
     /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of
     /// their own.
@@ -300,9 +298,6 @@ impl Part {
     pub(super) fn take(&mut self, place: usize, topic: &Topic, message: &Message) {
         self.make_room(place + 1);
         let gathered = &mut self.gathered[place];
-        if gathered.messages == 0 {
-            self.touched.push(place);
-        }
         let held = |gathered: &Gathered| gathered.columns().map(Column::held_bytes).sum::<u64>();
         let before = held(gathered);
         gathered.take(topic, message, &mut self.slots, self.most_listed_bytes.is_some());
@@ -313,20 +308,9 @@ impl Part {
     /// Moves over what the messages that follow gave, and leaves `other` as new but for its memory.
     pub(super) fn append(&mut self, other: &mut Self) {
         self.make_room(other.gathered.len());
-        let Self { gathered, touched, .. } = self;
-        let mut pairs: Vec<(usize, Gathered, Gathered)> = Vec::with_capacity(other.touched.len());
-        for at in other.touched.drain(..) {
-            let own = std::mem::take(&mut gathered[at]);
-            if own.messages == 0 {
-                touched.push(at);
-            }
-            pairs.push((at, own, std::mem::take(&mut other.gathered[at])));
-        }
         // Most of the time the system hands out the memory, a page after the other.
-        pairs.par_iter_mut().for_each(|(_, own, more)| own.append(more));
-        for (at, own, more) in pairs {
-            (self.gathered[at], other.gathered[at]) = (own, more);
-        }
+        let pairs = self.gathered.par_iter_mut().zip(&mut other.gathered);
+        pairs.filter(|(_, more)| more.messages > 0).for_each(|(own, more)| own.append(more));
         self.held_bytes += std::mem::take(&mut other.held_bytes);
         self.keep_within();
     }
