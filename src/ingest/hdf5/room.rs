@@ -221,7 +221,12 @@ impl Link {
             let link = Self { to: Box::new(to), from: Box::new(from), process: None };
             return Ok((link, Opened { user_block, library: pure::READER.into(), is_walled: true }));
         }
-        let mut link = Self::to(file.path).map_err(|refusal| unstarted(&refusal))?;
+        // The tests of this library are no program that could be started.
+        #[cfg(any(test, fuzzing))]
+        let link = thread_tests::link(file.path);
+        #[cfg(not(any(test, fuzzing)))]
+        let link = Self::by_process(file.path);
+        let mut link = link.map_err(|refusal| unstarted(&refusal))?;
         match link.answer() {
             Ok((Reply::Opened { user_block, library: (major, minor, patch), is_walled }, _)) => {
                 let library = format!("HDF5 library {major}.{minor}.{patch}");
@@ -281,17 +286,6 @@ impl Link {
             format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
             "copy it from the logger again; if it is sound, `h5repack IN OUT` writes it anew",
         )
-    }
-
-    /// The tests of this library are no program that could be started.
-    #[cfg(any(test, fuzzing))]
-    fn to(path: &Path) -> io::Result<Self> {
-        thread_tests::link(path)
-    }
-
-    #[cfg(not(any(test, fuzzing)))]
-    fn to(path: &Path) -> io::Result<Self> {
-        Self::by_process(path)
     }
 
     #[cfg_attr(any(test, fuzzing), allow(dead_code, reason = "tests have the library on a thread"))]

@@ -36,9 +36,9 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
             return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
     }
-    let messages = as_f64(usize::try_from(scanned.counts.messages()).unwrap_or(usize::MAX));
     let others_messages = |one: &TopicSeries| {
-        messages - as_f64(usize::try_from(one.channel.gathered.messages).unwrap_or_default())
+        let others = scanned.counts.messages().saturating_sub(one.channel.gathered.messages);
+        as_f64(usize::try_from(others).unwrap_or(usize::MAX))
     };
     let spans = || chosen.iter().filter_map(|&at| series[at].column.span_ns());
     let zero_ns = spans().map(|(from, _)| from).min().unwrap_or(0);

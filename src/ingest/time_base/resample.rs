@@ -1,7 +1,7 @@
 //! Samples at jittering times to samples at uniform times, by local cubic interpolation.
 
 use super::fit::{BaseFit, two_periods};
-use crate::data::{Jitter, Samples};
+use crate::data::{Jitter, Samples, of_either};
 use crate::numerics::{as_count, as_f64, reduce};
 
 /// Samples moved onto a base, and how far their times are from it: what that may cost is how far cubic and
@@ -23,10 +23,7 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
     let mut next_run = 1;
     let (mut at, mut sum, mut max) = (0, 0.0, 0.0_f64);
     let mut moved = Vec::with_capacity(count);
-    let (low, high) = match samples {
-        Samples::F32(v) => reduce::extremes(v, samples.get(0)),
-        Samples::F64(v) => reduce::extremes(v, samples.get(0)),
-    };
+    let (low, high) = of_either!(samples, v => reduce::extremes(v, samples.get(0)));
     for i in 0..count {
         let t = fit.start_s + (first_place + as_f64(i)) * fit.period_s;
         while at + 2 < times_s.len() && times_s[at + 1] <= t {
