@@ -270,6 +270,10 @@ impl Search<'_> {
             attempt = Attempt { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
             let (left_by_s, end_by_s) =
                 ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
+            // A search that has not come to rest knows its slap-down no better than it still moves.
+            if let Some(struck) = attempt.slap_down.as_mut().filter(|_| round > 0 && end_by_s > SETTLED_S) {
+                struck.u_s = struck.u_s.hypot(end_by_s);
+            }
             let is_still = round > 0 && end_by_s.max(left_by_s) < STILL_S;
             if is_still || (round + 1 >= ROUNDS && end_by_s < SETTLED_S) {
                 break;

@@ -243,9 +243,10 @@ pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m
     let rate_hz = signal.sample_rate_hz;
     let width_s = width_s(length_m);
     let earliest_s = struck.time_s - width_s;
-    // A long flight rings less at its end than where it was fitted.
-    let [before, after] = [earliest_s - width_s, earliest_s].map(|time_s| signal.index_from(time_s));
-    let is_flight = earliest_s - width_s > from_s;
+    // A long flight rings less in its last quarter than where it was fitted.
+    let quarter_s = ((earliest_s - from_s) / 4.0).max(width_s);
+    let [before, after] = [earliest_s - quarter_s, earliest_s].map(|time_s| signal.index_from(time_s));
+    let is_flight = earliest_s - quarter_s > from_s;
     let shown_m_s2 = signal.force_m_s2.get(before..after).filter(|_| is_flight).map(reduce::peak);
     let calm_m_s2 = shown_m_s2.map_or(calm_m_s2, |shown_m_s2| shown_m_s2.min(calm_m_s2));
     let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTS * calm_m_s2);
