@@ -30,10 +30,8 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let heading = record::heading(&result.test, name);
     let pictures =
         |names: &[&str]| names.iter().map(|name| ChapterPart::picture(name, "")).collect::<Vec<_>>();
-    let photographs: Vec<_> = record::photographs(&result.test).collect();
-    let photographs = (!photographs.is_empty()).then(|| PartContent::Photographs(photographs).into());
-    let who = Some(&result.test.signatures).filter(|who| !who.is_empty());
-    let signatures = who.map(|who| record::signatures(who));
+    let photographs = PartContent::Photographs(record::photographs(&result.test).collect());
+    let signatures = record::signatures(&result.test.signatures);
     let hash = input.recording_sha256.get(..16).unwrap_or_default();
     ReportDocument {
         page: Frame {
@@ -79,8 +77,8 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             channels(result).with_all(pictures(&["spectra"])),
             others(result),
             provenance(result, file),
-            Chapter::new("Photographs").only(Medium::Page).with_all(photographs),
-            Chapter::new("Signatures").only(Medium::Page).with_all(signatures),
+            Chapter::new("Photographs").only(Medium::Page).with(photographs),
+            Chapter::new("Signatures").only(Medium::Page).with(signatures),
         ],
     }
 }
@@ -245,9 +243,7 @@ fn predictions(result: &DropResult) -> Chapter {
     let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
     let over = result.predictions.iter().any(Prediction::turns_over);
     let notes = [kept.then_some(KEPT_SENTENCE), over.then_some(OVER_SENTENCE)];
-    Chapter::new("Predictions")
-        .with_all((!result.predictions.is_empty()).then(|| table.into()))
-        .with_all(notes.into_iter().flatten().map(ChapterPart::note))
+    Chapter::new("Predictions").with(table).with_all(notes.into_iter().flatten().map(ChapterPart::note))
 }
 
 /// What each channel is worth.

@@ -177,7 +177,7 @@ impl ChapterPart {
         Self { only: Some(medium), ..self }
     }
 
-    /// Whether this medium shows it.
+    /// Whether this medium shows it: no table without rows.
     pub(crate) fn is_shown(&self, medium: Medium) -> bool {
         let is_drawn = matches!(
             self.content,
@@ -186,7 +186,13 @@ impl ChapterPart {
                 | PartContent::Photographs(_)
                 | PartContent::List(_)
         );
-        self.only.is_none_or(|only| only == medium) && !(is_drawn && medium == Medium::Terminal)
+        let is_empty = match &self.content {
+            PartContent::ReportTable(table) => table.rows(medium).0 == 0,
+            PartContent::Photographs(all) => all.is_empty(),
+            _ => false,
+        };
+        let is_meant = self.only.is_none_or(|only| only == medium);
+        is_meant && !is_empty && !(is_drawn && medium == Medium::Terminal)
     }
 }
 

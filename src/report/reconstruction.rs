@@ -25,12 +25,12 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
         .number("k", |c| interval(c.k.as_ref()))
         .text("What it leaves", |c| true_minus(&c.residual))
         .text("Explained", |c| yes(c.consistent));
-    let tables = [rungs.into()].into_iter().chain(closures(choice)).chain(joint(choice));
-    chapter.with(ChapterPart::lead(sentence(&choice.reason))).with_all(tables)
+    let lead = ChapterPart::lead(sentence(&choice.reason));
+    chapter.with(lead).with(rungs).with(closures(choice)).with_all(joint(choice))
 }
 
-fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
-    let table = ReportTable::of(&choice.closures)
+fn closures(choice: &ReconstructionChoice) -> ReportTable {
+    ReportTable::of(&choice.closures)
         .caption(
             "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard \
              uncertainties (u) of all inputs \
@@ -40,8 +40,8 @@ fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
         .number("Missed by", |c| true_minus(&c.miss))
         .number("in u", |c| fixed(c.miss_in_u, 1))
         .number("with the others met, in u", |c| fixed(c.beside_others_in_u, 1))
-        .if_any(choice.closures.len() > 1);
-    (!choice.closures.is_empty()).then(|| table.into())
+        .if_any(choice.closures.len() > 1)
+        .into()
 }
 
 /// χ² of the joint fit and what it moved.
@@ -70,8 +70,7 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
         .number("Standard uncertainty u", |a| &a.standard_uncertainty[..])
         .number("Moved by, in u", |a| fixed(a.moved_in_u, 2))
         .number("Left, %", |a| fixed(100.0 * a.left_share, 0));
-    let moved = (!choice.adjustments.is_empty()).then(|| moved.into());
-    [ChapterPart::text(sentence)].into_iter().chain(moved).collect()
+    vec![ChapterPart::text(sentence), moved.into()]
 }
 
 /// The fit of the free-flight window: plateaus, modes, candidates.
@@ -181,8 +180,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .number("moves the slap-down speed by, m/s", |i| optional(i.moves.slap_down_speed_m_s, 2))
         .number("and k by", |i| optional(i.moves.k, 2))
         .text("What would test it", |i| i.remedy);
-    let untested = (!result.untested.is_empty()).then(|| ChapterPart::from(untested));
-    chapter.with(ChapterPart::lead(lead)).with(table).with_all(untested)
+    chapter.with(ChapterPart::lead(lead)).with(table).with(untested)
 }
 
 /// A formal report must not rest on an assumption that carries more of the variance, percent.

@@ -72,7 +72,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
         .number("Result", |seen| interval(seen.result.as_ref()))
         .number("E_n", |seen| optional_fixed(seen.e_n, 2))
         .text("Agree", agrees);
-    Chapter::new("Observed otherwise").with_all((!all.is_empty()).then(|| table.into()))
+    Chapter::new("Observed otherwise").with(table)
 }
 
 /// The word for a limit that is exceeded.
@@ -122,7 +122,7 @@ pub(super) fn limits(all: &[Limit]) -> Chapter {
         .number("Least", |row| bound(row.least))
         .number("Most", |row| bound(row.most))
         .text("Limit", state);
-    Chapter::new("Limits").with_all((!all.is_empty()).then(|| table.into()))
+    Chapter::new("Limits").with(table)
 }
 
 /// The settings that the chapter has already.
