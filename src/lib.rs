@@ -72,6 +72,7 @@ pub mod stages {
     pub use crate::data::keys::{Allowed, INNER_TABLES, Key, KeyTable, TABLES, Takes};
     pub use crate::events::Changes;
     pub use crate::fit::{FitData, ladder};
+    pub use crate::motion::vector_pulses;
     pub use crate::motion::{Integrated, Window, filtered, fit_flights, outcome, pulses, reconstruct};
     pub use crate::numerics::filter::ZeroPhaseLowPass;
     pub use crate::numerics::shock_response::{ShockResponse, shock_response};

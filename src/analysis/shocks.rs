@@ -1,15 +1,16 @@
 //! Every channel around the impacts to the shock that it reads there, whether the motion is determined or
-//! not.
+//! not; and the vectors that mounting blocks of three read.
 
-use super::first_look;
+use super::{first_look, skin};
 use crate::condition::{self, Reach};
 use crate::data::{
-    Analysis, Axis, CaskFile, Channel, ChannelPeak, ChannelPulse, CoarseEvent, DropResult, End, OtherSummary,
-    Recording, Shock, Signal, acceleration_unit_m_s2,
+    Analysis, Axis, CaskFile, Channel, ChannelPeak, ChannelPulse, ChannelSpec, CoarseEvent, DropResult, End,
+    OtherSummary, Recording, Shock, Signal, acceleration_unit_m_s2,
 };
 use crate::motion;
 use crate::numerics::robust;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Where nothing shows when a shock ends, it is sought for so long, s.
 const LONGEST_S: f64 = 0.1;
@@ -18,6 +19,8 @@ const SMEARED_PERIODS: f64 = 1.6;
 /// An impact that a channel's own course shows is found where a tenth of its peak is reached; it begins less
 /// than this before, s.
 const FOOT_S: f64 = 5e-3;
+/// A sensor on the skin within 3° of the plane of the drop reads this share of an acceleration in it.
+const UPRIGHT: f64 = 0.9986;
 
 /// Adds the shock of every channel to the result.
 pub(super) fn add(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
@@ -25,7 +28,9 @@ pub(super) fn add(recording: &Recording, file: &CaskFile, found: &mut Analysis) 
     let in_motion = recording.channels.par_iter().map(|channel| sought.of_motion(channel));
     let others = recording.others.channels.par_iter().zip(&found.result.other_channels);
     let others = others.map(|(channel, summary)| sought.of_other(channel, summary));
-    let all: Vec<Vec<Shock>> = in_motion.chain(others).collect();
+    let blocks = skin::blocks(file);
+    let of_blocks = blocks.par_iter().map(|block| sought.of_block(*block, recording));
+    let all: Vec<Vec<Shock>> = in_motion.chain(others).chain(of_blocks).collect();
     found.result.shocks = all.into_iter().flatten().collect();
 }
 
@@ -66,16 +71,36 @@ impl<'a> ShockSearch<'a> {
         let tables = self.result.impacts.iter();
         let pulse = |(end, peaks): (End, &[ChannelPeak])| {
             let own = peaks.iter().find(|peak| peak.name == channel.name)?;
-            Some(shock(channel, end, own.pulse, true))
+            let known = [own.peak_filtered, own.peak_raw];
+            Some(Shock { known, ..shock(channel, end, own.pulse, true) })
         };
         let shocks: Vec<Shock> = tables.filter_map(|table| pulse((table.end, &table.channels))).collect();
-        if shocks.is_empty() { self.shocks_of(channel, &self.accelerations(channel), true) } else { shocks }
+        // The tables have what a sensor aslant on the skin would read in the plane of the drop.
+        let is_alone = shocks.is_empty() || self.share(channel) < UPRIGHT;
+        if is_alone { self.shocks_of(channel, &[self.as_read(channel)], true) } else { shocks }
+    }
+
+    /// The shocks of the vector that the three sensors of a mounting block read; none where they are of
+    /// different times.
+    fn of_block(&self, specs: [&ChannelSpec; 3], recording: &Recording) -> Vec<Shock> {
+        let [Some(one), Some(other), Some(axial)] = specs.map(|spec| channel_of(spec, recording)) else {
+            return Vec::new();
+        };
+        let signals = [&one, &other, &axial].map(|channel| self.as_read(channel));
+        if !signals.iter().all(|signal| skin::are_of_same_times([&signals[2], signal])) {
+            return Vec::new();
+        }
+        let components = specs.map(|spec| spec.name.clone()).to_vec();
+        let channel = format!("resultant of {}", components.join(", "));
+        let shocks = self.shocks_of(&axial, &signals, true).into_iter();
+        let named = |s| Shock { channel: channel.clone(), components: components.clone(), ..s };
+        shocks.map(named).collect()
     }
 
     /// The shocks of a channel that takes no part in the motion.
     fn of_other(&self, channel: &Channel, summary: &OtherSummary) -> Vec<Shock> {
         if let Some(accelerometer) = accelerometer(channel) {
-            return self.shocks_of(channel, &self.accelerations(&accelerometer), true);
+            return self.shocks_of(channel, &[self.accelerations(&accelerometer)], true);
         }
         let Some(rest) = summary.rest else { return Vec::new() };
         let (from_s, to_s) = (self.contact_s - LONGEST_S, self.end_s() + LONGEST_S);
@@ -89,7 +114,20 @@ impl<'a> ShockSearch<'a> {
             gaps: channel.gaps.clone(),
             ..Signal::default()
         };
-        self.shocks_of(channel, &whole.cut_with(from, changes), false)
+        self.shocks_of(channel, &[whole.cut_with(from, changes)], false)
+    }
+
+    /// What a sensor reads of the acceleration that its channel holds, as a share.
+    fn share(&self, channel: &Channel) -> f64 {
+        let spec = self.file.channels.iter().find(|spec| spec.name == channel.name);
+        spec.map_or(1.0, |spec| spec.axis_share().abs())
+    }
+
+    /// A channel over the impacts as its sensor reads.
+    fn as_read(&self, channel: &Channel) -> Signal {
+        let (share, mut signal) = (self.share(channel), self.accelerations(channel));
+        signal.force_m_s2.iter_mut().for_each(|force| *force *= share);
+        signal
     }
 
     /// A channel over the impacts, counted from its level in the free fall.
@@ -100,11 +138,11 @@ impl<'a> ShockSearch<'a> {
         condition::signal(channel, &event, &reach, self.file.corrections).0
     }
 
-    fn shocks_of(&self, channel: &Channel, signal: &Signal, is_acceleration: bool) -> Vec<Shock> {
-        let signals = std::slice::from_ref(signal);
+    /// The shocks of a signal, or of the vector of several.
+    fn shocks_of(&self, channel: &Channel, signals: &[Signal], is_acceleration: bool) -> Vec<Shock> {
         let found = |(end, stretch_s): (End, [f64; 2])| {
-            let pulse = motion::pulses(signals, stretch_s, self.cutoff_hz).pop().flatten();
-            shock(channel, end, pulse, is_acceleration)
+            let pulse = motion::vector_pulses(signals, signals.len(), stretch_s, self.cutoff_hz).pop();
+            shock(channel, end, pulse.flatten(), is_acceleration)
         };
         self.stretches_s().into_iter().map(found).collect()
     }
@@ -128,7 +166,16 @@ fn shock(channel: &Channel, event: End, pulse: Option<ChannelPulse>, is_accelera
         displacement_m: integral(1),
         unit: if is_in_own_unit { channel.unit.clone() } else { "m/s^2".to_owned() },
         unit_m_s2,
+        ..Shock::default()
     }
+}
+
+/// The channel of an accelerometer, in m/s².
+fn channel_of<'a>(spec: &ChannelSpec, recording: &'a Recording) -> Option<Cow<'a, Channel>> {
+    let is_own = |channel: &&Channel| channel.name == spec.name;
+    let of_motion = recording.channels.iter().find(is_own).map(Cow::Borrowed);
+    let other = || recording.others.channels.iter().find(is_own).and_then(accelerometer);
+    of_motion.or_else(|| other().map(Cow::Owned))
 }
 
 /// An accelerometer that takes no part in the motion as one of the motion, in m/s².
@@ -140,9 +187,9 @@ fn accelerometer(other: &Channel) -> Option<Channel> {
 
 /// When the first impact begins by what the channels read themselves, s: the median of those that show one.
 fn own_impact_s(recording: &Recording) -> Option<f64> {
-    let across = |channel: &Channel| Channel { axis: Axis::Transverse, ..channel.clone() };
-    let motion = recording.channels.iter().map(across);
+    let of_motion = recording.channels.iter().filter_map(first_look::impact_s);
     let others = recording.others.channels.iter().filter_map(accelerometer);
-    let mut begins_s: Vec<f64> = motion.chain(others).filter_map(|c| first_look::impact_s(&c)).collect();
+    let others = others.filter_map(|channel| first_look::impact_s(&channel));
+    let mut begins_s: Vec<f64> = of_motion.chain(others).collect();
     Some(robust::median(&mut begins_s) - FOOT_S).filter(|at_s| at_s.is_finite())
 }

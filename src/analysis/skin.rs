@@ -1,16 +1,19 @@
 //! Sensors of the skin to what each place reads in the plane of the drop, and across it   (53)
 
 use crate::data::{
-    CaskFile, Channel, ChannelSpec, Events, Finding, RestLevel, Signal, SkinDirection, SkinPlace, Span,
+    Axis, CaskFile, Channel, ChannelSpec, Events, Finding, RestLevel, Signal, SkinDirection, SkinPlace, Span,
     acceleration_unit_m_s2,
 };
 use crate::judge;
-use crate::numerics::robust;
+use crate::numerics::{reduce, robust};
 
 /// A radial and a tangential sensor within this of one another along the axis, m, and around the skin, rad,
 /// are one place: a mounting block.
 const SAME_PLACE_M: f64 = 0.02;
 const SAME_PLACE_RAD: f64 = 0.05;
+
+/// Two directions are square to one another within 3°: the cosine between them.
+const SQUARE: f64 = 0.05;
 
 /// Standard uncertainty of the angle at which a sensor is mounted, rad: 1° at 95 %, as a block is set by a
 /// spirit level.
@@ -34,6 +37,27 @@ fn pairs(specs: &[ChannelSpec]) -> impl Iterator<Item = [&ChannelSpec; 2]> {
         };
         Some([radial, specs.iter().find(is_beside)?])
     })
+}
+
+/// The sensors of each mounting block that has three: two square to one another across the axis, and the one
+/// along it.
+pub(super) fn blocks(file: &CaskFile) -> Vec<[&ChannelSpec; 3]> {
+    let others = file.others.iter().map(|other| &other.read).filter(|spec| spec.skin.is_some());
+    let all: Vec<&ChannelSpec> = file.channels.iter().chain(others).collect();
+    let along = all.iter().filter(|spec| spec.axis == Axis::Axial);
+    let block = along.filter_map(|axial| {
+        let is_beside = |spec: &&&ChannelSpec| {
+            let far_m = [spec.offset_m - axial.offset_m, spec.lateral_m - axial.lateral_m];
+            (spec.axis, &spec.file) == (Axis::Transverse, &axial.file)
+                && (spec.position_m - axial.position_m).abs() < SAME_PLACE_M
+                && far_m[0].hypot(far_m[1]) < SAME_PLACE_M
+        };
+        let mut beside = all.iter().filter(is_beside);
+        let one = beside.next()?;
+        let cosine = |other: &ChannelSpec| reduce::dot(&one.direction(), &other.direction());
+        Some([*one, *beside.find(|other| cosine(other).abs() < SQUARE)?, *axial])
+    });
+    block.collect()
 }
 
 /// The weights of a pair in the plane: the squares of their shares, since a signal is what the sensor reads
@@ -90,7 +114,7 @@ pub(super) fn turn_rests(rests: &mut Vec<RestLevel>, across: &[Signal], specs: &
 }
 
 /// True if the samples of both are of the same times, but for a part of a step.
-fn are_of_same_times([one, other]: [&Signal; 2]) -> bool {
+pub(super) fn are_of_same_times([one, other]: [&Signal; 2]) -> bool {
     let is_shifted = (one.start_s - other.start_s).abs() * one.sample_rate_hz >= 1.0;
     !is_shifted && (one.sample_rate_hz / other.sample_rate_hz - 1.0).abs() < 1e-9
 }

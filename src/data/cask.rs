@@ -376,6 +376,13 @@ impl ChannelSpec {
         self.skin.filter(|skin| !skin.is_across()).map_or(1.0, |skin| skin.shares()[0])
     }
 
+    /// What it reads of an acceleration along the axis, away from the target and across the plane of the
+    /// drop   (53)
+    pub fn direction(&self) -> [f64; 3] {
+        let [own, across] = self.skin.map_or([1.0, 0.0], SkinPlace::shares);
+        if self.axis == Axis::Axial { [own, 0.0, 0.0] } else { [0.0, own, across] }
+    }
+
     /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else
     /// is stated.
     pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {

@@ -1,6 +1,7 @@
 //! What single channels read in the impacts, whether the motion is determined or not.
 
 use super::cask::End;
+use super::estimate::Estimate;
 use serde::Serialize;
 
 /// One channel's pulse.
@@ -31,10 +32,13 @@ pub struct PulseLength {
 }
 
 /// What one channel reads in one impact; `None` where it does not show the pulse whole.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Shock {
-    /// The channel.
+    /// The channel, or which channels it is the resultant of.
     pub channel: String,
+    /// The channels of a mounting block whose vector it is; none of a single channel.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub components: Vec<String>,
     /// The impact: that of the first end or of the second.
     pub event: End,
     /// The largest of either sign at the report's cut-off, in `unit`: of an acceleration counted from the
@@ -52,6 +56,9 @@ pub struct Shock {
     pub displacement_m: Option<f64>,
     /// "g", "m/s^2" or the unit of the other quantity.
     pub unit: String,
+    /// Both peaks with their intervals, m/s², where the table of the impact has them.
+    #[serde(skip)]
+    pub known: [Option<Estimate>; 2],
     /// m/s² per `unit`; `None` of another quantity.
     #[serde(skip)]
     pub unit_m_s2: Option<f64>,

@@ -81,8 +81,13 @@ pub struct Hiding {
 impl<'a> Changes<'a> {
     /// Looks at every sample of the transverse channels once.
     pub fn of(channels: &'a [Channel]) -> Self {
-        let transverse = channels.par_iter().filter(|c| c.axis == Axis::Transverse);
-        Self(transverse.filter_map(Changing::of).collect())
+        Self::along(channels, Axis::Transverse)
+    }
+
+    /// The same of the channels along an axis.
+    pub fn along(channels: &'a [Channel], axis: Axis) -> Self {
+        let along = channels.par_iter().filter(|c| c.axis == axis);
+        Self(along.filter_map(Changing::of).collect())
     }
 
     /// The transverse channel of the first end; any other where that end has none.

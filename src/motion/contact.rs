@@ -8,6 +8,7 @@ use crate::data::{ChannelPulse, End, MotionState, PulseLength, Setup, Signal, tr
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::{as_f64, reduce};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// A second maximum of the force, as a share of the larger; and the share of the lower one that the force
@@ -262,23 +263,55 @@ const PULSE_FOOT: f64 = 0.01;
 /// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz;
 /// `None` where samples are clipped or lost.
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
+    vector_pulses(signals, 1, between_s, cutoff_hz)
+}
+
+/// The same of vectors of so many components each, one behind the other and of the same times: that of the
+/// magnitude, with the magnitudes of the vectors of change of velocity and displacement   (56)
+pub fn vector_pulses(
+    signals: &[Signal],
+    components: usize,
+    between_s: [f64; 2],
+    cutoff_hz: f64,
+) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
     let is_whole =
         |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
     // Without a low-pass the ends of the pulse are sought as far as with a slow one.
     let margin_hz = if cutoff_hz.is_finite() { cutoff_hz } else { 100.0 };
     let wide: Vec<Signal> = signals.iter().map(|s| cut_wide(s, (from_s, to_s), margin_hz)).collect();
-    let all = signals.iter().zip(wide.iter().zip(filtered(&wide, cutoff_hz)));
-    all.map(|(signal, (wide, smooth))| pulse(wide, &smooth, between_s).filter(|_| is_whole(signal))).collect()
+    let smooth = filtered(&wide, cutoff_hz);
+    let [signals, wide, smooth] = [signals, &wide, &smooth].map(|all| all.chunks(components));
+    let all = signals.zip(wide.zip(smooth));
+    all.map(|(signals, (wide, smooth))| {
+        pulse([wide, smooth], between_s).filter(|_| signals.iter().all(is_whole))
+    })
+    .collect()
 }
 
-fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<ChannelPulse> {
+/// A component by itself with its sign, of several the magnitude of their vector.
+fn magnitude(components: impl ExactSizeIterator<Item = f64>) -> f64 {
+    if components.len() == 1 { components.sum() } else { components.map(|x| x * x).sum::<f64>().sqrt() }
+}
+
+/// The same of signals, sample by sample.
+fn magnitudes(components: &[Signal]) -> Cow<'_, Signal> {
+    if let [one] = components {
+        return Cow::Borrowed(one);
+    }
+    let count = components.iter().map(|s| s.force_m_s2.len()).min().unwrap_or_default();
+    let at = |i: usize| magnitude(components.iter().map(|s| s.force_m_s2[i]));
+    Cow::Owned(components[0].cut_with(0, (0..count).map(at).collect()))
+}
+
+fn pulse(components: [&[Signal]; 2], [from_s, to_s]: [f64; 2]) -> Option<ChannelPulse> {
+    let [wide, smooth] = components.map(magnitudes);
     let peak = |of: &Signal| {
         let values = &of.force_m_s2;
         let within = of.index_from(from_s)..of.index_from(to_s);
         within.max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
     };
-    let (at, peak_m_s2) = peak(smooth)?;
+    let (at, peak_m_s2) = peak(&smooth)?;
     let (filtered, sample_s) = (&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
     // When the reading passes a share of the peak before and after it, in samples, and how much later it
     // passes a higher level: on a line from a sample below the level to its neighbour above.
@@ -300,12 +333,16 @@ fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<Cha
     });
     let integrals = passed(PULSE_FOOT).map(|(began, ended)| {
         let index = |position: f64| wide.index_from(smooth.start_s + position * sample_s);
-        let step_s = 1.0 / wide.sample_rate_hz;
-        let velocity_m_s = running_integral(&wide.force_m_s2[index(began[0])..index(ended[0])], step_s);
-        let way_m = running_integral(&velocity_m_s, step_s);
-        [velocity_m_s, way_m].map(|course| course.last().copied().unwrap_or_default())
+        let (pulse, step_s) = (index(began[0])..index(ended[0]), 1.0 / wide.sample_rate_hz);
+        let each = components[0].iter().map(|component| {
+            let velocity_m_s = running_integral(&component.force_m_s2[pulse.clone()], step_s);
+            let way_m = running_integral(&velocity_m_s, step_s);
+            [velocity_m_s, way_m].map(|course| course.last().copied().unwrap_or_default())
+        });
+        let each: Vec<[f64; 2]> = each.collect();
+        [0, 1].map(|i| magnitude(each.iter().map(|integrals| integrals[i])))
     });
-    let raw = peak(wide)?.1;
+    let raw = peak(&wide)?.1;
     Some(ChannelPulse { raw, filtered: peak_m_s2, time_s: smooth.time_s(at), sample_s, length, integrals })
 }
 

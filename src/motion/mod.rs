@@ -17,7 +17,7 @@ mod ringing;
 mod window;
 
 pub use answer::most_late_s;
-pub use contact::{ContactCourse, FirstTouch, ForceCourse, largest, pulses};
+pub use contact::{ContactCourse, FirstTouch, ForceCourse, largest, pulses, vector_pulses};
 pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
 pub use flight::{compare_early, compare_late, fit_flights};
 pub use histories::drive;

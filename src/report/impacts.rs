@@ -65,7 +65,7 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
     chapter
         .with(ChapterPart::text(filter_words(result)))
         .with(table)
-        .with_all(what_if(result, in_g))
+        .with(what_if(result, in_g))
         .with_all(not_determined(result, &["impacts[0]", "impacts[1]"]))
         .with_all(energy_words(result).map(ChapterPart::text))
 }

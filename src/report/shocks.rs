@@ -2,54 +2,47 @@
 //! each would have made of the first impact.
 
 use super::document::{Chapter, ChapterPart, ReportTable};
-use super::rounding::{interval, optional, optional_fixed};
+use super::rounding::{optional, optional_fixed, pair};
 use super::text::json_word;
-use crate::data::{DropResult, End, Estimate, FilteredPeak, RigidBodyDeceleration, Shock};
+use crate::data::{DropResult, Estimate, FilteredPeak, RigidBodyDeceleration, Shock};
 
 const CAPTION: &str = "At the report's low-pass, and unfiltered. An acceleration counts from the free fall, \
                        another quantity from its level before the release. Length: above a tenth of the \
                        peak. Change of velocity and displacement: over the pulse, unfiltered; the \
                        displacement is that against an undisturbed motion. srs.csv has the spectra.";
 
+const RESULTANT: &str = "Resultant: the magnitude of the vector of a mounting block's three sensors, each \
+                         through the low-pass; so of the changes of velocity and displacement.";
+
 /// The chapter; empty where no channel shows an impact.
 pub(super) fn shocks(result: &DropResult) -> Chapter {
-    let chapter = Chapter::new("Shocks of every channel");
-    if result.shocks.is_empty() {
-        return chapter;
-    }
     let millis = |seconds: Option<f64>| seconds.map(|s| 1e3 * s);
     let table = ReportTable::of(&result.shocks)
         .class("")
         .caption(CAPTION)
         .head("Channel", |s| &s.channel[..])
         .text("Impact", |s| json_word(s.event))
-        .number("Peak", |s| with_interval(result, s, true))
-        .number("Unfiltered", |s| with_interval(result, s, false))
+        .number("Peak", |s| with_interval(s, s.peak, s.known[0]))
+        .number("Unfiltered", |s| with_interval(s, s.peak_unfiltered, s.known[1]))
         .text("Unit", |s| &s.unit[..])
         .number("At, ms", |s| optional_fixed(millis(s.time_s), 2))
         .number("Length, ms", |s| optional_fixed(millis(s.duration_s), 2))
         .number("Change of velocity, m/s", |s| optional_fixed(s.velocity_change_m_s, 2))
         .number("Displacement, mm", |s| optional_fixed(millis(s.displacement_m), 1));
-    chapter.with(table)
+    let has_resultant = result.shocks.iter().any(|shock| !shock.components.is_empty());
+    Chapter::new("Shocks of every channel")
+        .with(table)
+        .with_all(has_resultant.then(|| ChapterPart::note(RESULTANT)))
 }
 
-/// A peak with the interval that the table of its impact has, in the shock's unit.
-fn with_interval(result: &DropResult, shock: &Shock, is_filtered: bool) -> String {
-    let impact = &result.impacts[usize::from(shock.event == End::Second)];
-    let own = impact.channels.iter().find(|peak| peak.name == shock.channel);
-    let estimate = own.and_then(|own| if is_filtered { own.peak_filtered } else { own.peak_raw });
-    let in_unit = |e: Estimate, unit_m_s2: f64| Estimate::new(e.value / unit_m_s2, e.u95 / unit_m_s2, "1");
-    match estimate.zip(shock.unit_m_s2) {
-        Some((estimate, unit_m_s2)) => interval(Some(&in_unit(estimate, unit_m_s2))),
-        None => optional(if is_filtered { shock.peak } else { shock.peak_unfiltered }, 4),
-    }
+/// A peak in the shock's unit, with its interval where that is known, m/s².
+fn with_interval(shock: &Shock, peak: Option<f64>, known: Option<Estimate>) -> String {
+    let in_unit = |(known, unit): (Estimate, f64)| pair(known.value / unit, known.u95 / unit, "");
+    known.zip(shock.unit_m_s2).map_or_else(|| optional(peak, 4), in_unit)
 }
 
 /// What each low-pass makes of the first impact, and of the decelerations of both.
-pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> String) -> Vec<ChapterPart> {
-    if result.filters.is_empty() {
-        return Vec::new();
-    }
+pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> String) -> ReportTable {
     let impact = |i: usize, filter: &FilteredPeak| {
         let own = &result.impacts[i].rigid_body_deceleration;
         own.others.iter().find(|other| other.filter == filter.name)
@@ -57,7 +50,7 @@ pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> Str
     let cell = |i: usize, number: fn(&RigidBodyDeceleration) -> Option<Estimate>| {
         move |filter: &FilteredPeak| scaled_g(impact(i, filter).and_then(number))
     };
-    let table = ReportTable::of(&result.filters)
+    ReportTable::of(&result.filters)
         .caption(
             "What another low-pass would make of it: peak and length of the first end's transverse channel \
              in the first impact, and the decelerations of the rigid body's centre of gravity S and struck \
@@ -70,6 +63,6 @@ pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> Str
         .number("1st: S, g", cell(0, |d| d.at_cog))
         .number("1st: end, g", cell(0, |d| d.at_struck_end))
         .number("2nd: S, g", cell(1, |d| d.at_cog))
-        .number("2nd: end, g", cell(1, |d| d.at_struck_end));
-    vec![table.into()]
+        .number("2nd: end, g", cell(1, |d| d.at_struck_end))
+        .into()
 }

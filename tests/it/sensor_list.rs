@@ -317,3 +317,44 @@ fn fifty_one_channels_take_a_list_and_twelve_lines() {
     assert!(apart(&stated, &listed) < 0.1, "{}", apart(&stated, &listed));
     assert_eq!(listed["other_channels"].as_array().map(Vec::len), Some(49));
 }
+
+/// The axial sensor reads half of what the cask does away from the target, the others a share √½ each.
+#[test]
+fn a_mounting_block_of_three_has_the_shock_of_its_vector() {
+    let drop = SkinDrop::new();
+    let share = 0.5_f64.sqrt();
+    let recording = drop.record(
+        "blocks.csv",
+        &["A1", "A1 side", "A1 along", "A2"],
+        0.0,
+        &[&|row| -share * row[1], &|row| share * row[1], &|row| 0.5 * row[1], &|row| -share * row[2]],
+    );
+    let table = |name: &str, end: &str, place: &str, direction: &str| {
+        format!(
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\nsource = \"{name}\"\nposition_m = {place}\n\
+             around_deg = 45\ndirection = \"{direction}\"\n"
+        )
+    };
+    let [first, side, along] = [("A1", "radial"), ("A1 side", "tangential"), ("A1 along", "axial")]
+        .map(|(name, direction)| table(name, "first", "0.15", direction));
+    let cask = drop
+        .put_cask("blocks.toml", &[first, side, along, table("A2", "second", "5.362", "radial")].concat());
+    let result = analyze(&recording, &cask).json();
+    let shocks = result["shocks"].as_array().expect("shocks");
+    let first = |name: &str| {
+        let of_first = |row: &&Value| row["channel"] == name && row["event"] == "first";
+        shocks.iter().find(of_first).unwrap_or_else(|| panic!("{name}: {shocks:?}"))
+    };
+    let resultant = first("resultant of A1, A1 side, A1 along");
+    assert_eq!(resultant["components"], serde_json::json!(["A1", "A1 side", "A1 along"]));
+    for key in ["/peak", "/peak_unfiltered", "/velocity_change_m_s", "/displacement_m"] {
+        let size = |row: &Value| number(row, key).unwrap_or_else(|| panic!("{key}: {row}")).abs();
+        for (name, part) in [("A1", share), ("A1 side", share), ("A1 along", 0.5)] {
+            // The feet of the pulse differ by the noise.
+            let off = size(first(name)) / size(resultant) / part * 1.25_f64.sqrt() - 1.0;
+            assert!(off.abs() < 0.02, "{key} of {name}: {off}: {resultant}");
+        }
+    }
+    let names = shocks.iter().filter_map(|row| row["channel"].as_str());
+    assert_eq!(names.filter(|name| name.contains("A2")).count(), 2, "no block of one sensor: {shocks:?}");
+}

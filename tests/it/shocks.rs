@@ -3,18 +3,23 @@
 use crate::command_line::{Bench, scene_with_axial_channels};
 use crate::run::{analyze, dropcheck, fixture, number, words};
 use dropcheck::data::{STANDARD_GRAVITY_M_S2, Signal};
-use dropcheck::stages::{pulses, shock_response};
+use dropcheck::stages::{pulses, shock_response, vector_pulses};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
 
-/// A half sine of 100 g and 11 ms at 20 ms, at 100 kHz, in m/s².
-fn half_sine() -> Signal {
+/// A half sine of a peak in g from a time on for so long, s, at 100 kHz for 0.1 s, in m/s².
+fn pulse_of([peak_g, begin_s, length_s]: [f64; 3]) -> Signal {
     let sample = |i: u32| {
-        let phase = (f64::from(i) * 1e-5 - 0.02) / 0.011;
-        if (0.0..1.0).contains(&phase) { 100.0 * STANDARD_GRAVITY_M_S2 * (PI * phase).sin() } else { 0.0 }
+        let phase = (f64::from(i) * 1e-5 - begin_s) / length_s;
+        if (0.0..1.0).contains(&phase) { peak_g * STANDARD_GRAVITY_M_S2 * (PI * phase).sin() } else { 0.0 }
     };
-    Signal { sample_rate_hz: 1e5, force_m_s2: (0..6000).map(sample).collect(), ..Signal::default() }
+    Signal { sample_rate_hz: 1e5, force_m_s2: (0..10_000).map(sample).collect(), ..Signal::default() }
+}
+
+/// A half sine of 100 g and 11 ms at 20 ms.
+fn half_sine() -> Signal {
+    pulse_of([100.0, 0.02, 0.011])
 }
 
 #[test]
@@ -33,6 +38,27 @@ fn a_half_sine_of_100_g_and_11_ms_has_its_peak_length_and_change_of_velocity() {
         // A low-pass moves the foot by up to 1 % of the length, in which the velocity gained goes on.
         assert!(off(way_m, a_m_s2 * t_s * t_s / PI) < 0.025, "{pulse:?}");
     }
+}
+
+/// The numbers of tests/reference/resultants.tsv are those of numpy and scipy.
+#[test]
+fn the_shock_of_three_components_is_that_of_their_vector() {
+    let components = [[80.0, 0.040, 0.011], [-50.0, 0.042, 0.007], [30.0, 0.039, 0.015]].map(pulse_of);
+    let table = include_str!("../reference/resultants.tsv");
+    for line in table.lines().skip(1) {
+        let row: Vec<f64> = line.split('\t').map(|cell| cell.parse().expect("a number")).collect();
+        let found = vector_pulses(&components, 3, [0.03, 0.07], row[0]).pop().flatten().expect("a pulse");
+        let [change_m_s, way_m] = found.integrals.expect("both feet");
+        let length_s = found.length.expect("both flanks").length_s;
+        let all = [found.filtered, found.raw, found.time_s, length_s, change_m_s, way_m];
+        // A low-pass works at a lower rate, whose samples lie up to 0.05 ms beside those of the reference.
+        for ((own, reference), most) in all.iter().zip(&row[1..]).zip([1e-3, 1e-5, 2e-3, 2e-3, 2e-3, 1e-2]) {
+            assert!((own / reference - 1.0).abs() < most, "{line}: {found:?}");
+        }
+    }
+    let mut clipped = components;
+    clipped[1].clipped = vec![dropcheck::data::Span { from: 4300, to: 4400 }];
+    assert_eq!(vector_pulses(&clipped, 3, [0.03, 0.07], 564.0), [None]);
 }
 
 #[test]

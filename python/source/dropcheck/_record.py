@@ -132,10 +132,12 @@ class Comparison(Record):
 
 
 class Shock(Record):
-    """What one channel reads in one impact; `None` where it does not show the pulse whole."""
+    """What one channel, or one mounting block of three, reads in one impact; `None` where it does not show the
+    pulse whole. Only a block has `components`."""
 
     __slots__ = ()
     channel: str
+    components: list[str]
     event: str
     peak: float | None
     peak_unfiltered: float | None
