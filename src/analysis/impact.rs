@@ -17,13 +17,22 @@ use std::sync::Arc;
 /// How a first impact and the flight after it are sought.
 #[derive(Clone, Copy)]
 pub(super) struct Seek {
-    /// Whether beyond the latest slap-down that the angle allows.
-    pub farther: bool,
+    /// Which impacts.
+    pub sought: Sought,
     /// How long the flight is sought.
     pub patience: Patience,
     /// How much later than the corner the struck end's sensor may answer, and the longest that a bending wave
     /// takes along the cask, s.
     pub waves_s: [f64; 2],
+}
+
+/// Which impacts are sought: one on the edge of an end and a slap-down as late as the angle allows, or later,
+/// or one on an end face, which the axial channels show.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Sought {
+    Usual,
+    Late,
+    OnEnd,
 }
 
 /// The first impact, and what the analysis of it goes by.
@@ -63,13 +72,18 @@ impl Impact {
         findings: &mut Vec<Finding>,
     ) -> Option<Self> {
         let drop = &file.drop;
+        let is_on_end =
+            seek.sought == Sought::OnEnd && recording.channels.iter().any(|c| c.axis == Axis::Axial);
+        let struck = if is_on_end { Axis::Axial } else { Axis::Transverse };
+        let is_told = |channel: &&Channel| !is_on_end || channel.axis == struck;
         let (silent, changes) = rayon::join(
-            || judge::judge_silent(&recording.channels.iter().collect::<Vec<_>>()),
-            || events::Changes::of(&recording.channels),
+            || judge::judge_silent(&recording.channels.iter().filter(is_told).collect::<Vec<_>>()),
+            || events::Changes::along(&recording.channels, struck),
         );
         findings.extend(silent.clone());
         let copied = judge::judge_copies(&recording.channels);
-        let least_step_m_s = missing_end::least_step_m_s(file, recording);
+        let across_m_s = missing_end::least_step_m_s(file, recording);
+        let least_step_m_s = if is_on_end { drop.impact_velocity_m_s } else { across_m_s };
         if let Some(Hiding { channel, noise_m_s }) = changes.hiding(least_step_m_s) {
             let least_m_s = least_step_m_s;
             findings.push(DropFinding::Hidden { channel, noise_m_s, least_m_s }.into());
@@ -86,7 +100,7 @@ impl Impact {
             return None;
         }
         let usual = condition::Reach::of(&file.cask, drop);
-        let farthest = if seek.farther { usual.longest() } else { usual };
+        let farthest = if seek.sought == Sought::Late { usual.longest() } else { usual };
         let last_within_s =
             |reach: condition::Reach| changes.last_s(&event, drop.impact_velocity_m_s, reach.after_s);
         let last_s = last_within_s(farthest);
@@ -97,6 +111,7 @@ impl Impact {
         signals.retain(|signal| left_out.clone().all(|f| f.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
         let across = skin::turn_into_plane(&mut signals, &file.channels);
+        exchange_axes(&mut signals, is_on_end);
         let Some(contact) = first_contact(&file.cask, &signals, &event) else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), Some(&event)));
             return None;
@@ -109,8 +124,9 @@ impl Impact {
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
         let u_joined_s = u_joined_s(recording, &signals);
         let u_skew_s = align(file, &mut signals, contact.time_s, seek.waves_s, findings).hypot(u_joined_s);
-        let stand_in = with_both_ends(file, &mut signals, contact.time_s);
-        let (own_rests, fall_s) = before(recording, drop, contact.time_s);
+        exchange_axes(&mut signals, is_on_end);
+        let stand_in = (!is_on_end).then(|| with_both_ends(file, &mut signals, contact.time_s)).flatten();
+        let (own_rests, fall_s) = before(recording, drop, contact.time_s, struck);
         let of_file = || rest::levels(recording, &signals, file, contact.time_s);
         let mut rests = if own_rests.is_empty() { of_file() } else { own_rests };
         skin::turn_rests(&mut rests, &across, &file.channels);
@@ -191,6 +207,13 @@ fn conditioned(
     }
 }
 
+/// Onto an end face the axial channels show what the transverse ones do of a slap-down.
+fn exchange_axes(signals: &mut [Signal], is_on_end: bool) {
+    for signal in signals.iter_mut().filter(|_| is_on_end) {
+        signal.axis = if signal.axis == Axis::Axial { Axis::Transverse } else { Axis::Axial };
+    }
+}
+
 /// When L first touches, also where R alone shows it: a bending wave takes its time from L to R.
 fn first_contact(cask: &Cask, signals: &[Signal], event: &CoarseEvent) -> Option<At> {
     let contact = events::first_contact(signals, event)?;
@@ -250,7 +273,12 @@ fn align(
 }
 
 /// What the channels read at rest, and the free fall by the one that knows its levels best.
-fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>, Option<Range<f64>>) {
+fn before(
+    recording: &Recording,
+    drop: &Drop,
+    contact_s: f64,
+    struck: Axis,
+) -> (Vec<RestLevel>, Option<Range<f64>>) {
     // An AC-coupled channel knows neither rest nor fall.
     let steady = recording.channels.iter().filter(|c| c.coupling == Coupling::Dc);
     let fall = |c| events::free_fall(c, drop, contact_s).map(|fall| (c, fall));
@@ -261,7 +289,7 @@ fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>
         rest_m_s2: fall.rest_m_s2,
         u_m_s2: fall.u_rest_m_s2,
     };
-    let across = falls.iter().filter(|(channel, _)| channel.axis == Axis::Transverse);
+    let across = falls.iter().filter(|(channel, _)| channel.axis == struck);
     let best = across.min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2));
     (falls.iter().map(rest).collect(), best.map(|(_, fall)| fall.release_s..fall.end_s))
 }

@@ -392,8 +392,7 @@ fn channel_peaks(
         by_force.unwrap_or(transverse_m_s2 * (sin + cos) / cos.max(GRAZING_COS))
     };
     let channel_peak = |(signal, pulse): (&Signal, &Option<ChannelPulse>)| {
-        let own = file.channels.iter().find(|spec| spec.name == signal.name).and_then(|s| s.calibration);
-        let calibration = own.unwrap_or(file.tolerances.calibration);
+        let calibration = file.calibration_of(&signal.name);
         let aside_m_s2 = match signal.axis {
             Axis::Transverse => axial_m_s2,
             Axis::Axial => transverse_m_s2,

@@ -5,6 +5,7 @@
 //! - an answer later or earlier than any cask gives, and a flight with a slower mode: as before, with the
 //!   wave of that mode (`flight_result`);
 //! - no slap-down where the record goes on: with a longer search (`analyse_once`);
+//! - an end drop without one: the first impact alone, along the axis (`end_drop`);
 //! - an angular-rate sensor, and no rotation stated: once before, for the rotation (`with_rotation`);
 //! - a contradiction and three transverse channels: without each of them (`second_look`);
 //! - a contradiction that stays, and a motion that only its ringing takes: with each usual slip put right; a
@@ -13,6 +14,7 @@
 mod causes;
 mod check;
 mod comparison;
+mod end_drop;
 mod first_look;
 mod flight;
 pub mod flight_search;
@@ -40,13 +42,14 @@ pub use setup::sticking;
 
 use crate::data::{
     Analysis, BENDING_WAVE_M_S, CaskFile, ChannelFinding, Drop, End, Events, Finding, FindingKind, Recording,
-    transverse,
+    planar, transverse,
 };
 use crate::{ingest, judge, motion};
 use comparison::Measured;
+use end_drop::EndImpact;
 use flight::FlightResult;
 use flight_search::Patience;
-use impact::{Impact, Seek};
+use impact::{Impact, Seek, Sought};
 use std::borrow::Cow;
 
 /// From a recording and a cask file to everything that can be said of the drop.
@@ -97,21 +100,22 @@ const WAVE_PERIODS: f64 = 0.3;
 /// The findings, and the first impact if there is one.
 type ImpactAndFlight = (Vec<Finding>, Option<AfterImpact>);
 
-/// A first impact with the events and the flight that follow it.
+/// A first impact with the events and the flight that follow it, or what an end drop shows.
 struct AfterImpact {
     impact: Impact,
     events: Events,
     flown: Option<FlightResult>,
+    on_end: Option<EndImpact>,
 }
 
-/// The findings, and the first impact with the flight after it; `farther` as [`Seek`] has it.
+/// The findings, and the first impact with the flight after it.
 fn flight_result(
     recording: &Recording,
     file: &CaskFile,
-    farther: bool,
+    sought: Sought,
     patience: Patience,
 ) -> ImpactAndFlight {
-    let seek = Seek { farther, patience, waves_s: [0.0, file.cask.length_m / BENDING_WAVE_M_S] };
+    let seek = Seek { sought, patience, waves_s: [0.0, file.cask.length_m / BENDING_WAVE_M_S] };
     let found = impact_and_flight(recording, file, seek);
     match slower_waves_s(&found, file.cask.length_m) {
         Some(waves_s) => impact_and_flight(recording, file, Seek { waves_s, ..seek }),
@@ -122,8 +126,14 @@ fn flight_result(
 fn impact_and_flight(recording: &Recording, file: &CaskFile, seek: Seek) -> ImpactAndFlight {
     let mut findings = recording.issues.clone();
     let struck = Impact::find(recording, file, seek, &mut findings).map(|impact| {
-        let (events, flown) = flight::flight_result(&impact, file, &mut findings);
-        AfterImpact { impact, events, flown }
+        let (events, flown, on_end) = if seek.sought == Sought::OnEnd {
+            let (events, on_end) = end_drop::end_impact(&impact, file, &mut findings);
+            (events, None, on_end)
+        } else {
+            let (events, flown) = flight::flight_result(&impact, file, &mut findings);
+            (events, flown, None)
+        };
+        AfterImpact { impact, events, flown, on_end }
     });
     (findings, struck)
 }
@@ -131,7 +141,7 @@ fn impact_and_flight(recording: &Recording, file: &CaskFile, seek: Seek) -> Impa
 /// How late the struck end's sensor may answer, and what a bending wave takes along a cask that bends as the
 /// flight shows, s, where that explains an answer which was early or late for any cask.
 fn slower_waves_s((findings, found): &ImpactAndFlight, length_m: f64) -> Option<[f64; 2]> {
-    let AfterImpact { impact, events, flown } = found.as_ref()?;
+    let AfterImpact { impact, events, flown, .. } = found.as_ref()?;
     let contact_s = events.separation_s()? - events.first_contact_s()?;
     let flight = &flown.as_ref()?.flight;
     let struck = transverse(&impact.signals, End::First)?;
@@ -154,8 +164,8 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     let is_left_out = OF_ROTATION.iter().all(|key| file.defaults.iter().any(|default| default == key));
     let has_sensor = file.others.iter().any(|spec| spec.rate.is_some());
     let before = (is_left_out && has_sensor).then(|| {
-        let (_, found) = flight_result(recording, file, false, Patience::EachBeginning);
-        let AfterImpact { impact, events, flown } = found?;
+        let (_, found) = flight_result(recording, file, Sought::Usual, Patience::EachBeginning);
+        let AfterImpact { impact, events, flown, .. } = found?;
         let read = rotation::measured(&impact, file, &flown?.flight, &events);
         let known = read.iter().filter_map(|rotation| rotation.before);
         known.min_by(|a, b| a.u_rad_s.total_cmp(&b.u_rad_s))
@@ -172,18 +182,27 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
 }
 
 fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {
-    let (mut findings, mut found) = flight_result(recording, file, false, patience);
+    let (mut findings, mut found) = flight_result(recording, file, Sought::Usual, patience);
     // From steep angles a cask may strike later than its angle has it.
     if found.as_ref().is_some_and(|f| f.events.slap_down.is_none() && f.impact.goes_on) {
-        let farther = flight_result(recording, file, true, patience);
+        let farther = flight_result(recording, file, Sought::Late, patience);
         if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
             (findings, found) = farther;
+        }
+    }
+    // Beyond its centre of gravity the cask turns back, and what strikes later is no slap-down.
+    let has_slap_down = found.as_ref().is_some_and(|f| f.events.slap_down.is_some());
+    let arm_m = planar::first_arm_m(file.cask.cog_m, file.cask.height_m, file.drop.angle_rad);
+    if file.drop.is_on_end() && !(has_slap_down && arm_m > 0.0) {
+        let along = flight_result(recording, file, Sought::OnEnd, patience);
+        if along.1.is_some() {
+            (findings, found) = along;
         }
     }
     let Some(found) = found else {
         return result::without_impact(recording, file, findings);
     };
-    let AfterImpact { impact, events, flown } = &found;
+    let AfterImpact { impact, events, flown, .. } = &found;
     judge::weigh_by_distance(&mut findings, events);
     let flight = flown.as_ref().map(|flown| &flown.flight);
     let (on_channels, shown) = rayon::join(

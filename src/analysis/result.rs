@@ -1,6 +1,7 @@
 //! What the stages found to one [`Analysis`].
 
 use super::comparison::Measured;
+use super::end_drop::EndImpact;
 use super::flight::FlightResult;
 use super::setup::sticking;
 use super::{AfterImpact, impacts};
@@ -28,7 +29,7 @@ pub(super) fn of(
     recording: &Recording,
     file: &CaskFile,
     findings: Vec<Finding>,
-    AfterImpact { impact, mut events, mut flown }: AfterImpact,
+    AfterImpact { impact, mut events, mut flown, on_end }: AfterImpact,
     shown: ShownSignals,
     measured: Option<Measured>,
 ) -> Analysis {
@@ -61,6 +62,12 @@ pub(super) fn of(
     let openings = flown.as_ref().map_or_else(Vec::new, |flown| flown.openings.clone());
     let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
+    if let Some(EndImpact { first, k }) = on_end {
+        let numbers = &mut result.impacts[0].numbers;
+        (numbers.duration, numbers.restitution) = (first.duration, Some(k));
+        result.first_impact = FirstImpact { time: result.first_impact.time, ..first };
+        result.k = Some(k);
+    }
     result.filters = impacts::filters(file, signals, &result);
     result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, effect));

@@ -148,7 +148,8 @@ impl<'a> SecondImpact<'a> {
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
         let u_step_m_s = |i: usize| {
-            let own_m_s = fit::u_step_m_s(&basis, i).hypot(fit::u_base_strain_m_s(&basis, i));
+            let strain_m_s = fit::u_base_strain_m_s(&signals[i], &times, &measured.tolerances);
+            let own_m_s = fit::u_step_m_s(&basis, i).hypot(strain_m_s);
             own_m_s.hypot(left_m_s(before, i)).hypot(left_m_s(&flight, i))
         };
         let u_steps_m_s = (0..flight.plateaus.len()).map(u_step_m_s).collect();

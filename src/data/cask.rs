@@ -314,6 +314,11 @@ impl Drop {
         self.impact_velocity_m_s * self.angle_rad.cos()
     }
 
+    /// True if the cask falls onto its end face, as far as a release is usually off.
+    pub fn is_on_end(&self) -> bool {
+        self.angle_rad.to_degrees() >= 88.0
+    }
+
     /// A tenth of v0, m/s: what changes an end's velocity by less is no first impact.
     pub fn least_impact_m_s(&self) -> f64 {
         0.1 * self.impact_velocity_m_s

@@ -63,6 +63,12 @@ impl CaskFile {
         spec.time.as_deref().or(self.time.as_deref())
     }
 
+    /// 95 % half-width of a channel's scale, as a share: its own, else that of all.
+    pub fn calibration_of(&self, channel: &str) -> f64 {
+        let own = self.channels.iter().find(|spec| spec.name == channel).and_then(|spec| spec.calibration);
+        own.unwrap_or(self.tolerances.calibration)
+    }
+
     /// The file as readers of recordings take it: the other channels behind those of the motion.
     pub fn to_be_read(&self) -> Cow<'_, Self> {
         if self.others.is_empty() {

@@ -416,7 +416,7 @@ impl InputList {
                 shift,
             );
         }
-        let (share, add_m_s) = (known.base_strain / 2.0, u_base_strain_m_s(measured, channel));
+        let (share, add_m_s) = (known.base_strain / 2.0, u_base_strain_m_s(signal, measured.events, known));
         let (tolerance, key) = ("base_strain_percent", "tolerance.base_strain_percent");
         let strain = stated(tolerance, key, "1 %", 0.01 / share, SECOND_SENSOR);
         let step = move |inputs: &mut Inputs, by: f64| inputs.step(channel, by * add_m_s);

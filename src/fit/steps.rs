@@ -1,7 +1,7 @@
 //! What is known of a channel's velocity step to its standard uncertainty.
 
 use super::FitData;
-use crate::data::{MOST_LOST_M_S, Signal};
+use crate::data::{Events, MOST_LOST_M_S, Signal, Tolerances};
 use crate::numerics::noise::integral_uncertainty_by;
 use std::f64::consts::FRAC_2_PI;
 
@@ -43,12 +43,11 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
 
 /// Standard uncertainty of what strain of its base adds to a channel's velocity step, m/s: half a sine over
 /// the contact, of the stated share of the channel's peak there.
-pub fn u_base_strain_m_s(measured: &FitData, channel: usize) -> f64 {
-    let (signal, events) = (&measured.signals[channel], measured.events);
+pub fn u_base_strain_m_s(signal: &Signal, events: &Events, tolerances: &Tolerances) -> f64 {
     let Some((contact_s, left_s)) = events.first_contact_s().zip(events.separation_s()) else { return 0.0 };
     let pulse = signal.force_m_s2.get(signal.index_from(contact_s)..signal.index_from(left_s));
     let peak_m_s2 = pulse.into_iter().flatten().fold(0.0_f64, |peak, force| peak.max(force.abs()));
-    measured.tolerances.base_strain / 2.0 * peak_m_s2 * (left_s - contact_s) * FRAC_2_PI
+    tolerances.base_strain / 2.0 * peak_m_s2 * (left_s - contact_s) * FRAC_2_PI
 }
 
 /// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.

@@ -39,7 +39,9 @@ pub use late_blow::{judge_late_blow, judge_rest, moves_the_cask};
 pub use limits::beside_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
 pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotation};
-pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch};
+pub use result::{
+    beside, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch,
+};
 pub use rigid::{SensorPlace, judge_rigid, places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};

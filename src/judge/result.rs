@@ -67,10 +67,9 @@ pub fn judge_motion(
     findings.extend(of_flight(signals, flight, quantities, &cask_file.cask, &pull));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
-    let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
     let lasts_s =
         motion.curve.time_s.last().zip(motion.curve.time_s.first()).map_or(0.0, |(to, from)| to - from);
-    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
+    if !is_restitution(k) {
         let is_as_one = quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S;
         let as_one = DropFinding::StrikeTogether { apart_s: lasts_s };
         add(if is_as_one { as_one } else { DropFinding::Restitution { k } });
@@ -97,6 +96,12 @@ pub fn judge_motion(
         add(DropFinding::Sinks { depth_m: -motion.lowest_first_end_m });
     }
     findings
+}
+
+/// True if a k lies within 0 to 1 by its interval, and says something.
+pub fn is_restitution(k: Estimate) -> bool {
+    let is_beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
+    !is_beyond && (-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) && k.u95 <= 1.0
 }
 
 /// A first end that is still pressed on the target as the second one strikes: what was taken for a flight

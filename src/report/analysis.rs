@@ -27,7 +27,7 @@ use crate::data::{
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let (name, input) = (&file.cask.name, &result.input);
-    let heading = record::heading(&result.test, name);
+    let heading = record::heading(&result.test, name, kind::words(result, file).is_none());
     let pictures =
         |names: &[&str]| names.iter().map(|name| ChapterPart::picture(name, "")).collect::<Vec<_>>();
     let photographs = PartContent::Photographs(record::photographs(&result.test).collect());

@@ -1,11 +1,10 @@
 //! A drop without a slap-down to the kind of drop that its angle makes it, and why none was to be expected.
 
-use super::rounding::plain;
+use super::rounding::{interval, plain};
 use crate::data::{CaskFile, DropResult};
 
-/// A flat drop is at most so steep, an end drop at least, degrees: as far as a release is usually off.
+/// A flat drop is at most so steep, degrees: as far as a release is usually off.
 const FLAT_DEG: f64 = 2.0;
-const END_DEG: f64 = 88.0;
 /// The lever of the target's force about the centre of gravity that turns a cask hardly, as a share of the
 /// distance between them: 6° of inclination.
 const SMALL_LEVER: f64 = 0.1;
@@ -26,10 +25,17 @@ pub(super) fn words(result: &DropResult, file: &CaskFile) -> Option<String> {
     if angle_deg <= FLAT_DEG || result.events.slap_down.is_some() {
         return None;
     }
-    if angle_deg >= END_DEG {
+    if drop.is_on_end() {
+        let first = &result.first_impact;
+        let [struck, rebound] =
+            [&first.impact_velocity, &first.rebound_velocity].map(|v| interval(v.as_ref()));
+        let found = format!(
+            " It strikes at {struck} by the cask file and rebounds at {rebound} by its axial channels."
+        );
         return Some(format!(
             "End drop ({shown_deg}°): the cask strikes with its end face, which hardly turns it, so no \
-             slap-down is expected."
+             slap-down is expected.{}",
+            if first.rebound_velocity.is_some() { &found } else { "" }
         ));
     }
     let lever_m = cask.cog_m * cos - 0.5 * cask.height_m * sin;

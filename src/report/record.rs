@@ -7,13 +7,14 @@ use super::text::{Style, determined, json_word};
 use super::words::contact_words;
 use crate::data::keys::quantity_words;
 use crate::data::{
-    CaskFile, ChannelSpec, Contact, Contribution, DropResult, Extreme, Limit, LimitState, ObservedBeside,
-    OtherSummary, Photo, Program, Setting, SpectralLine, TOLERANCES, TestRecord,
+    CaskFile, Contact, Contribution, DropResult, Extreme, Limit, LimitState, ObservedBeside, OtherSummary,
+    Photo, Program, Setting, SpectralLine, TOLERANCES, TestRecord,
 };
 
-/// The heading of the report: the test's number and title, and of the cask what is not stated.
-pub(super) fn heading(test: &TestRecord, cask: &str) -> String {
-    let title = test.title.as_deref().unwrap_or("slap-down drop test");
+/// The heading of the report: the test's number and title, and of the cask and the drop what is not stated.
+pub(super) fn heading(test: &TestRecord, cask: &str, is_slap_down: bool) -> String {
+    let usual = if is_slap_down { "slap-down drop test" } else { "drop test" };
+    let title = test.title.as_deref().unwrap_or(usual);
     format!("{}: {title}", test.id.as_deref().unwrap_or(cask))
 }
 
@@ -184,7 +185,6 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
 /// Which sensor stands where, in which direction it reads, and by which papers.
 pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
     let stated = |words: &Option<String>| words.clone().unwrap_or_else(|| MISSING.to_owned());
-    let calibration = |spec: &ChannelSpec| spec.calibration.unwrap_or(file.tolerances.calibration);
     ReportTable::of(&file.channels)
         .class("")
         .caption(
@@ -199,7 +199,7 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
         .text("Serial", |s| stated(&s.sensor.serial))
         .text("Certificate", |s| stated(&s.sensor.certificate))
         .text("Calibrated", |s| stated(&s.sensor.calibrated))
-        .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * calibration(s), 3)))
+        .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * file.calibration_of(&s.name), 3)))
         .into()
 }
 

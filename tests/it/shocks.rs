@@ -1,7 +1,7 @@
 //! From pulses of known size, and from drops without a slap-down, to the shocks, spectra and low-passes.
 
 use crate::command_line::{Bench, scene_with_axial_channels};
-use crate::run::{analyze, dropcheck, fixture, number, words};
+use crate::run::{analyze, dropcheck, findings, fixture, number, read_json, words};
 use dropcheck::data::{STANDARD_GRAVITY_M_S2, Signal};
 use dropcheck::stages::{pulses, shock_response, vector_pulses};
 use serde_json::Value;
@@ -205,9 +205,41 @@ fn a_drop_without_a_slap_down_says_what_kind_it_is_and_has_its_shocks() {
             let change_m_s = number(own, "/velocity_change_m_s").expect("a change of velocity");
             let truth_m_s = 1.55 * (2.0 * 9.81 * 9.0_f64).sqrt() * 89.0_f64.to_radians().sin();
             assert!((change_m_s / truth_m_s - 1.0).abs() < 0.02, "{own}: {truth_m_s}");
+            let truth = read_json(&made.with_extension("truth.json"));
+            for (of_result, of_truth) in [
+                ("/k", "/k"),
+                ("/first_impact/rebound_velocity", "/rebound_velocity"),
+                ("/first_impact/duration", "/contact_s"),
+            ] {
+                let [value, u95] =
+                    ["value", "u95"].map(|part| number(&result, &format!("{of_result}/{part}")));
+                let (value, u95) = value.zip(u95).expect(of_result);
+                let off = value - number(&truth, of_truth).expect(of_truth);
+                assert!(off.abs() < u95 && u95 < 0.06 * value, "{of_result}: {off} ± {u95}");
+            }
+            let said = findings(&result);
+            assert!(!said.contains("polarity") && !said.contains("not_rigid"), "{said}");
         }
         let screen = dropcheck(words!["analyze", made, "--cask", cask]).stdout;
         let first = screen.lines().take(3).collect::<Vec<_>>().join(" ");
         assert!(first.starts_with(kind) && first.contains(" is expected"), "{angle_deg}: {screen}");
+    }
+}
+
+#[test]
+fn an_end_drop_without_axial_channels_or_of_the_wrong_sign_has_no_k_and_says_why() {
+    let scene = scene_with_axial_channels().replacen("angle_deg = 15.0", "angle_deg = 88.5", 1);
+    let bench = Bench::new();
+    let made = bench.synth("drop", scene.replace("full_scale = 2000.0", "full_scale = 6000.0"));
+    let cask = fs::read_to_string(made.with_extension("toml")).expect("a cask file");
+    let without = cask.split("[[channel]]").filter(|table| !table.contains("\"axial\"")).collect::<Vec<_>>();
+    let reversed = cask.replace("axis = \"axial\"", "axis = \"axial\"\npolarity = -1");
+    for (cask, why) in [(without.join("[[channel]]"), "axial channels"), (reversed, "lies outside 0 to 1")] {
+        let result = analyze(&made, &bench.put("cask.toml", cask)).json();
+        assert!(result["k"].is_null() && result["first_impact"]["rebound_velocity"].is_null(), "{result}");
+        let missing = rows(&result, "missing").iter().find(|row| row["quantity"] == "k").expect("k");
+        let finding = missing["because"].as_u64().and_then(|at| usize::try_from(at).ok()).expect("a finding");
+        let message = result["quality"][finding]["message"].as_str().expect("words");
+        assert!(message.contains(why), "{message}");
     }
 }

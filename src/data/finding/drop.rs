@@ -29,6 +29,10 @@ pub enum DropFinding of Drop {
         => (Code::MissingChannel, Error, if !is_stood_in_for { ChannelAndMotion }
             else if *end == End::First { Channel } else { SecondEnd }),
         ("no transverse channel on the {end} end: {}", without_end(*end, *is_stood_in_for));
+    /// A drop onto an end face without the channels that show its rebound.
+    NoAxial => (Code::MissingChannel, Error, Motion),
+        ("a drop onto the end face shows its rebound and k on axial channels, and the cask file has none: \
+         add one with `axis = \"axial\"`");
     /// The recording ends so long after the separation, before a slap-down.
     EndsEarly { after_s: f64 } => (Code::EndsEarly, Error, SlapDown),
         ("no slap-down within {:.0} ms after the first end left the target: the recording ends before it",
