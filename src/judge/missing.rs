@@ -70,6 +70,9 @@ mod tests {
         let code = |after_s, is_record_end| judge_no_slap_down(&cask, &drop, after_s, is_record_end).code;
         let steep = judge_no_slap_down(&cask, &Drop::of_height(9.0, 1.5), 0.2, true);
         assert_eq!(steep.code, IssueCode::NoSlapDown);
+        assert!(steep.message.contains("behind it (from 84.3° on"), "{}", steep.message);
+        let nearly = judge_no_slap_down(&cask, &Drop::of_height(9.0, 83.0_f64.to_radians()), 0.2, true);
+        assert!(nearly.message.contains("not yet under it (from 84.3° on"), "{}", nearly.message);
         assert_eq!(code(0.2, true), IssueCode::EndsEarly);
         assert_eq!(code(0.2, false), IssueCode::NoSlapDown);
         assert_eq!(code(0.7, true), IssueCode::NoSlapDown);

@@ -89,9 +89,11 @@ pub enum DropFinding of Drop {
          in the cask file");
     /// The second end rises, as it does where L's corner lies behind the centre of gravity.
     TooSteep { angle_deg: f64, limit_deg: f64 } => (Code::NoSlapDown, Error, SlapDown),
-        ("the second end is not expected to strike: at {angle_deg:.1}° the first end's corner lies under the \
-         centre of gravity or behind it (from {limit_deg:.1}° on for this section), and the cask turns back; \
-         analyse the first impact alone");
+        ("the second end is not expected to strike: at {angle_deg:.1}° the first end's corner lies {} (from \
+         {limit_deg:.1}° on for this section), and the cask {}; analyse the first impact alone",
+         if angle_deg < limit_deg { "little before the centre of gravity, not yet under it" }
+         else { "under the centre of gravity or behind it" },
+         if angle_deg < limit_deg { "hardly turns" } else { "turns back" });
     /// The axial channel has L slide on a contact that is called rough.
     Slides { slip: Estimate } => (Code::Friction, Warning, Nothing),
         ("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls \
