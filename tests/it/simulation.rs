@@ -196,3 +196,21 @@ fn a_wrong_key_of_a_calculation_is_one_message_that_names_what_there_is() {
         at_fault(&drop.with(&BOTH.replace(from, to)), said);
     }
 }
+
+#[test]
+fn the_curves_of_another_test_are_laid_over_this_one() {
+    let drop = Drop::new();
+    let (cask, out) = (drop.bench.put("first.toml", &drop.cask), drop.bench.0.path().join("first"));
+    assert_eq!(dropcheck(words!["analyze", drop.recording, "--cask", cask, "--out", out]).status, 0);
+    for (file, unit, columns) in [
+        ("curves.csv", "g", ["A1_raw_g", "A2_raw_g"]),
+        ("curves.h5", "m/s^2", ["/channels/A1/raw", "/channels/A2/raw"]),
+    ] {
+        let [first, second] = columns;
+        let result = drop.with(&format!(
+            "[simulation]\nfile = \"first/{file}\"\nunit = \"{unit}\"\n\
+             channels = {{ A1 = \"{first}\", A2 = \"{second}\" }}"
+        ));
+        assert!(rows(&result.json()).into_iter().all(|row| at(row, "rating") > 0.99), "{file}");
+    }
+}
