@@ -71,6 +71,8 @@ TEST {
     "temperature_c": "–", within(-100.0, 200.0, "of the specimen, in °C"), "12.5", "of the specimen";
     "photos": "–", Texts, r#"["before.jpg"]"#, "PNG or JPEG in the folder of this file";
     "signatures": "–", Texts, r#"["Test engineer", "Reviewer"]"#, "lines to sign";
+    "revisions": "–", Texts, r#"["2026-11-22, 0.1.0, first issue"]"#,
+        "of the report: date, version of the program, what changed";
     "more": "–", Table, r#"{ "Drop rig" = "Hall 3" }"#, "anything else, printed as it stands";
 }
 

@@ -31,6 +31,9 @@ pub struct TestRecord {
     pub photos: Vec<Photo>,
     /// Who signs.
     pub signatures: Vec<String>,
+    /// Revisions of its report: date, version of the program and what changed, apart by commas.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub revisions: Vec<String>,
     /// `[test.more]`: names and words of the user's own.
     #[serde(serialize_with = "as_object")]
     pub more: Vec<(String, String)>,

@@ -47,7 +47,13 @@ pub(super) fn head(result: &DropResult) -> Chapter {
     ];
     let stated = words.into_iter().filter_map(|(name, words)| Some(Fact::words(name, words?)));
     let more = test.more.iter().map(|(name, words)| Fact::words(name, words));
-    Chapter::new("The test").with(ChapterPart::facts("", stated.chain(more).collect()))
+    let part = |i: usize| move |row: &String| row.splitn(3, ',').nth(i).unwrap_or(MISSING).trim().to_owned();
+    let revisions = ReportTable::of(&test.revisions)
+        .caption("Revisions of this report")
+        .head("Date", part(0))
+        .text("Program", part(1))
+        .text("What changed", part(2));
+    Chapter::new("The test").with(ChapterPart::facts("", stated.chain(more).collect())).with(revisions)
 }
 
 /// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".

@@ -165,7 +165,9 @@ fn a_site_puts_its_own_words_and_logo_around_the_report() {
         let cask = bench.put("c.toml", format!("{report}\n{stated}"));
         dropcheck(words!["analyze", fixture("anf18-json.mcap"), "--cask", cask, "--out", out])
     };
-    let words = "[report]\nheader = \"<b>Centre\"\nfooter = \"</style>7\"\nlogo = \"logo.svg\"\n";
+    let words = "[report]\nheader = \"<b>Centre\"\nfooter = \"</style>7\"\nlogo = \"logo.svg\"\n\
+                 [test]\nrevisions = [\"2026-11-22, 0.1.0, first issue\", \
+                 \"2026-11-30, 0.2.0, angle, by film\"]\n";
     assert_eq!(with(words).status, 0);
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     for (held, count) in [
@@ -175,6 +177,9 @@ fn a_site_puts_its_own_words_and_logo_around_the_report() {
         ("<p>&lt;/style&gt;7</p></footer>", 1),
         ("@bottom-center { content: \"\\3c \\2f style\\3e 7\"", 1),
         ("</style>", 1),
+        ("Revisions of this report", 1),
+        ("0.2.0", 1),
+        ("angle, by film", 1),
     ] {
         assert_eq!(page.matches(held).count(), count, "{held}");
     }

@@ -39,6 +39,7 @@ pub(super) fn test(table: &Section, folder: Option<&Path>) -> Result<TestRecord,
         temperature_c: table.given("temperature_c")?,
         photos: photos.collect::<Result<_, _>>()?,
         signatures: table.texts("signatures")?,
+        revisions: table.texts("revisions")?,
         more: table.table("more")?.own_names()?,
     })
 }
