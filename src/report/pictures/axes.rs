@@ -14,9 +14,6 @@ const COLUMN: f64 = 3.0;
 const MARK_ROW: f64 = 34.0;
 /// Room for the ticks and the label below the axes.
 const BOTTOM: f64 = 88.0;
-/// Words that lines may run under.
-const OVER_LINES: &str =
-    "font-size=\"24\" stroke=\"#ffffff\" stroke-width=\"6\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
 /// Air below a panel.
 const GAP: f64 = 26.0;
 
@@ -86,7 +83,6 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
             let places = points.at.iter().copied().map(frame.place());
             places.filter(|(x, y)| x.is_finite() && y.is_finite()).for_each(|at| point(svg, points, at));
         }
-        frame.names(svg);
         frame.rows(svg, left);
         for (mark, place) in panel.marks.iter().zip(mark_places(panel, width)) {
             frame.mark(svg, mark, place);
@@ -154,37 +150,6 @@ impl PlotFrame<'_> {
                 let points = run.into_iter().map(|(x, y)| (x * COLUMN, y)).collect();
                 svg.line(&Curve { points, label: None, ..*line });
             }
-        }
-    }
-
-    /// The names of points beside them: at the right or the left, as near in height as other points and names
-    /// leave room, from further off with a line.
-    fn names(&self, svg: &mut Svg) {
-        let place = self.place();
-        let named = self.panel.points.iter().filter(|points| points.is_named_there);
-        let named = named.filter_map(|points| Some((place(*points.at.first()?), points.label.as_deref()?)));
-        let mut named: Vec<((f64, f64), &str)> = named.collect();
-        named.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
-        let mut taken: Vec<(Range<f64>, f64)> =
-            named.iter().map(|((x, y), _)| (x - 22.0..x + 22.0, *y)).collect();
-        for ((x, y), name) in named {
-            let width = width_of(name, 11.5);
-            let is_free = |(left, at): &(f64, f64)| {
-                let is_within = *left > 0.0 && left + width < self.width && (14.0..self.height).contains(at);
-                let is_off = |(range, height): &(Range<f64>, f64)| {
-                    range.end < *left || range.start > left + width || (height - at).abs() > 30.0
-                };
-                is_within && taken.iter().all(is_off)
-            };
-            let around = |step: u32| [y + 3.0 * f64::from(step), y - 3.0 * f64::from(step)];
-            let beside = |at: f64| [(x + 30.0, at), (x - 30.0 - width, at)];
-            let Some((left, at)) = (0..200).flat_map(around).flat_map(beside).find(is_free) else { continue };
-            let edge = if left > x { left - 5.0 } else { left + width + 5.0 };
-            if (at - y).abs() > 14.0 {
-                svg.line(&Curve { stroke: 2, ..Curve::new(GREY, vec![(x, y), (edge, at)]) });
-            }
-            svg.words(name, (left, at), Anchor::Start, OVER_LINES);
-            taken.push((left..left + width, at));
         }
     }
 
@@ -266,7 +231,6 @@ fn tick(value: f64, axis: &PanelAxis) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::{PointShape, Points};
     use super::*;
 
     #[test]
@@ -281,28 +245,6 @@ mod tests {
         let at_edge = Panel { x: panel.x.over(Some((0.0, 100.0))), ..panel };
         let (middle, _) = mark_places(&at_edge, WIDTH)[0];
         assert!(middle - width_of("first contact", 7.0) >= 0.0, "{middle}");
-    }
-
-    #[test]
-    fn names_of_near_points_stand_clear_of_one_another_within_the_axes() {
-        // At the left edge, where a name has room at the right alone.
-        let named = |i: i32| {
-            let at = vec![(0.01, 0.01 * f64::from(i))];
-            let points = Points { is_named_there: true, ..Points::new(INK, PointShape::Dot, at) };
-            points.named(format!("way {i}"))
-        };
-        let axis = || PanelAxis::new("").over(Some((0.0, 1.0)));
-        let panel = Panel { points: (0..5).map(named).collect(), ..Panel::new("", axis(), axis(), 500) };
-        let mut svg = Svg::default();
-        draw(&mut svg, &panel, WIDTH);
-        let drawn = svg.finished((WIDTH, 600.0), "");
-        let height = |line: &str| line.split_once("y=\"")?.1.split_once('"')?.0.parse::<f64>().ok();
-        let mut heights: Vec<f64> =
-            drawn.lines().filter(|line| line.contains(">way ")).filter_map(height).collect();
-        heights.sort_by(f64::total_cmp);
-        assert_eq!(heights.len(), 5, "{drawn}");
-        assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= 29.0), "{heights:?}");
-        assert!(heights.iter().all(|y| (0.0..500.0).contains(y)), "{heights:?}");
     }
 
     #[test]

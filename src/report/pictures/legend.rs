@@ -46,8 +46,7 @@ fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
     let mut rows: Vec<Vec<Entry>> = vec![Vec::new()];
     let lines = panel.lines.iter().map(|line| (LegendKey::Curve(line), line.label.as_deref()));
     let fills = panel.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
-    let points = panel.points.iter().filter(|points| !points.is_named_there);
-    let points = points.map(|points| (LegendKey::Points(points), points.label.as_deref()));
+    let points = panel.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
     for (key, label) in lines.chain(fills).chain(points) {
         let Some(label) = label.map(printable) else { continue };
         let takes = SAMPLE + width_of(&label, 13.0) + 26.0;
@@ -108,22 +107,16 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
 /// One point in its shape.
 pub(super) fn point(svg: &mut Svg, points: &Points, (x, y): (f64, f64)) {
     let (r, colour) = (points.radius, points.colour);
-    let line = |width, points| Curve { stroke: width, ..Curve::new(colour, points) };
-    let corners: &[(f64, f64)] = match points.shape {
-        PointShape::Square => &[(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0), (-9.0, -9.0)],
-        PointShape::Triangle => &[(0.0, -12.0), (12.0, 9.0), (-12.0, 9.0), (0.0, -12.0)],
-        PointShape::Diamond => &[(0.0, -13.0), (13.0, 0.0), (0.0, 13.0), (-13.0, 0.0), (0.0, -13.0)],
-        PointShape::Tip => &[(0.0, 12.0), (12.0, -9.0), (-12.0, -9.0), (0.0, 12.0)],
-        PointShape::Ring => return svg.circle((x, y), r, colour, Some(4)),
+    match points.shape {
+        PointShape::Square => {
+            let corners = [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0), (-9.0, -9.0)];
+            svg.area(&corners.map(|(dx, dy)| (x + dx, y + dy)), colour, 1.0);
+        }
+        PointShape::Ring => svg.circle((x, y), r, colour, Some(4)),
         PointShape::Dot => {
             svg.circle((x, y), r + 2, WHITE, None);
-            return svg.circle((x, y), r, colour, points.is_hollow.then_some(4));
+            svg.circle((x, y), r, colour, points.is_hollow.then_some(4));
         }
-    };
-    let corners: Vec<(f64, f64)> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
-    svg.area(&corners, if points.is_hollow { WHITE } else { colour }, 1.0);
-    if points.is_hollow {
-        svg.line(&line(4, corners));
     }
 }
 

@@ -142,17 +142,14 @@ impl Fill {
 pub(crate) enum PointShape {
     Dot,
     Square,
-    Triangle,
-    Diamond,
-    Tip,
     /// Around another point.
     Ring,
 }
 
 impl PointShape {
-    /// Of the points at this place among others: colour and shape together tell 35 apart.
+    /// Of the points at this place among others.
     pub(crate) fn of(index: usize) -> Self {
-        [Self::Dot, Self::Square, Self::Triangle, Self::Diamond, Self::Tip][index % 5]
+        [Self::Dot, Self::Square][index % 2]
     }
 }
 
@@ -161,8 +158,6 @@ impl PointShape {
 pub(crate) struct Points {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
-    /// Whether the name stands beside the first of them instead.
-    pub(crate) is_named_there: bool,
     pub(crate) colour: Colour,
     pub(crate) shape: PointShape,
     /// Half the size in drawing units.
@@ -174,7 +169,7 @@ pub(crate) struct Points {
 impl Points {
     /// Full points that the legend does not name.
     pub(crate) fn new(colour: Colour, shape: PointShape, at: Vec<(f64, f64)>) -> Self {
-        Self { label: None, is_named_there: false, colour, shape, radius: 10, is_hollow: false, at }
+        Self { label: None, colour, shape, radius: 10, is_hollow: false, at }
     }
 
     /// With their name in the legend.

@@ -92,10 +92,7 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
         Curve { opacity: 0.4, ..Curve::new(look(index, Vec::new()).colour, points) }
     };
     let lines = ways.iter().enumerate().map(bar);
-    let mark = |(index, way): (usize, &&TrialPoint)| Points {
-        is_named_there: true,
-        ..look(index, vec![at(way)]).named(&way.method[..])
-    };
+    let mark = |(index, way): (usize, &&TrialPoint)| look(index, vec![at(way)]).named(&way.method[..]);
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
     let ring = Points { radius: 21, ..Points::new(INK, PointShape::Ring, taken) };
     Some(Panel {
