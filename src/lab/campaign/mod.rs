@@ -10,7 +10,6 @@ mod tally;
 pub use score::outcome;
 pub(super) use score::{half_widths_between, half_widths_off, is_missed};
 pub use tables::markdown;
-pub(super) use tables::rungs;
 pub(super) use tally::BODIES;
 pub use tally::Tally;
 

@@ -3,8 +3,8 @@
 
 use super::score::SceneOutcome;
 use super::tally::{ClassTable, QUANTITIES, SceneGroup, Spread, Tally};
-use crate::data::{ReconstructionRung, Verdict};
-use crate::lab::data::{Campaign, CampaignRow, Stated};
+use crate::data::Verdict;
+use crate::lab::data::{CampaignRow, Stated};
 use crate::numerics::as_f64;
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable};
@@ -14,16 +14,6 @@ use crate::report::text::json_word;
 /// The whole as Markdown.
 pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally))
-}
-
-/// A table of scenes by the rung of the reconstruction taken, and one of what every rung says of the drops
-/// that take one.
-pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
-    let mut tally = Tally::new(campaign.request.clone());
-    for row in &campaign.rows {
-        tally.add(row);
-    }
-    [taken_rungs(&tally), other_rungs(&tally)]
 }
 
 /// The scenes of a class behind its words.
@@ -46,8 +36,6 @@ fn document(tally: &Tally) -> ReportDocument {
     if let Some((_, all)) = undamaged.last() {
         chapter("Undamaged scenes", verdicts(all));
         chapter("Errors and intervals", intervals(&undamaged));
-        chapter("Rungs of the reconstruction", taken_rungs(tally));
-        chapter("What other rungs would change", other_rungs(tally));
     }
     if !sound.is_empty() {
         chapter("Sound drops, by kind", coverage(&sound));
@@ -116,36 +104,6 @@ fn intervals<'a>(groups: &[NamedGroup<'a>]) -> ChapterPart {
         .number("largest", |(_, _, decimals, spread)| spread.error(1.0, *decimals))
         .number("half-width: median", |(_, _, decimals, spread)| spread.half_width(*decimals))
         .number("holds the truth", |(.., spread)| spread.held())
-        .into()
-}
-
-/// Scenes by the rung of the reconstruction taken.
-fn taken_rungs(tally: &Tally) -> ChapterPart {
-    let groups = tally.groups(ClassTable::Rungs);
-    let mut table = ReportTable::of(&groups).text("scene", |(words, _)| *words);
-    for rung in ReconstructionRung::ALL {
-        table =
-            table.number(json_word(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
-    }
-    table.into()
-}
-
-/// What every rung says of the drops that take one.
-fn other_rungs(tally: &Tally) -> ChapterPart {
-    let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.spread("k").count() > 0).collect();
-    ReportTable::of(&pairs)
-        .chosen(|((taken, rung), _)| taken == rung)
-        .text("taken", |((taken, _), _)| json_word(taken))
-        .text("rung", |((_, rung), _)| json_word(rung))
-        .number("drops", |(_, said)| said.spread("k").count().to_string())
-        .number("speed: 95th, %", |(_, said)| said.spread("speed").error(0.95, 2))
-        .number("half-width, %", |(_, said)| said.spread("speed").half_width(2))
-        .number("held", |(_, said)| said.spread("speed").held())
-        .number("k: 95th", |(_, said)| said.spread("k").error(0.95, 4))
-        .number("held", |(_, said)| said.spread("k").held())
-        .number("changes the speed by, half-widths: 95th", |((taken, rung), said)| {
-            if taken == rung { "–".to_owned() } else { said.spread("change").error(0.95, 2) }
-        })
         .into()
 }
 

@@ -1,10 +1,9 @@
-//! Rows, one after the other, to the counts that stand in the tables: of the scenes of each class, and of
-//! what every rung of the reconstruction says. They add up exactly in whatever order and parts the rows are
-//! counted.
+//! Rows, one after the other, to the counts of the scenes of each class that stand in the tables. They add up
+//! exactly in whatever order and parts the rows are counted.
 
 use super::DamageKind;
 use super::score::{SceneOutcome, outcome};
-use crate::data::{ReconstructionRung, Verdict};
+use crate::data::Verdict;
 use crate::lab::data::{CampaignRequest, CampaignRow, Stated};
 use crate::lab::drawn::{BUILDS, DRAWN};
 use crate::numerics::{as_count, as_f64};
@@ -84,7 +83,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Counts one statement, as [`SceneGroup::add_stated`].
+    /// Counts one statement beside its truth, where there are both; `relative`: in percent of the truth.
     fn add(&mut self, both: Option<(Stated, f64)>, relative: bool) {
         let Some((stated, truth)) = both else { return };
         let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
@@ -108,8 +107,6 @@ pub(super) struct SceneWords {
     pub outcome: SceneOutcome,
     /// Whether speed and k are stated.
     pub has_numbers: bool,
-    /// The rung of the reconstruction taken.
-    pub rung: Option<ReconstructionRung>,
 }
 
 /// Some scenes of a campaign, counted.
@@ -124,16 +121,11 @@ impl SceneGroup {
     /// Counts a scene, and of its quantities so many.
     fn add(&mut self, row: &CampaignRow, quantities: usize) {
         let (outcome, has_numbers) = (outcome(row), row.has_numbers());
-        let words = SceneWords { verdict: row.verdict, outcome, has_numbers, rung: row.rung };
+        let words = SceneWords { verdict: row.verdict, outcome, has_numbers };
         *self.counts.entry(words).or_default() += 1;
         for (name, _, relative, _) in QUANTITIES.into_iter().take(quantities) {
-            self.add_stated(name, row.stated(name).zip(row.truth(name)), relative);
+            self.spreads.entry(name).or_default().add(row.stated(name).zip(row.truth(name)), relative);
         }
-    }
-
-    /// Counts one statement beside its truth, where there are both; `relative`: in percent of the truth.
-    fn add_stated(&mut self, name: &'static str, both: Option<(Stated, f64)>, relative: bool) {
-        self.spreads.entry(name).or_default().add(both, relative);
     }
 
     /// How many scenes there are of which this is said.
@@ -174,8 +166,6 @@ pub(super) enum ClassTable {
     SoundClasses,
     /// Drops with something wrong, by kind, then all.
     DamagedKinds,
-    /// Undamaged drops that have a motion, by what asks for a higher rung of the reconstruction, then all.
-    Rungs,
 }
 
 /// Scenes that are counted together: a row of a table.
@@ -212,7 +202,6 @@ fn classes(row: &CampaignRow) -> Vec<SceneClass> {
         classes.push(SceneClass::new(ClassTable::Undamaged, LAST, "all"));
         let passed = SceneClass::new(ClassTable::Undamaged, 0, "passed");
         classes.extend((row.verdict == Some(Verdict::Pass)).then_some(passed));
-        classes.extend(row.rung.iter().flat_map(|_| rung_classes(row)));
     }
     classes
 }
@@ -246,30 +235,11 @@ fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
     classes
 }
 
-/// What in a scene asks for a higher rung, or is none of the rungs' business.
-fn rung_classes(row: &CampaignRow) -> impl Iterator<Item = SceneClass> {
-    let asks = [
-        ("elastic body", row.facts.elastic),
-        ("no mode", row.facts.modes == 0 && !row.facts.elastic),
-        ("one mode", row.facts.modes == 1),
-        ("two modes", row.facts.modes == 2),
-        ("three modes", row.facts.modes == 3),
-        ("force plateau", row.facts.yields),
-        ("rest recorded", row.facts.rest),
-        ("contact above 10 ms", row.truth("duration").is_some_and(|contact_s| contact_s > 0.01)),
-        ("all", true),
-    ];
-    let held = asks.into_iter().enumerate().filter(|(_, (_, is_so))| *is_so);
-    held.map(|(place, (words, _))| SceneClass::new(ClassTable::Rungs, place, words))
-}
-
 /// A campaign, counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
     pub(super) request: CampaignRequest,
     groups: BTreeMap<SceneClass, SceneGroup>,
-    /// Of undamaged drops, by the rung taken and the one that says it.
-    pub(super) rungs: BTreeMap<(ReconstructionRung, ReconstructionRung), SceneGroup>,
     /// The first of those that passed and are wrong.
     pub(super) missed: Vec<CampaignRow>,
     pub(super) missed_count: usize,
@@ -278,7 +248,7 @@ pub struct Tally {
 impl Tally {
     /// Of no scene yet.
     pub fn new(request: CampaignRequest) -> Self {
-        Self { request, groups: BTreeMap::new(), rungs: BTreeMap::new(), missed: Vec::new(), missed_count: 0 }
+        Self { request, groups: BTreeMap::new(), missed: Vec::new(), missed_count: 0 }
     }
 
     /// Counts a scene.
@@ -288,26 +258,11 @@ impl Tally {
             let quantities = if is_whole { QUANTITIES.len() } else { USUAL_QUANTITIES };
             self.groups.entry(class).or_default().add(row, quantities);
         }
-        if let Some(taken) = row.rung.filter(|_| row.damage.is_none()) {
-            self.add_rungs(row, taken);
-        }
         if outcome(row) == SceneOutcome::Missed {
             self.missed_count += 1;
             if self.missed.len() < MOST_LISTED {
                 self.missed.push(row.clone());
             }
-        }
-    }
-
-    fn add_rungs(&mut self, row: &CampaignRow, taken: ReconstructionRung) {
-        for said in &row.rungs {
-            let group = self.rungs.entry((taken, said.rung)).or_default();
-            group.add_stated("speed", said.speed.zip(row.truth("speed")), true);
-            group.add_stated("k", said.k.zip(row.truth("k")), false);
-            // By how many of the taken one's half-widths it would change the speed.
-            let change =
-                row.stated("speed").zip(said.speed).map(|(own, said)| (said.value - own.value) / own.u95);
-            group.add_stated("change", change.map(|value| (Stated { value, u95: 0.0 }, 0.0)), false);
         }
     }
 

@@ -112,7 +112,7 @@ pub struct RungSaid {
     pub k: Option<Stated>,
 }
 
-/// What scenes are classed by: the rest of a scene comes again by its number.
+/// What a line says of its scene: the rest of it comes again by its number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
     /// The cask, by name.
@@ -156,7 +156,7 @@ pub struct CampaignRow {
     pub rungs: Vec<RungSaid>,
     /// By how many standard uncertainties the closure is missed that is missed most.
     pub largest_miss_u: Option<f64>,
-    /// What it is classed by.
+    /// What it is like.
     pub facts: SceneFacts,
 }
 

@@ -200,7 +200,7 @@ pub struct Trial {
     pub points: Vec<TrialPoint>,
     /// What becomes of drops as each damage grows.
     pub maps: Vec<TrialMap>,
-    /// Random sound drops: how far off, and by which rung.
+    /// Random sound drops: how far off.
     #[serde(skip)]
     pub campaign: Campaign,
     /// What is accepted, and what was found.

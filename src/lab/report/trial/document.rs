@@ -2,7 +2,6 @@
 
 use super::pictures::{fate_words, largest_words, pooled, reading};
 use crate::data::Program;
-use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, WAYS};
 use crate::report::document::{
@@ -22,9 +21,6 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
     let chapters = vec![
         outcome(trial),
         Chapter::new("What is silent, and what to do at the site").with_all(silent(trial)),
-        Chapter::new("No more than a scene needs")
-            .with(ChapterPart::lead(RUNGS))
-            .with_all(campaign::rungs(&trial.campaign)),
         Chapter::new("Speed against accuracy")
             .with(ChapterPart::lead(within))
             .with(ChapterPart::picture("speed", ""))
@@ -51,11 +47,6 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
 }
 
 const HEADING: &str = "Acceptance of dropcheck on this machine";
-
-const RUNGS: &str = "The reconstruction takes the flight with its modes, or a joint fit of all inputs. \
-                     Random sound drops whose stated values are off within their tolerances (in \
-                     the picture they are exact): what each scene, of which a drop may be several, takes; \
-                     then, for each rung taken, what every rung says of the same drops.";
 
 const LIMITS: &str = "Recordings: of another program. Campaign: random sound drops, the 95th percentile of \
                       each error in half-widths of its interval. Map: the damages. Held: the share of \
