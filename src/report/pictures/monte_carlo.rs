@@ -13,9 +13,6 @@ const NOTHING: (&str, &str) = (
     "No quantiles could be had.",
 );
 
-const NO_DRAWS: (&str, &str) =
-    ("There is nothing to show: no draws were asked for.", "No draws were asked for.");
-
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let found = &study.monte_carlo;
@@ -33,8 +30,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         found.uncertain.seed,
         plain(found.band_percent, 3)
     );
-    let nothing = if found.uncertain.draws == 0 { NO_DRAWS } else { NOTHING };
-    Plate::new(name, title, caption).or(nothing).picture(panels.as_ref().map_or(&[], |panels| panels))
+    Plate::new(name, title, caption).or(NOTHING).picture(panels.as_ref().map_or(&[], |panels| panels))
 }
 
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
@@ -99,21 +95,11 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
     panel
 }
 
-/// Most bars of a histogram: finer ones cannot be told apart on paper.
-const MOST_BARS: usize = 100;
-
-/// From which to which angle a bar goes, and its height, percent: the counts at the angles, drawn together so
-/// that there are at most [`MOST_BARS`].
+/// From which to which angle each bar goes, and its height, percent of the draws.
 fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<((f64, f64), f64)> {
-    let together = angle_deg.len().div_ceil(MOST_BARS).max(1);
-    let sum = |counts: &[u32]| counts.iter().map(|c| f64::from(*c)).sum::<f64>();
-    let all = sum(counts).max(1.0);
-    let borders = edges(angle_deg);
-    let bar = |(i, held): (usize, &[u32])| {
-        let from = i * together;
-        ((borders[from], borders[from + held.len()]), 100.0 * sum(held) / all)
-    };
-    counts[..counts.len().min(angle_deg.len())].chunks(together).enumerate().map(bar).collect()
+    let all = counts.iter().map(|count| f64::from(*count)).sum::<f64>().max(1.0);
+    let bar = |(ends, count): (&[f64], &u32)| ((ends[0], ends[1]), 100.0 * f64::from(*count) / all);
+    edges(angle_deg).windows(2).zip(counts).map(bar).collect()
 }
 
 #[cfg(test)]
@@ -122,16 +108,16 @@ mod tests {
 
     #[test]
     fn bars_hold_every_draw() {
-        let angle_deg: Vec<f64> = (0..181).map(|i| f64::from(i) * 0.5).collect();
-        let mut counts = vec![0; 181];
+        let angle_deg: Vec<f64> = (0..91).map(f64::from).collect();
+        let mut counts = vec![0; 91];
         counts[0] = 100;
         counts[30] = 600;
         counts[31] = 200;
-        counts[180] = 100;
+        counts[90] = 100;
         let bars = bars(&angle_deg, &counts);
         // Shares of 1000 draws are whole tenths of a percent: their sum is exact but for round-off.
         assert!((bars.iter().map(|(_, share)| share).sum::<f64>() - 100.0).abs() < 1e-9);
-        assert!(bars.len() <= MOST_BARS && bars.windows(2).all(|w| w[0].0.1.to_bits() == w[1].0.0.to_bits()));
-        assert_eq!(bars.iter().filter(|(_, share)| *share > 0.0).count(), 3);
+        assert!(bars.len() == 91 && bars.windows(2).all(|w| w[0].0.1.to_bits() == w[1].0.0.to_bits()));
+        assert_eq!(bars.iter().filter(|(_, share)| *share > 0.0).count(), 4);
     }
 }

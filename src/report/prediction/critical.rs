@@ -148,8 +148,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     let u = &found.uncertain;
     if u.draws == 0 {
         let none = ChapterPart::text("No draws were asked for.");
-        let picture = ChapterPart::picture("monte-carlo", "tall");
-        return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
+        return Chapter::new("Monte Carlo").only(Medium::Page).with(none);
     }
     let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
     let drawn = ChapterPart::text(uncertain_words(u, found.contact));
