@@ -20,12 +20,18 @@ pub fn median(values: &mut [f64]) -> f64 {
 /// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996,
 /// type 7); NaN of none.
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
-    let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
+    quantile_of(ascending.len(), share, |rank| ascending[rank])
+}
+
+/// [`quantile`] of so many values, each by its rank.
+pub fn quantile_of(count: usize, share: f64, value: impl Fn(usize) -> f64) -> f64 {
+    let Some(last) = count.checked_sub(1) else { return f64::NAN };
     let place = share * as_f64(last);
     let below = as_count(place).min(last);
-    let (low, high) = (ascending[below], ascending[(below + 1).min(last)]);
+    let (low, high) = (value(below), value((below + 1).min(last)));
     // Equal neighbours may be infinite.
-    if place > as_f64(below) { low + (place - as_f64(below)) * (high - low) } else { low }
+    let beyond = place - as_f64(below);
+    if beyond > 0.0 && low < high { low + beyond * (high - low) } else { low }
 }
 
 /// Most values that a spread is taken from.

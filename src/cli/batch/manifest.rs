@@ -6,6 +6,7 @@ use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
 use crate::ingest::cask_file::{delimiter, key_of_column};
 use crate::ingest::{bytes_of, in_utf8};
+use crate::report::records::records;
 use miette::{ensure, miette};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -112,9 +113,7 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
 /// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs
 /// most.
 pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let fault = |error: csv::Error| miette!("the manifest could not be written: {error}");
-    writer.write_record([ID, RECORDING, CASK, "drop.angle_deg", "test.date"]).map_err(fault)?;
+    let mut rows = vec![[ID, RECORDING, CASK, "drop.angle_deg", "test.date"].map(str::to_owned)];
     // A shell makes the file first into which the manifest goes.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
     for recording in in_folder(folder)? {
@@ -123,10 +122,10 @@ pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
             continue;
         }
         let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());
-        let words = [stem(&recording), recording.display().to_string(), cask.unwrap_or_default()];
-        writer.write_record(words.iter().map(String::as_str).chain(["", ""])).map_err(fault)?;
+        let shown = recording.display().to_string();
+        rows.push([stem(&recording), shown, cask.unwrap_or_default(), String::new(), String::new()]);
     }
-    writer.into_inner().map_err(|error| fault(error.into_error().into()))
+    Ok(records(rows)?)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::score::{SceneOutcome, outcome};
 use crate::data::Verdict;
 use crate::lab::data::{CampaignRequest, CampaignRow, Stated};
 use crate::lab::drawn::{BUILDS, DRAWN};
-use crate::numerics::{as_count, as_f64};
+use crate::numerics::robust::quantile_of;
 use std::collections::BTreeMap;
 
 /// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
@@ -47,13 +47,7 @@ impl Magnitudes {
 
     /// The value below which this share lies; the largest is known as it is. NaN of none.
     pub(super) fn quantile(&self, share: f64) -> f64 {
-        let Some(last) = self.count.checked_sub(1) else { return f64::NAN };
-        let place = share * as_f64(last);
-        let below = as_count(place).min(last);
-        let (low, high) = (self.at(below), self.at((below + 1).min(last)));
-        // Equal neighbours may be infinite.
-        let beyond = place - as_f64(below);
-        if beyond > 0.0 && low < high { low + beyond * (high - low) } else { low }
+        quantile_of(self.count, share, |rank| self.at(rank))
     }
 
     /// The value of this rank: the middle of its bin.
