@@ -1,7 +1,6 @@
 //! An analysis beside its truth to a row, and a row to what became of its scene.
 
 use crate::data::{Analysis, Estimate, Severity, Verdict};
-use crate::lab::chance::round;
 use crate::lab::data::{
     CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
 };
@@ -28,7 +27,6 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
     let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
     let result = analysis.map(|a| &a.result);
     let choice = result.and_then(|r| r.reconstruction.as_ref());
-    let misses_u = choice.into_iter().flat_map(|c| &c.closures).map(crate::data::Closure::most_in_u);
     let rungs = choice.into_iter().flat_map(|choice| &choice.candidates).map(|c| RungSaid {
         rung: c.rung,
         consistent: c.consistent,
@@ -44,17 +42,11 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
         quantities: quantities(&truth, (first_contact_s, slap_down_s), analysis),
         rung: choice.map(|choice| choice.rung),
         rungs: rungs.collect(),
-        largest_miss_u: misses_u.max_by(f64::total_cmp),
         facts: SceneFacts {
             cask: drop.scene.cask.name,
             angle_deg: truth.angle_deg,
             rate_hz: drop.scene.channels.first().map_or(0.0, |channel| channel.sample_rate_hz),
-            modes: drop.scene.modes.len(),
             elastic: drop.scene.elastic.is_some(),
-            yields: drop.scene.first_end.yield_n.is_some(),
-            rest: drop.scene.rest,
-            stated_angle_deg: round(drop.stated.drop.angle_rad.to_degrees(), 9),
-            stated_contact: drop.stated.contact.to_string(),
         },
     }
 }

@@ -9,7 +9,6 @@ use crate::numerics::as_f64;
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable};
 use crate::report::rounding::optional_fixed;
-use crate::report::text::json_word;
 
 /// The whole as Markdown.
 pub fn markdown(tally: &Tally) -> String {
@@ -33,8 +32,7 @@ fn document(tally: &Tally) -> ReportDocument {
     );
     let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
     let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
-    if let Some((_, all)) = undamaged.last() {
-        chapter("Undamaged scenes", verdicts(all));
+    if !undamaged.is_empty() {
         chapter("Errors and intervals", intervals(&undamaged));
     }
     if !sound.is_empty() {
@@ -73,21 +71,6 @@ impl Spread {
     pub(super) fn held(&self) -> String {
         share(self.held, self.count())
     }
-}
-
-fn verdicts(scenes: &SceneGroup) -> ChapterPart {
-    let number = |verdict: &Verdict, outcomes: &[SceneOutcome]| {
-        scenes.count(|s| s.verdict == Some(*verdict) && outcomes.contains(&s.outcome))
-    };
-    ReportTable::of(&[Verdict::Pass, Verdict::Review, Verdict::Fail])
-        .text("verdict", json_word)
-        .number("scenes", |verdict| number(verdict, &SceneOutcome::ALL).to_string())
-        .number("share", |verdict| share(number(verdict, &SceneOutcome::ALL), scenes.len()))
-        .number("speed and k right or held", |verdict| {
-            number(verdict, &[SceneOutcome::Right, SceneOutcome::Covered]).to_string()
-        })
-        .number("missed", |verdict| number(verdict, &[SceneOutcome::Missed]).to_string())
-        .into()
 }
 
 fn intervals<'a>(groups: &[NamedGroup<'a>]) -> ChapterPart {

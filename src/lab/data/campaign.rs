@@ -112,7 +112,7 @@ pub struct RungSaid {
     pub k: Option<Stated>,
 }
 
-/// What a line says of its scene: the rest of it comes again by its number.
+/// What scenes are classed by: the rest of a scene comes again by its number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
     /// The cask, by name.
@@ -121,18 +121,8 @@ pub struct SceneFacts {
     pub angle_deg: f64,
     /// Rate of the first channel, Hz.
     pub rate_hz: f64,
-    /// Bending modes that are listed.
-    pub modes: usize,
     /// Whether the body is an elastic beam.
     pub elastic: bool,
-    /// Whether the first end's force has a plateau.
-    pub yields: bool,
-    /// Whether the record shows the rest before the release.
-    pub rest: bool,
-    /// Inclination as the cask file states it, degrees.
-    pub stated_angle_deg: f64,
-    /// Contact as the cask file states it.
-    pub stated_contact: String,
 }
 
 /// One scene of a campaign: what a line of it says.
@@ -154,9 +144,7 @@ pub struct CampaignRow {
     pub rung: Option<ReconstructionRung>,
     /// What each rung says.
     pub rungs: Vec<RungSaid>,
-    /// By how many standard uncertainties the closure is missed that is missed most.
-    pub largest_miss_u: Option<f64>,
-    /// What it is like.
+    /// What it is classed by.
     pub facts: SceneFacts,
 }
 
