@@ -135,7 +135,8 @@ pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
     Ok(folder.write(&report::files(analysis)?)?)
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+/// Runs the command; `words` are those behind the program's name, for the record.
+pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> {
     // While the recording is read: the result names it.
     #[cfg(not(debug_assertions))]
     std::thread::spawn(rerun::program_sha256);
@@ -172,7 +173,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     let mut analysis = crate::analyze(&recording, &cask_file);
     switched_off.in_settings(&mut analysis.result);
-    rerun::stamp(&mut analysis.result, rerun::words())?;
+    rerun::stamp(&mut analysis.result, words)?;
     let ([same, otherwise], repeated) = match &earlier {
         Some(earlier) => earlier.repeat(&mut analysis.result)?,
         None => (Default::default(), Ending::Clear),

@@ -35,8 +35,8 @@ fn not(what: &str) -> miette::Report {
 pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
     let Command::Analyze(arguments) = command(words)? else { return Err(not("analyze")) };
     let mut analysis = analyze::analysis(&arguments, held)?;
-    let words = words.iter().map(|word| word.to_string_lossy().into_owned());
-    rerun::stamp(&mut analysis.result, words.filter(|_| held.is_none()).collect())?;
+    let words = if held.is_none() { rerun::in_text(words) } else { Vec::new() };
+    rerun::stamp(&mut analysis.result, words)?;
     Ok(analysis)
 }
 

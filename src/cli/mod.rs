@@ -127,9 +127,8 @@ impl Ending {
 pub fn main(words: &[OsString]) -> u8 {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
     let ended = CommandLine::try_parse_from(named).map(|line| {
-        rerun::begin(words);
         line.set_output();
-        run(&line.command)
+        run(&line.command, words)
     });
     match ended {
         Ok(Ok(ending)) => ending as u8,
@@ -145,9 +144,9 @@ pub fn main(words: &[OsString]) -> u8 {
     }
 }
 
-fn run(command: &Command) -> miette::Result<Ending> {
+fn run(command: &Command, words: &[OsString]) -> miette::Result<Ending> {
     match command {
-        Command::Analyze(arguments) => analyze::run(arguments),
+        Command::Analyze(arguments) => analyze::run(arguments, rerun::in_text(words)),
         Command::Check(arguments) => check::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),

@@ -8,7 +8,7 @@ use miette::{IntoDiagnostic, WrapErr, miette};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 
 /// Numbers nearer to one another than this share of their magnitude are the same: machines round otherwise.
 const SAME_WITHIN: f64 = 1e-9;
@@ -22,18 +22,9 @@ pub struct EarlierResult {
     name: String,
 }
 
-/// The words behind the program's name. Under an interpreter they are not those of the process.
-static WORDS: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-/// Takes down the words of the command that runs.
-pub fn begin(words: &[OsString]) {
-    let words = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
-    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words;
-}
-
-/// The words taken down.
-pub fn words() -> Vec<String> {
-    WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
+/// The words of a command line as a result records them.
+pub fn in_text(words: &[OsString]) -> Vec<String> {
+    words.iter().map(|word| word.to_string_lossy().into_owned()).collect()
 }
 
 /// SHA-256 of the program's file; `None` where it cannot be read, or where an interpreter runs this.
