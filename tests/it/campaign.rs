@@ -4,29 +4,33 @@
 use crate::run::{analyze, dropcheck, number};
 use dropcheck::data::Verdict;
 use dropcheck::lab::campaign::{self, DamageKind, Tally};
-use dropcheck::lab::data::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored, Stated};
+use dropcheck::lab::data::{CampaignRequest, CampaignRow, Damage, SceneNumber, Scored, Stated};
 use std::fs;
 use std::path::Path;
 
 /// Cheap kinds: they make no longer records.
 const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];
 
-fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
+fn request(scenes: u32, seed: u64, exact: bool) -> CampaignRequest {
     let kinds = ["undamaged"].into_iter().chain(KINDS).map(str::to_owned).collect();
-    campaign::run(&CampaignRequest { scenes, seed, kinds, exact }, &|_| {})
+    CampaignRequest { scenes, seed, kinds, exact }
+}
+
+fn run(scenes: u32, seed: u64, exact: bool) -> Vec<CampaignRow> {
+    campaign::run(&request(scenes, seed, exact), &|_| {})
 }
 
 /// All rows as they are written.
-fn lines(campaign: &Campaign) -> String {
-    serde_json::to_string(&campaign.rows).expect("the rows are written")
+fn lines(campaign: &[CampaignRow]) -> String {
+    serde_json::to_string(campaign).expect("the rows are written")
 }
 
 #[test]
 fn a_seed_gives_the_same_campaign_and_another_seed_another() {
     let campaign = run(3, 7, false);
-    let numbers: Vec<String> = campaign.rows.iter().map(|row| row.scene.to_string()).collect();
+    let numbers: Vec<String> = campaign.iter().map(|row| row.scene.to_string()).collect();
     assert_eq!(numbers[..3], ["U0", "U1", "U2"]);
-    assert!(campaign.rows[3..].iter().all(|row| matches!(row.scene, SceneNumber::Damaged(_))));
+    assert!(campaign[3..].iter().all(|row| matches!(row.scene, SceneNumber::Damaged(_))));
     assert_eq!(lines(&campaign), lines(&run(3, 7, false)));
     assert_ne!(lines(&campaign), lines(&run(3, 8, false)));
 }
@@ -59,8 +63,8 @@ fn what_is_stated_differs_from_what_is_by_the_tolerances_and_with_exact_not_at_a
 fn a_scene_in_files_gives_what_the_campaign_has_of_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let campaign = run(2, 5, false);
-    assert_eq!(campaign.rows[2].damage.as_ref().map(|damage| &damage.kind[..]), Some("gap_flight"));
-    for row in &campaign.rows {
+    assert_eq!(campaign[2].damage.as_ref().map(|damage| &damage.kind[..]), Some("gap_flight"));
+    for row in &campaign {
         let out = folder.path().join(row.scene.to_string());
         let words = ["validate", "--seed", "5", "--scene", &row.scene.to_string(), "--out"];
         let answer = dropcheck(words.iter().map(Into::into).chain([out.as_os_str().to_owned()]));
@@ -95,7 +99,7 @@ fn judged(row: &CampaignRow, verdict: Verdict, off: Option<(f64, f64)>) -> Campa
 #[test]
 fn a_pass_whose_interval_ends_half_its_width_short_of_the_truth_is_missed() {
     let campaign = run(1, 2, true);
-    let row = &campaign.rows[0];
+    let row = &campaign[0];
     for (verdict, off, wanted) in [
         (Verdict::Pass, Some((0.2, -1.9)), "right"),
         (Verdict::Pass, Some((2.1, 0.0)), "missed"),
@@ -112,8 +116,8 @@ fn a_pass_whose_interval_ends_half_its_width_short_of_the_truth_is_missed() {
 #[test]
 fn the_tables_have_every_kind_and_count_what_is_missed() {
     let campaign = run(1, 2, true);
-    let sound = campaign.rows[0].clone();
-    let mut tally = Tally::new(campaign.request);
+    let sound = campaign[0].clone();
+    let mut tally = Tally::new(request(1, 2, true));
     for &DamageKind { name: kind, ref sizes, unit, .. } in campaign::kinds() {
         for &size in sizes {
             let mut row = judged(&sound, Verdict::Pass, Some((if kind == "skew" { 2.5 } else { 0.0 }, 0.0)));
@@ -149,9 +153,9 @@ fn the_tables_have_every_kind_and_count_what_is_missed() {
 #[test]
 fn a_stretched_cask_is_among_those_of_its_name() {
     let campaign = run(1, 2, true);
-    let mut tally = Tally::new(campaign.request);
+    let mut tally = Tally::new(request(1, 2, true));
     for cask in ["ESBB", "ESBB-var", "VHLW-var"] {
-        let mut row = campaign.rows[0].clone();
+        let mut row = campaign[0].clone();
         row.facts.cask = cask.to_owned();
         tally.add(&row);
     }

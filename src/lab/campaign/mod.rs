@@ -13,14 +13,11 @@ pub use tables::markdown;
 pub(super) use tally::BODIES;
 pub use tally::Tally;
 
-use crate::analysis::measure;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
 pub use crate::lab::damage::{DamageKind, drawn as kinds};
-use crate::lab::data::{
-    Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
-};
+use crate::lab::data::{CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording};
 use crate::numerics::as_f64;
 use crate::ordered_parallel;
 use score::RecordedScene;
@@ -32,8 +29,9 @@ pub const SCHEMA: &str = "dropcheck.scenes/1";
 /// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 
-/// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
-pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
+/// The rows of the campaign, undamaged scenes first, each in the order of their numbers; `progress` is told
+/// the share that is done. The same request gives the same rows.
+pub fn run(request: &CampaignRequest, progress: Progress) -> Vec<CampaignRow> {
     let (numbers, mut rows) = (numbers(request), Vec::new());
     let take = |_, row| {
         rows.push(row);
@@ -42,7 +40,7 @@ pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
     };
     let jobs = rayon::current_num_threads();
     let Ok(()) = ordered_parallel::each(numbers.iter(), jobs, |number| row(request, *number), take);
-    Campaign { request: request.clone(), rows }
+    rows
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
@@ -75,8 +73,7 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
 /// What is found of a scene, beside its truth.
 pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
-    let read = scene.drop.read(&scene.recording);
-    let analysis = read.map(|read| measure(&read, &scene.drop.stated));
+    let analysis = scene.drop.analyzed(&scene.recording);
     score::row(number, scene, analysis.as_ref())
 }
 

@@ -165,15 +165,6 @@ impl CampaignRow {
     }
 }
 
-/// A campaign, done.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Campaign {
-    /// What was asked for.
-    pub request: CampaignRequest,
-    /// The scenes, undamaged first, each in the order of their numbers.
-    pub rows: Vec<CampaignRow>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,5 @@
 //! Ways of working under trial: what each costs and how far off it is, and where the program fails.
 
-use super::campaign::Campaign;
 use serde::Serialize;
 
 /// What a trial is asked for.
@@ -200,9 +199,6 @@ pub struct Trial {
     pub points: Vec<TrialPoint>,
     /// What becomes of drops as each damage grows.
     pub maps: Vec<TrialMap>,
-    /// Random sound drops: how far off.
-    #[serde(skip)]
-    pub campaign: Campaign,
     /// What is accepted, and what was found.
     pub limits: Vec<TrialLimit>,
 }

@@ -4,7 +4,7 @@ use super::references::{FINITE_ELEMENTS, OWN, References, built_in};
 use super::ways::ALL_CLASSES;
 use crate::data::Verdict;
 use crate::lab::campaign::{BODIES, half_widths_off, is_missed};
-use crate::lab::data::{Campaign, CampaignRow, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
+use crate::lab::data::{CampaignRow, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::robust::{mean_and_rms, quantile};
@@ -20,7 +20,7 @@ type Found = (Option<f64>, String);
 pub fn limits(
     points: &[TrialPoint],
     maps: &[TrialMap],
-    campaign: &Campaign,
+    campaign: &[CampaignRow],
     site: Option<&References>,
 ) -> Vec<TrialLimit> {
     let finite_elements = built_in(FINITE_ELEMENTS).unwrap_or_default();
@@ -66,8 +66,7 @@ fn of_points(family: &str, class: &str, points: &[TrialPoint]) -> Option<f64> {
 
 /// Of random sound drops: the share of those of a body that passes or has no numbers, those that are wrong,
 /// or how far off a quantity is, in half-widths.
-fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
-    let rows = &campaign.rows;
+fn of_campaign(measured: &str, rows: &[CampaignRow]) -> Found {
     let has_passed = |row: &&CampaignRow| row.verdict == Some(Verdict::Pass);
     if let Some((what, body)) = measured.split_once(" of ") {
         let is_counted =

@@ -39,7 +39,6 @@ pub fn trial(
         machine,
         points,
         maps,
-        campaign,
         limits,
     }
 }

@@ -32,8 +32,8 @@ pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 mod tests {
     use super::*;
     use crate::lab::data::{
-        Campaign, CampaignRequest, KnownSilence, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap,
-        TrialPoint, TrialRequest, TrialSize,
+        KnownSilence, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap, TrialPoint, TrialRequest,
+        TrialSize,
     };
     use crate::lab::methods::{ALL_CLASSES, WAYS};
 
@@ -87,7 +87,6 @@ mod tests {
             when: "2026-11-24 12:00 UTC".into(),
             is_optimised: true,
         };
-        let request = CampaignRequest { scenes: 0, seed: 1, kinds: vec![], exact: false };
         Trial {
             schema: "dropcheck.validation/3",
             version: "0.1.0",
@@ -95,7 +94,6 @@ mod tests {
             machine,
             points: points.iter().cloned().chain(k).collect(),
             maps: vec![map],
-            campaign: Campaign { request, rows: vec![] },
             limits: vec![limit],
         }
     }

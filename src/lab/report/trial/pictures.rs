@@ -47,9 +47,7 @@ pub(super) fn ways(trial: &Trial) -> Picture {
                    program takes. Bar: from the best class to the worst.";
     let families = WAYS.map(|family| pooled(trial, family).collect::<Vec<_>>());
     let panels: Vec<Panel> = families.iter().filter_map(|ways| ways_panel(trial, ways)).collect();
-    let nothing = ("There is nothing to show: no way was tried.", "No way was tried.");
-    Plate { columns: 2, ..Plate::new("speed", "Speed against accuracy", caption).or(nothing) }
-        .picture(&panels)
+    Plate { columns: 2, ..Plate::new("speed", "Speed against accuracy", caption) }.picture(&panels)
 }
 
 /// The ways of a family that say anything, over all classes.
@@ -136,9 +134,7 @@ pub(super) fn failures(trial: &Trial) -> Picture {
         Fill::new(colour, 1.0, areas).named(label)
     };
     panel.fills = FATES.map(fill).into();
-    let nothing = ("There is nothing to show: no damage was tried.", "No damage was tried.");
-    let panels: &[Panel] = if maps.is_empty() { &[] } else { &[panel] };
-    Plate::new("failures", "What becomes of damages", caption).or(nothing).picture(panels)
+    Plate::new("failures", "What becomes of damages", caption).picture(&[panel])
 }
 
 /// The worst that becomes of a drop of the map: silence before all.
