@@ -15,26 +15,19 @@ const FACT_WIDTH: usize = 22;
 
 /// The whole document, in lines of at most `width` columns; its tables without their captions.
 pub(crate) fn text(document: &ReportDocument, width: usize) -> String {
-    written(document, Sheet { width, has_captions: false })
+    written(document, width, false)
 }
 
 /// The document as its page has it, in lines of at most `width` columns.
 pub(crate) fn full_text(document: &ReportDocument, width: usize) -> String {
-    written(document, Sheet { width, has_captions: true })
+    written(document, width, true)
 }
 
-/// What is written on.
-#[derive(Clone, Copy)]
-struct Sheet {
-    width: usize,
-    has_captions: bool,
-}
-
-fn written(document: &ReportDocument, sheet: Sheet) -> String {
+fn written(document: &ReportDocument, width: usize, has_captions: bool) -> String {
     let mut out = String::new();
     for chapter in &document.chapters {
-        out.extend(chapter.heading(Medium::Terminal).map(|words| heading(words, sheet.width)));
-        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, sheet)));
+        out.extend(chapter.heading(Medium::Terminal).map(|words| heading(words, width)));
+        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width, has_captions)));
     }
     out
 }
@@ -43,8 +36,7 @@ fn heading(words: &str, width: usize) -> String {
     "\n".to_owned() + &styled_lines(Style::Bold, &wrap(words, width, 0))
 }
 
-fn passage(passage: &ChapterPart, sheet: Sheet) -> String {
-    let Sheet { width, has_captions } = sheet;
+fn passage(passage: &ChapterPart, width: usize, has_captions: bool) -> String {
     match &passage.content {
         PartContent::Sentence(role, words) => {
             let words = words.on(Medium::Terminal);
@@ -74,7 +66,7 @@ fn passage(passage: &ChapterPart, sheet: Sheet) -> String {
             .iter()
             .flatten()
             .filter(|passage| passage.is_shown(Medium::Terminal))
-            .map(|part| self::passage(part, sheet))
+            .map(|part| self::passage(part, width, has_captions))
             .collect(),
         // What is drawn.
         _ => String::new(),

@@ -105,11 +105,6 @@ const NEEDED: [(&str, f64); 2] = [("% of the slap-down speed", 1.0), ("1", 0.01)
 /// What the program says and takes.
 const TAKEN: &str = "dropcheck, as taken";
 
-/// A number without an interval.
-fn bare(value: Option<f64>) -> Option<Estimate> {
-    value.map(|value| Estimate::new(value, f64::NAN, ""))
-}
-
 /// The points of the program and of the notebook, by quantity and class; what is no answer is wholly off.
 /// Reading alone has a time and no answer.
 pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
@@ -174,7 +169,8 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
         let [seconds, speed_m_s, k] = numbers[..] else { return None };
-        let number = |number: f64| bare(number.is_finite().then_some(number));
+        // It states no interval.
+        let number = |value: f64| value.is_finite().then(|| Estimate::new(value, f64::NAN, ""));
         worked.answers.push([speed_m_s, k].map(number));
         worked.times_ns.push(1e9 * seconds);
     }

@@ -23,7 +23,7 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
     let caption = "Speed of the second end just before it strikes. Dots: the analytical models with the \
                    borderline k; squares: with the measured k, with their 95 % intervals where known. Dashed \
                    line and band: the measurement and its 95 % interval.";
-    Plate::new("comparison", "Measured beside predicted", caption).picture(panel.as_slice())
+    Plate::new("comparison", "Measured beside predicted", caption).picture(&[panel])
 }
 
 fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
@@ -49,10 +49,7 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
     result.predictions.iter().filter_map(row).collect()
 }
 
-fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
-    if rows.is_empty() && measured.is_none() {
-        return None;
-    }
+fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
     let words = rows.iter().map(|row| row.words.clone()).collect();
     let mut panel = Panel::of_rows(words, ROW, (560, 230));
     panel.x = PanelAxis::new("slap-down speed, m/s");
@@ -74,5 +71,5 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
         }
         panel.points.push(Points::new(colour, shape, vec![(row.speed_m_s, y)]));
     }
-    Some(panel.with_air(0.08))
+    panel.with_air(0.08)
 }

@@ -148,13 +148,7 @@ pub(super) fn line_sentences(panels: &[Panel]) -> String {
 
 /// From 0 to a little above the largest value that is drawn.
 pub(super) fn from_zero(panel: &Panel) -> Option<(f64, f64)> {
-    let largest = panel
-        .lines
-        .iter()
-        .flat_map(|line| &line.points)
-        .filter(|p| panel.drawable(**p))
-        .map(|p| p.1)
-        .fold(0.0, f64::max);
+    let largest = panel.drawn().map(|p| p.1).fold(0.0, f64::max);
     (largest > 0.0).then_some((0.0, largest * 1.08))
 }
 

@@ -310,7 +310,7 @@ impl Panel {
         let lines = self.lines.iter().flat_map(|line| &line.points);
         let areas = self.fills.iter().flat_map(|fill| fill.areas.iter().flatten());
         let points = self.points.iter().flat_map(|points| &points.at);
-        lines.chain(areas).chain(points).filter(|p| self.drawable(**p))
+        lines.chain(areas).chain(points).filter(|(x, y)| self.x.holds(*x) && self.y.holds(*y))
     }
 
     /// Ends of the horizontal axis.
@@ -321,10 +321,5 @@ impl Panel {
     /// Ends of the vertical axis.
     pub(super) fn y_range(&self) -> Range<f64> {
         self.y.around(self.drawn().map(|p| p.1), 0.06)
-    }
-
-    /// Whether the axes know a place for it.
-    pub(super) fn drawable(&self, (x, y): (f64, f64)) -> bool {
-        self.x.holds(x) && self.y.holds(y)
     }
 }
