@@ -27,7 +27,9 @@ fn written(document: &ReportDocument, width: usize, has_captions: bool) -> Strin
     let mut out = String::new();
     for chapter in &document.chapters {
         out.extend(chapter.heading(Medium::Terminal).map(|words| heading(words, width)));
-        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width, has_captions)));
+        out.extend(
+            chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width, has_captions)),
+        );
     }
     out
 }

@@ -57,7 +57,7 @@ pub(crate) fn plain(value: f64, digits: usize) -> String {
 }
 
 /// An optional number with `digits` significant digits, or the dash.
-pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
+pub(crate) fn optional(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| MISSING.to_owned(), |value| significant(value, digits))
 }
 

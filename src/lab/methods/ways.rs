@@ -177,9 +177,6 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     (worked.answers.len() == drops.len()).then_some(worked)
 }
 
-/// What stands for an error that is no number or beyond all bounds: the way diverged.
-const DIVERGED: f64 = 1e9;
-
 /// What all classes together are called.
 pub const ALL_CLASSES: &str = "all";
 
@@ -254,13 +251,10 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
     }
 }
 
-/// Median and 95th percentile, each that of a drop; what is no number counts as diverged.
+/// Median and 95th percentile, each that of a drop; not a number where there is none.
 fn median_and_p95(mut errors: Vec<f64>) -> [f64; 2] {
-    for error in &mut errors {
-        *error = if error.is_nan() { DIVERGED } else { error.abs().min(DIVERGED) };
-    }
     errors.sort_by(f64::total_cmp);
-    let Some(last) = errors.len().checked_sub(1) else { return [DIVERGED; 2] };
+    let Some(last) = errors.len().checked_sub(1) else { return [f64::NAN; 2] };
     [errors[last / 2], errors[(95 * last).div_ceil(100)]]
 }
 

@@ -9,11 +9,8 @@ use crate::report::document::{
     TableShape, Tone, Words,
 };
 use crate::report::record;
-use crate::report::rounding::{optional_fixed, plain, significant};
+use crate::report::rounding::{optional, optional_fixed, plain, significant};
 use crate::report::text::Style;
-
-/// Errors from here on are words: the method diverged.
-const DIVERGED: f64 = 1e6;
 
 /// What is signed: outcome, picture, map, limits.
 pub(super) fn document(trial: &Trial) -> ReportDocument {
@@ -192,12 +189,12 @@ fn by_class(trial: &Trial) -> ReportTable {
             let is_so = |q: &&TrialPoint| {
                 q.family == row.family && q.class == row.class && q.method == way.method && q.cases > 0
             };
-            error_words(trial.points.iter().find(is_so).map(|q| q.p95_error))
+            optional(trial.points.iter().find(is_so).map(|q| q.p95_error), 2)
         };
         table = table.number(format!("{}, {} ms", way.method, significant(1e-6 * way.time_ns, 2)), error);
     }
     table
-        .number("promised", |row| error_words(row.promised))
+        .number("promised", |row| optional(row.promised, 2))
         .number("held", |row| optional_fixed(row.held.map(|held| 100.0 * held), 0))
         .number("none", |row| row.missing.to_string())
         .into()
@@ -232,13 +229,4 @@ fn limits(limits: &[TrialLimit]) -> ReportTable {
         .text("why", |limit| why(limit))
         .shape(TableShape::Items)
         .into()
-}
-
-/// A number, or that the method diverged.
-fn error_words(error: Option<f64>) -> String {
-    match error {
-        Some(error) if error.is_nan() || error >= DIVERGED => "diverges".to_owned(),
-        Some(error) => significant(error, 2),
-        None => optional_fixed(None, 0),
-    }
 }
