@@ -2,7 +2,7 @@
 
 use crate::data::{Analysis, Estimate, Severity, Verdict};
 use crate::lab::data::{
-    CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
+    CampaignRow, Damage, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
 };
 use crate::lab::drawn::DrawnDrop;
 use crate::report::text::json_word;
@@ -26,13 +26,6 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
     let first_contact_s = recording.first_contact_s;
     let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
     let result = analysis.map(|a| &a.result);
-    let choice = result.and_then(|r| r.reconstruction.as_ref());
-    let rungs = choice.into_iter().flat_map(|choice| &choice.candidates).map(|c| RungSaid {
-        rung: c.rung,
-        consistent: c.consistent,
-        speed: c.speed.map(Stated::from),
-        k: c.k.map(Stated::from),
-    });
     CampaignRow {
         scene,
         damage,
@@ -40,8 +33,7 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
         errors: codes(analysis, Severity::Error),
         warnings: codes(analysis, Severity::Warning),
         quantities: quantities(&truth, (first_contact_s, slap_down_s), analysis),
-        rung: choice.map(|choice| choice.rung),
-        rungs: rungs.collect(),
+        rung: result.and_then(|r| Some(r.reconstruction.as_ref()?.rung)),
         facts: SceneFacts {
             cask: drop.scene.cask.name,
             angle_deg: truth.angle_deg,

@@ -99,19 +99,6 @@ pub struct Scored {
     pub truth: Option<f64>,
 }
 
-/// What one rung of the reconstruction says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct RungSaid {
-    /// Which.
-    pub rung: ReconstructionRung,
-    /// Whether its residuals are within what noise and tolerances explain.
-    pub consistent: bool,
-    /// Slap-down speed by it, m/s.
-    pub speed: Option<Stated>,
-    /// k by it.
-    pub k: Option<Stated>,
-}
-
 /// What scenes are classed by: the rest of a scene comes again by its number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
@@ -142,8 +129,6 @@ pub struct CampaignRow {
     pub quantities: BTreeMap<String, Scored>,
     /// The rung of the reconstruction taken.
     pub rung: Option<ReconstructionRung>,
-    /// What each rung says.
-    pub rungs: Vec<RungSaid>,
     /// What it is classed by.
     pub facts: SceneFacts,
 }
