@@ -284,9 +284,15 @@ fn is_json(name: &str) -> bool {
 }
 
 fn is_own_json(path: &Path) -> bool {
+    let head = head(path, SCHEMA_MARK_WITHIN).unwrap_or_default();
+    String::from_utf8_lossy(&head).contains(SCHEMA_MARK)
+}
+
+/// The first so many bytes of a file.
+pub fn head(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut head = Vec::new();
-    let read = opened(path).and_then(|file| file.take(SCHEMA_MARK_WITHIN).read_to_end(&mut head));
-    read.is_ok() && String::from_utf8_lossy(&head).contains(SCHEMA_MARK)
+    opened(path)?.take(most).read_to_end(&mut head)?;
+    Ok(head)
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! Paths, folders and patterns to the recordings that they stand for.
 
-use super::super::output::note;
+use super::super::output::{head, note};
 use crate::ingest;
 use crate::report::Batch;
 use miette::{ensure, miette};
 use std::collections::HashSet;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
@@ -91,9 +90,7 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
 
 /// Whether a file is a manifest or the table of an earlier campaign; a recording may have its name.
 fn is_summary(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
-    read.is_ok() && (Batch::begins(&head) || begins_manifest(&head))
+    head(path, 256).is_ok_and(|head| Batch::begins(&head) || begins_manifest(&head))
 }
 
 /// Whether a file that begins so has the heads of a manifest.

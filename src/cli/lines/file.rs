@@ -1,7 +1,7 @@
 //! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is
 //! done stays done.
 
-use super::super::output::{JsonTarget, replace_by};
+use super::super::output::{JsonTarget, head, replace_by};
 use crate::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr, ensure, miette};
 use serde_json::Value;
@@ -166,9 +166,7 @@ const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
 
 /// Whether a file holds such lines; the first may have been cut short.
 pub fn is_own(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = opened(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
-    read.is_ok() && MARK.starts_with(&head)
+    head(path, MARK.len() as u64).is_ok_and(|head| MARK.starts_with(&head))
 }
 
 /// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program

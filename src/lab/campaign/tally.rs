@@ -112,12 +112,12 @@ pub(super) struct SceneGroup {
 }
 
 impl SceneGroup {
-    /// Counts a scene, and of its quantities so many.
-    fn add(&mut self, row: &CampaignRow, quantities: usize) {
+    /// Counts a scene and its quantities.
+    fn add(&mut self, row: &CampaignRow) {
         let (outcome, has_numbers) = (outcome(row), row.has_numbers());
         let words = SceneWords { verdict: row.verdict, outcome, has_numbers };
         *self.counts.entry(words).or_default() += 1;
-        for (name, _, relative, _) in QUANTITIES.into_iter().take(quantities) {
+        for (name, _, relative, _) in QUANTITIES {
             self.spreads.entry(name).or_default().add(row.stated(name).zip(row.truth(name)), relative);
         }
     }
@@ -145,9 +145,6 @@ impl SceneGroup {
 
 /// Scenes that passed and are wrong are listed up to this many.
 const MOST_LISTED: usize = 1000;
-
-/// Quantities that are counted of all classes; of undamaged drops all ten are.
-const USUAL_QUANTITIES: usize = 5;
 
 /// A table that has a row for each of several classes of scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -248,9 +245,7 @@ impl Tally {
     /// Counts a scene.
     pub fn add(&mut self, row: &CampaignRow) {
         for class in classes(row) {
-            let is_whole = class.table == ClassTable::Undamaged;
-            let quantities = if is_whole { QUANTITIES.len() } else { USUAL_QUANTITIES };
-            self.groups.entry(class).or_default().add(row, quantities);
+            self.groups.entry(class).or_default().add(row);
         }
         if outcome(row) == SceneOutcome::Missed {
             self.missed_count += 1;

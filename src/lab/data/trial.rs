@@ -38,9 +38,9 @@ pub struct TrialPoint {
     /// Median time from file to answer, ns.
     pub time_ns: f64,
     /// Cases the error is taken over.
-    pub cases: u32,
+    pub cases: usize,
     /// Cases besides in which the method gives no number.
-    pub missing: u32,
+    pub missing: usize,
     /// From where on a difference matters, in `error_unit`.
     pub matters: f64,
     /// The median half-width that the method states of itself, in `error_unit`.

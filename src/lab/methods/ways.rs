@@ -233,7 +233,6 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
     let mut taken_ns: Vec<f64> = own.iter().map(|i| way.times_ns[*i]).collect();
     taken_ns.sort_by(f64::total_cmp);
     let (unit, matters) = NEEDED[quantity];
-    let counted = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
     TrialPoint {
         family: WAYS[quantity].to_owned(),
         method: way.name.to_owned(),
@@ -243,8 +242,8 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
         p95_error,
         error_unit: unit.to_owned(),
         time_ns: taken_ns[(taken_ns.len() - 1) / 2],
-        cases: counted(cases),
-        missing: counted(own.len() - cases),
+        cases,
+        missing: own.len() - cases,
         matters,
         promised,
         held: promised.map(|_| as_f64(held) / as_f64(cases)),

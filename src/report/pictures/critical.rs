@@ -20,8 +20,7 @@ struct CriticalRow<'a> {
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let rows = rows(study, &look);
-    let is_empty = rows.is_empty() || angle_axis(&study.request).range.is_none();
-    let panel = (!is_empty).then(|| panel(study, &look, &rows));
+    let panel = angle_axis(&study.request).range.map(|_| panel(study, &look, &rows));
     Plate::new(name, "Critical angles", caption(study, &look, &rows))
         .or(NO_SLAP_DOWN)
         .picture(panel.as_slice())

@@ -172,8 +172,7 @@ fn choice(trial: &Trial) -> [String; 2] {
 
 /// The 95th percentile of each way on each class, of speed and of k; how many intervals hold; times.
 fn by_class(trial: &Trial) -> ReportTable {
-    let said = |p: &&TrialPoint| WAYS[..2].contains(&&p.family[..]) && p.is_default;
-    let rows: Vec<&TrialPoint> = trial.points.iter().filter(said).collect();
+    let rows: Vec<&TrialPoint> = trial.points.iter().filter(|p| p.is_default).collect();
     let mut table = ReportTable::of(&rows)
         .class("many")
         .caption(
