@@ -110,20 +110,3 @@ fn tabled(
     }
     Ok(tables)
 }
-
-/// The words for kinds in one order and each once, so that shards of the same campaign say the same.
-pub fn words(mut kinds: Vec<String>) -> Vec<String> {
-    kinds.sort();
-    kinds.dedup();
-    kinds
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn kinds_are_said_in_one_order() {
-        assert_eq!(words(["skew", "hum", "skew"].map(str::to_owned).into()), ["hum", "skew"]);
-    }
-}

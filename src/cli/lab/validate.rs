@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, out, Some(scenes)) => {
-            let kinds = campaign::words(arguments.kinds.clone());
+            let kinds = arguments.kinds.iter().cloned().collect();
             let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
             campaign::run(&request, &arguments.parts, out.as_deref())
         }

@@ -52,7 +52,7 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
 /// The scenes of a campaign in their order, undamaged ones first: those of a kind are counted through all
 /// kinds, those not asked for left out.
 pub fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
-    let has = |word: &str| request.kinds.iter().any(|own| own == word);
+    let has = |word: &str| request.kinds.contains(word);
     let [all, undamaged, sound] = WORDS.map(has);
     let wanted: Vec<bool> = kinds().map(|kind| all || has(kind.name) || sound && kind.is_sound()).collect();
     let is_wanted = |number: &u32| wanted[*number as usize % wanted.len()];
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn a_rate_sensor_tells_turning_that_is_not_stated() {
         let request =
-            CampaignRequest { scenes: 12, seed: 3, kinds: vec!["turning_unstated".into()], exact: false };
+            CampaignRequest { scenes: 12, seed: 3, kinds: ["turning_unstated".into()].into(), exact: false };
         let off = |row: &CampaignRow| {
             let off = |name| row.quantities.get(name).and_then(half_widths_off).map(f64::abs);
             off("k").zip(off("speed")).map(|(k, speed)| k.max(speed))

@@ -2,7 +2,7 @@
 
 use crate::data::{Estimate, ReconstructionRung, Verdict, number_or_null};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Which scene of a campaign: with its seed it names the same drop for ever.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -55,8 +55,9 @@ pub struct CampaignRequest {
     pub scenes: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Kinds by name, or words for several: "all", "undamaged", "sound".
-    pub kinds: Vec<String>,
+    /// Kinds by name, or words for several: "all", "undamaged", "sound"; in one order and each once, so that
+    /// shards of the same campaign say the same.
+    pub kinds: BTreeSet<String>,
     /// Whether what is stated is exactly true.
     pub exact: bool,
 }
@@ -161,6 +162,13 @@ mod tests {
         for word in ["", "17", "Ux", "ü3", "D-1"] {
             assert!(word.parse::<SceneNumber>().is_err(), "{word}");
         }
+    }
+
+    #[test]
+    fn kinds_are_said_in_one_order() {
+        let kinds = ["skew", "hum", "skew"].map(str::to_owned).into();
+        let text = serde_json::to_string(&CampaignRequest { scenes: 1, seed: 1, kinds, exact: false });
+        assert!(text.expect("JSON").contains("[\"hum\",\"skew\"]"));
     }
 
     #[test]

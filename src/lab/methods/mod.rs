@@ -27,7 +27,7 @@ pub fn trial(
     let drops = CampaignRequest {
         scenes: request.either(100, 600),
         seed: request.seed,
-        kinds: vec!["undamaged".to_owned()],
+        kinds: ["undamaged".to_owned()].into(),
         exact: false,
     };
     let campaign = campaign::run(&drops, &|share| progress((2.0 + share) / 3.0));
