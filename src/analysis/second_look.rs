@@ -61,7 +61,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     let is_doubted = !has_numbers || !closes(&found) || result.quality.iter().any(is_off_line);
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let spare: Vec<&str> = across.map(|c| c.name.as_str()).collect();
-    // A flight too short for its modes contradicts nothing, and is fitted by fewer where a channel lacks.
+    // A flight too short for its modes contradicts nothing; without a channel fewer modes fit it.
     let is_short = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::Unresolved { .. }));
     let is_doubted = is_doubted && !result.quality.iter().any(is_short);
     if !is_doubted || spare.len() < 3 || is_too_large(recording) {
