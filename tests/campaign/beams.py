@@ -5,6 +5,9 @@ code with `synth` and no formula with the analysis. Python 3.11, with h5py, nump
     python3 tests/campaign/beams.py ../beams --scenes 400 --seed 3000
     dropcheck validate --quick --reference ../beams
 
+With `--faults`, one channel of each drop has a fault of its measuring chain: limited, slewing, overloaded, compressed,
+broken or torn.
+
 A drop is left out where the first end touches again, still stands on the target as the second one strikes, or has left
 it for less than 8 ms, and where the cask has turned by 60 degrees beyond the horizontal. About three in five remain.
 """
@@ -243,7 +246,61 @@ def simulate(drop):
         "first_contact_s": first[0], "separation_s": left[0], "slap_down_s": struck[0], "cog_m": centre, "inertia": inertia,
     }
     chain = butter(drop["poles"], drop["cutoff"] * drop["rate"], fs=1 / step, output="sos")
-    return (truth, sosfilt(chain, out, axis=1)[:, ::over]), ""
+    fault = drop.get("fault")
+    if fault and fault["before_filter"]:
+        out[fault["channel"]] = spoiled(out[fault["channel"]], fault, step, truth)
+    forces = sosfilt(chain, out, axis=1)[:, ::over]
+    if fault and not fault["before_filter"]:
+        forces[fault["channel"]] = spoiled(forces[fault["channel"]], fault, 1 / drop["rate"], truth)
+    return (truth, forces), ""
+
+
+def draw_fault(rng):
+    """Which channel, which kind and how much; the size is logarithmic, as small ones are harder to see."""
+    kind = str(rng.choice(["limited", "slewing", "overloaded", "compressed", "broken", "torn"]))
+    low, high = {
+        "limited": (0.5, 0.95), "slewing": (0.2, 0.8), "overloaded": (0.6, 0.95), "compressed": (0.01, 0.2),
+        "broken": (1e-3, 20e-3), "torn": (0, 1),
+    }[kind]
+    return {
+        "kind": kind, "channel": int(rng.integers(0, 2)), "before_filter": bool(rng.uniform() < 0.5),
+        "size": math.exp(rng.uniform(math.log(low), math.log(high))) if low else rng.uniform(low, high),
+        "when": rng.uniform(), "level": float(rng.choice([0, 1])),
+        "recovery_s": math.exp(rng.uniform(math.log(2e-3), math.log(50e-3))), "droop": rng.uniform(0, 0.1),
+    }
+
+
+def spoiled(force, fault, step, truth):
+    """What the chain makes of one channel's force."""
+    size, peak, kind = fault["size"], np.abs(force).max(), fault["kind"]
+    if kind == "limited":
+        return np.clip(force, -size * peak, size * peak)
+    if kind == "compressed":
+        return force / (1 + size * np.abs(force) / peak)
+    if kind == "overloaded":
+        knee = size * peak
+        over = np.maximum(np.abs(force) - knee, 0)
+        soft = np.sign(force) * (np.minimum(np.abs(force), knee) + (peak - knee) * 0.3 * np.tanh(over / (0.3 * peak)))
+        decay = math.exp(-step / fault["recovery_s"])
+        return soft - lfilter([1 - decay], [1, -decay], np.sign(force) * over) * 10 * fault["droop"]
+    if kind == "slewing":
+        most = size * np.abs(np.diff(force)).max()
+        return slewed(force, most)
+    first, last = truth["first_contact_s"] - 5e-3, truth["slap_down_s"] + 5e-3
+    begin = int((first + fault["when"] * (last - first)) / step)
+    end = force.size if kind == "torn" else begin + int(size / step)
+    force = force.copy()
+    force[max(0, begin):end] = fault["level"] * 1.05 * peak
+    return force
+
+
+@njit(cache=True)
+def slewed(force, most):
+    """The force as an amplifier follows it that moves by at most so much a step."""
+    out = force.copy()
+    for i in range(1, out.size):
+        out[i] = out[i - 1] + min(most, max(-most, force[i] - out[i - 1]))
+    return out
 
 
 def write(folder, name, drop, truth, forces, rng):
@@ -290,12 +347,15 @@ def main():
     arguments.add_argument("folder", type=Path)
     arguments.add_argument("--scenes", type=int, default=100, help="drops that are drawn")
     arguments.add_argument("--seed", type=int, default=1, help="of the first; each next one has the next")
+    arguments.add_argument("--faults", action="store_true", help="one channel's chain has a fault")
     given = arguments.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
     tables, left_out = [], {}
     for seed in range(given.seed, given.seed + given.scenes):
         rng = np.random.default_rng(seed)
         drop = draw(rng)
+        if given.faults:
+            drop["fault"] = draw_fault(rng)
         found, why = simulate(drop)
         if why:
             left_out[why] = left_out.get(why, 0) + 1
