@@ -343,6 +343,18 @@ mod tests {
     }
 
     #[test]
+    fn a_limit_that_a_filter_rings_beyond_elsewhere_is_one() {
+        // A level of 3000 with noise behind it; a short blow later rings beyond it by a tenth.
+        let with_blow = |level: f64| {
+            let mut force = limited(0.0, 1.0);
+            force.iter_mut().for_each(|f| *f = f.min(level));
+            force.extend((0..40).map(|i| 3300.0 * (f64::from(i) / 40.0 * std::f64::consts::PI).sin()));
+            clipped(&channel(None), &force, 0.0, 1.0, 100).len()
+        };
+        assert_eq!((with_blow(3000.0), with_blow(2000.0)), (1, 0));
+    }
+
+    #[test]
     fn what_reads_beyond_its_full_scale_says_so() {
         let found = |full_scale: f64| beyond_full_scale(&channel(Some(full_scale)), &pulse(3900.0), 5.0);
         assert!(found(300.0).is_some() && found(390.0).is_none() && found(500.0).is_none());
