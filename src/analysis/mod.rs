@@ -41,8 +41,8 @@ pub use recorders::{complete, read, read_within};
 pub use setup::sticking;
 
 use crate::data::{
-    Analysis, BENDING_WAVE_M_S, CaskFile, ChannelFinding, Drop, End, Events, Finding, FindingKind, Recording,
-    planar, transverse,
+    Analysis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, Drop, End, Events, Finding, FindingKind,
+    Recording, planar, transverse,
 };
 use crate::{ingest, judge, motion};
 use comparison::Measured;
@@ -50,6 +50,7 @@ use end_drop::EndImpact;
 use flight::FlightResult;
 use flight_search::Patience;
 use impact::{Impact, Seek, Sought};
+use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// From a recording and a cask file to everything that can be said of the drop.
@@ -58,6 +59,7 @@ use std::borrow::Cow;
 /// the rest.
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
+    let recording = &*without_torn_ends(recording);
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that
     // two threads share.
     let mut found = measure(recording, cask_file);
@@ -83,11 +85,35 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
+    let recording = &*without_torn_ends(recording);
     rayon::scope(|_| {
         let cask_file = &with_rotation(recording, cask_file);
         let whole = analyse_once(recording, cask_file, Patience::EachBeginning);
         second_look::leave_one_out(recording, cask_file, whole)
     })
+}
+
+/// The recording without what channels show that stand at their stop to the end: that is no force, and larger
+/// than the impact. A channel beside others of its kind is left out, of any other what comes before remains.
+fn without_torn_ends(recording: &Recording) -> Cow<'_, Recording> {
+    let all = &recording.channels;
+    let torn: Vec<_> = all.par_iter().map(|channel| judge::judge_torn(channel, all)).collect();
+    if torn.iter().all(Option::is_none) {
+        return Cow::Borrowed(recording);
+    }
+    let mut cut = recording.clone();
+    let before = |(mut channel, torn): (Channel, Option<(usize, Finding)>)| {
+        let Some((from, finding)) = torn else { return Some(channel) };
+        let is_left_out = matches!(
+            finding.what,
+            FindingKind::Channel(ChannelFinding::AtStop { is_beside_others: true, .. })
+        );
+        cut.issues.push(finding);
+        channel.samples.truncate(from);
+        (!is_left_out).then_some(channel)
+    };
+    cut.channels = std::mem::take(&mut cut.channels).into_iter().zip(torn).filter_map(before).collect();
+    Cow::Owned(cut)
 }
 
 /// The keys that say how the cask turns before the contact.

@@ -103,7 +103,9 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     let (_, name, mut better) = tried.swap_remove(0);
     better.openings.clone_from(&found.openings);
     // A limit or a broken cable of the channel that is left out is why it disagrees.
-    let is_cause = |f: &&Finding| matches!(f.effect, Effect::VelocityStep | Effect::Disturbance);
+    let is_cause = |f: &&Finding| {
+        matches!(f.effect, Effect::VelocityStep | Effect::Disturbance) || f.code == IssueCode::Electrical
+    };
     let causes = found.result.quality.iter().filter(|f| f.channel.as_ref() == Some(&name)).filter(is_cause);
     let as_warning = |f: &Finding| {
         let severity = f.severity.min(Severity::Warning);

@@ -45,7 +45,7 @@ pub use result::{
 pub use rigid::{SensorPlace, judge_rigid, places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};
-pub use silent::judge_silent;
+pub use silent::{judge_silent, judge_torn};
 pub use skew::judge_skew;
 pub use taps::judge_taps;
 

@@ -1,7 +1,8 @@
-//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
+//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum; and
+//! to those that stand at their stop from some time to their end.
 
 use crate::data::{Axis, Channel, ChannelFinding, Finding, of_either};
-use crate::numerics::{reduce, robust};
+use crate::numerics::{as_count, reduce, robust};
 use rayon::prelude::*;
 
 /// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise
@@ -15,6 +16,34 @@ const SHARE: f64 = 1e-3;
 const STRETCHES: usize = 20;
 /// Samples of a stretch that its spread is taken from: known to 5 %.
 const SAMPLED: usize = 500;
+
+/// A channel ends at its stop where it has stood there for so long, s, and so many samples at the least …
+const AT_STOP_S: f64 = 0.01;
+const LEAST_AT_STOP: usize = 64;
+/// … within so many spreads of these samples, and this share of the level, …
+const WITHIN_SPREADS: f64 = 6.0;
+const WITHIN_SHARE: f64 = 1e-3;
+/// … and no reading is farther from 0 than the level by more than this share: rest after a drop is far below
+/// the impact.
+const BEYOND_STOP: f64 = 0.1;
+
+/// From which sample on a channel, one of `all`, stands at its stop to its end, and the finding that says so.
+pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
+    let count = channel.samples.len();
+    let last = count.checked_sub(LEAST_AT_STOP.max(as_count(AT_STOP_S * channel.sample_rate_hz)))?;
+    let end: Vec<f64> = (count - LEAST_AT_STOP..count).map(|i| channel.samples.get(i)).collect();
+    let (level, spread) = robust::centre_and_spread(&end);
+    let within = WITHIN_SPREADS * spread + WITHIN_SHARE * level.abs();
+    let stands = |i: &usize| (channel.samples.get(*i) - level).abs() <= within;
+    let from = (0..count).rev().take_while(stands).last().filter(|from| (1..=last).contains(from))?;
+    let [low, high] = channel.extremes()?.map(|extreme| extreme.value);
+    let is_stop = high.max(-low) < (1.0 + BEYOND_STOP) * level.abs() && level.abs() > SILENT * within;
+    let is_like = |o: &&Channel| (o.end, o.axis) == (channel.end, channel.axis) && o.name != channel.name;
+    let is_beside_others = all.iter().any(|other| is_like(&other));
+    let found = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
+    let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
+    is_stop.then(|| (from, found.on(&channel.name).between(from_s, to_s)))
+}
 
 /// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².
 struct Excursion {
@@ -110,6 +139,23 @@ mod tests {
         assert!(!takes_motion(Axis::Transverse, Axis::Transverse));
         assert!(!takes_motion(Axis::Transverse, Axis::Axial));
         assert!(takes_motion(Axis::Axial, Axis::Transverse));
+    }
+
+    #[test]
+    fn a_channel_that_stands_at_its_stop_to_the_end_is_torn() {
+        let torn = |level: f64, until: u32| {
+            let reads = move |i: u32| {
+                if (6000..until).contains(&i) { level + example::noise(i, 5) } else { pulse(300.0)(i) }
+            };
+            let all = [channel("A1", pulse(300.0)), channel("A2", reads)];
+            judge_torn(&all[1], &all).map(|(from, _)| from)
+        };
+        assert_eq!(torn(-320.0, 20_000), Some(6000));
+        // A plateau that ends, rest after a drop, and a level below what the channel reads.
+        assert_eq!(
+            [(320.0, 19_000), (10.0, 20_000), (250.0, 20_000)].map(|(level, until)| torn(level, until)),
+            [None; 3]
+        );
     }
 
     #[test]

@@ -246,13 +246,18 @@ pub enum ChannelFinding {
          and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix \
          what was before with what came after, so k and the slap-down speed are not determined; fasten the \
          contents, or read the speed from the film", times_ms(after_s));
-    /// The channel jumps from one sample to the next, and no other changes then.
+    /// The channel jumps within a few samples, and no other does so then.
     Jumps { after_s: f64, size_m_s2: f64 } => (Code::Electrical, Warning, Motion),
-        ("jumps by {:+.0} g from one sample to the next, {:.1} ms after first contact, and no other channel \
-         changes then: no force does so, but a cable that breaks contact or the spike of a trigger; k and \
+        ("jumps by {:+.0} g within a few samples, {:.1} ms after first contact, and no other channel does \
+         so then: no force does that, but a cable that breaks contact or the spike of a trigger; k and \
          the slap-down speed are not determined; fasten cable and connector, and keep the trigger's line \
          apart",
          size_m_s2 / G, 1e3 * after_s);
+    /// The channel stands at one level from a time to its end, and nothing it reads is beyond that.
+    AtStop { level_m_s2: f64, is_beside_others: bool } => (Code::Electrical, Warning, Disturbance),
+        ("stands at {:+.0} g, as far as it ever reads, from there to its end, with nothing but noise on it: a \
+         cable that is torn, or an amplifier at its stop; {} left out; fasten cable and connector",
+         level_m_s2 / G, if *is_beside_others { "the channel is" } else { "those samples are" });
     /// The channel jumps in the flight and no other does, with the numbers of `Struck`.
     JumpsAlone { after_s: Vec<f64>, far: f64 } => (Code::Electrical, Warning, Motion),
         ("jumps in the flight, at {} ms after first contact, by {far:.0} times what ringing and noise leave, \
