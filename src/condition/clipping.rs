@@ -1,6 +1,6 @@
 //! Samples to the runs that stand at a limit of the measuring chain.
 
-use super::levels::Gauge;
+use super::levels::{Gauge, RINGS};
 use super::runs::runs;
 use crate::data::{Axis, Channel, ChannelFinding, Finding, LEAST_FLANK, Span};
 use crate::numerics::{as_f64, reduce, robust};
@@ -90,7 +90,7 @@ pub(super) fn clipped(
 /// rounded.
 fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();
+    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits_of(RINGS);
     flanks.retain(|flank| {
         let (from, to) = (force[flank.from], force[flank.to]);
         let is_long = flank.to - flank.from >= LEAST_FLANK && (from - to).abs() > FLANK_SHARE * peak;

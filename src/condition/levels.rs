@@ -15,11 +15,20 @@ const LEAST_PEAK: f64 = 28.0;
 /// A limit is level within this share of it, beside the noise: an amplifier that recovers drifts, and a
 /// filter behind the limit rings, by up to 2 % in 100 simulated overloads.
 const LEVEL_SHARE: f64 = 0.005;
-/// No sample of the channel is beyond a limit by more than the first share, which such ringing reaches.
-/// Amplifiers limit both signs alike: a level below the second share of the peak is none of their limits.
-/// Behind an impact much shorter than the recorder's filter ringing reaches farther: there the level of the
-/// peak's own sign counts.
-const BEYOND_AND_SYMMETRY: [(f64, f64); 2] = [(0.03, 0.6), (0.15, 0.9)];
+/// What tells a limit of a channel from what it reads elsewhere.
+#[derive(Clone, Copy)]
+pub(super) struct Extremity {
+    /// No sample is beyond the limit by more than this share of it.
+    beyond: f64,
+    /// Amplifiers limit both signs alike: a level below this share of the peak is none of their limits.
+    symmetry: f64,
+}
+
+/// A filter behind the limit rings so far.
+pub(super) const RINGS: Extremity = Extremity { beyond: 0.03, symmetry: 0.6 };
+/// It does so where an impact elsewhere is much shorter than the filter: there the level of the peak's own
+/// sign counts.
+const RINGS_ELSEWHERE: Extremity = Extremity { beyond: 0.15, symmetry: 0.9 };
 /// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
 /// plain one is of the second.
 const FLATTEST: i32 = 4;
@@ -54,20 +63,19 @@ impl<'a> Gauge<'a> {
 
     /// The runs at a limit.
     pub fn limits(&self) -> Vec<Span> {
-        let found = BEYOND_AND_SYMMETRY.map(|(beyond, symmetry)| self.limits_within(beyond, symmetry));
+        let found = [RINGS, RINGS_ELSEWHERE].map(|extremity| self.limits_of(extremity));
         found.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
     }
 
-    /// The runs at a limit beyond which no sample is by more than a share of it, and which is no less than a
-    /// share of the peak.
-    fn limits_within(&self, beyond_share: f64, symmetry: f64) -> Vec<Span> {
+    /// The runs at a limit that is so far from what the channel reads elsewhere.
+    pub fn limits_of(&self, Extremity { beyond, symmetry }: Extremity) -> Vec<Span> {
         let mut found = Vec::new();
         let (low, high) = self.extremes;
         for (sign, extreme) in [(1.0, high), (-1.0, -low)] {
             if extreme < symmetry * self.peak || self.peak < LEAST_PEAK * self.noise {
                 continue;
             }
-            let beyond = (beyond_share * extreme).max(2.0 * NOISE_FACTOR * self.noise);
+            let beyond = (beyond * extreme).max(2.0 * NOISE_FACTOR * self.noise);
             let least = extreme - beyond - NOISE_FACTOR * self.noise;
             let within = NOISE_FACTOR * self.noise + LEVEL_SHARE * extreme;
             for near in runs(self.force, |f| sign * f >= least) {

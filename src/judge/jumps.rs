@@ -25,12 +25,13 @@ const FALLS: usize = 4;
 const SETTLED: f64 = 0.3;
 /// … is still so many samples after that, in which a recorder's filter rings …
 const RINGS: usize = 16;
-/// … and stays so for so long, s, and so many samples. None of 364 simulated sound beams does, and 79 of 115
+/// … and stays so for so long, s, and so many samples. None of 364 simulated sound beams does, and 76 of 115
 /// that break for 1 to 20 ms or for good.
 const STILL_S: f64 = 1e-3;
 const LEAST_STILL: usize = 16;
-/// It moved by so many standard deviations of its noise before, …
-const MOVED: f64 = 20.0;
+/// It moved by so many standard deviations of its noise before, and by this share of its peak, …
+const MOVED: f64 = 40.0;
+const MOVED_SHARE: f64 = 0.1;
 /// … and has so many of them at most when it is still, beside what as many samples scatter by.
 const STILL: f64 = 1.25;
 /// Looked at from so long before the first contact, and until so long before the slap-down, s.
@@ -98,7 +99,7 @@ fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
     let (force, noise) = (&signal.force_m_s2, signal.noise_m_s2);
     let count = LEAST_STILL.max(as_count(STILL_S * signal.sample_rate_hz));
     let still = force.get(i + RINGS..i + RINGS + count)?;
-    let is_near = |f: &f64| (f - still[0]).abs() < MOVED / 2.0 * noise;
+    let is_near = |f: &f64| (f - still[0]).abs() < MOVED / 4.0 * noise;
     if (force[i] - still[0]).abs() < least || !still.iter().all(is_near) {
         return None;
     }
@@ -116,7 +117,7 @@ fn first_stop(
     mut within: Range<usize>,
     alone: impl Fn(f64) -> bool,
 ) -> Option<(usize, f64)> {
-    let least = (MOVED * signal.noise_m_s2).max(SHARE_OF_PEAK * reduce::peak(&signal.force_m_s2));
+    let least = (MOVED * signal.noise_m_s2).max(MOVED_SHARE * reduce::peak(&signal.force_m_s2));
     within.find_map(|i| {
         let change = stop_m_s2(signal, least, i).filter(|_| alone(signal.time_s(i)))?;
         Some((i, change))
