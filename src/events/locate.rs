@@ -33,6 +33,9 @@ const WALKS: f64 = 4.0;
 const PARTS: usize = 8;
 const LEAST_PART: usize = 20;
 
+/// Noise is as large in all of them within this factor.
+const STEADY: f64 = 2.0;
+
 /// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half
 /// of it …
 const LAST_SHARE: f64 = 0.3;
@@ -66,8 +69,9 @@ struct Changing<'a> {
     blocks: usize,
     /// By how much the velocity changes over the width that ends with each block, m/s.
     changes_m_s: Vec<f64>,
-    /// What white noise alone changes it by over a width, m/s.
+    /// What white noise alone changes it by over a width, m/s; whether that is as much at all times.
     noise_m_s: f64,
+    is_steady: bool,
 }
 
 /// Noise in which an impact is not found.
@@ -111,12 +115,15 @@ impl<'a> Changes<'a> {
         Some(struck.event_at(crossing))
     }
 
-    /// The noise that would pass for the impact which [`Changes::locate`] seeks.
+    /// The noise that would pass for the impact which [`Changes::locate`] seeks; ringing of a body that a
+    /// record begins with is none.
     pub fn hiding(&self, least_step_m_s: f64) -> Option<Hiding> {
         let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
         let noise_m_s = struck.noise_m_s;
+        let begins = self.locate(least_step_m_s).is_some_and(|e| e.near_s < struck.channel.start_s);
+        let is_noise = struck.is_steady || !begins;
         let hiding = || Hiding { channel: struck.channel.name.clone(), noise_m_s };
-        (WALKS * noise_m_s > struck.least_m_s(least_step_m_s)).then(hiding)
+        (is_noise && WALKS * noise_m_s > struck.least_m_s(least_step_m_s)).then(hiding)
     }
 
     /// The channel of the second end that is struck while the first end still falls, and by how much sooner,
@@ -205,10 +212,12 @@ impl<'a> Changing<'a> {
         // Neighbours differ by √2 of the noise; the calmest part of the record shows no ringing.
         let apart: Vec<f64> = means.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let parts = apart.chunks((apart.len() / PARTS).max(LEAST_PART));
-        let spreads = parts.filter(|part| part.len() >= LEAST_PART).map(robust::spread);
-        let noise_m_s2 = spreads.reduce(f64::min).unwrap_or(0.0) / SQRT_2;
+        let spreads: Vec<f64> = parts.filter(|part| part.len() >= LEAST_PART).map(robust::spread).collect();
+        let least = spreads.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let is_steady = reduce::peak(&spreads) < STEADY * least;
+        let noise_m_s2 = least / SQRT_2;
         let noise_m_s = noise_m_s2 * block_s * as_f64(blocks).sqrt();
-        Some(Self { channel, block_s, blocks, changes_m_s, noise_m_s })
+        Some(Self { channel, block_s, blocks, changes_m_s, noise_m_s, is_steady })
     }
 
     /// From which change on it is the first impact's, m/s.

@@ -259,9 +259,13 @@ fn what_was_seen(least_m_s: f64, without_rise: Option<CoarseEvent>) -> String {
         return format!("no transverse channel changes its velocity by {least_m_s:.1} m/s within 25 ms");
     };
     let step_m_s = velocity_step_m_s.abs();
+    let since = if near_s < 0.0 {
+        "from its first sample on, as where a recording begins in the impact".into()
+    } else {
+        format!("at {near_s:.3} s")
+    };
     format!(
-        "the velocity changes by {step_m_s:.1} m/s within 25 ms at {near_s:.3} s, but no rise of the force \
-         begins that"
+        "the velocity changes by {step_m_s:.1} m/s within 25 ms {since}, but no rise of the force begins that"
     )
 }
 
