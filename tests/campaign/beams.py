@@ -148,6 +148,7 @@ def fly(step, steps, body, omega, zeta, corner_w, corner_b, sensor_w, sensor_b, 
             axial += off * ((spin + bd) ** 2 * sine - (turning + bdd) * cosine)
             shear -= off * ((spin + bd) ** 2 * cosine + (turning + bdd) * sine)
             out[j, i] = shear * cosine - axial * sine if sensors[j, 2] == 0 else axial * cosine + shear * sine
+    log[3, 3:] = deepest
 
 
 def draw(rng):
@@ -244,6 +245,7 @@ def simulate(drop):
     truth = {
         "k": k, "speed": float(np.hypot(*corner(struck, length))), "omega": -left[3], "v0": -corner(first, 0)[1],
         "first_contact_s": first[0], "separation_s": left[0], "slap_down_s": struck[0], "cog_m": centre, "inertia": inertia,
+        "crush_m": list(log[3, 3:]),
     }
     chain = butter(drop["poles"], drop["cutoff"] * drop["rate"], fs=1 / step, output="sos")
     fault = drop.get("fault")
