@@ -73,8 +73,8 @@ pub mod stages {
     pub use crate::events::Changes;
     pub use crate::fit::{FitData, ladder};
     pub use crate::motion::vector_pulses;
-    pub use crate::motion::{Integrated, Window, filtered, fit_flights, outcome, pulses, reconstruct};
-    pub use crate::numerics::filter::ZeroPhaseLowPass;
+    pub use crate::motion::{Integrated, Window, filter, fit_flights, outcome, pulses, reconstruct};
+    pub use crate::numerics::filter::LowPass;
     pub use crate::numerics::shock_response::{ShockResponse, shock_response};
     pub use crate::numerics::spectrum::magnitude;
 }

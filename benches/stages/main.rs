@@ -49,7 +49,7 @@ impl Middle {
         let recording = read(&folder);
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
-        let event = stages::Changes::of(&recording.channels)
+        let event = stages::Changes::new(&recording.channels)
             .locate(cask_file.drop.transverse_velocity_m_s())
             .expect("an impact");
         let (signals, _) = stages::condition(
@@ -65,7 +65,7 @@ impl Middle {
     }
 
     fn integrated(&self) -> stages::Integrated<'_> {
-        stages::Integrated::over(&self.signals, self.events.first_contact_s().expect("a contact"))
+        stages::Integrated::new(&self.signals, self.events.first_contact_s().expect("a contact"))
     }
 
     fn window(&self) -> stages::Window {
@@ -92,7 +92,7 @@ fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
 fn locate(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher.counter(items(samples)).bench(|| {
-        stages::Changes::of(&m.recording.channels).locate(m.cask_file.drop.transverse_velocity_m_s())
+        stages::Changes::new(&m.recording.channels).locate(m.cask_file.drop.transverse_velocity_m_s())
     });
 }
 
@@ -108,7 +108,7 @@ fn condition_channels(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn low_pass(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(m.conditioned()).bench(|| stages::filtered(&m.signals, 299.0));
+    bencher.counter(m.conditioned()).bench(|| stages::filter(&m.signals, 299.0));
 }
 
 #[divan::bench(args = SIZES)]

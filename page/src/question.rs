@@ -116,8 +116,8 @@ impl Question {
     /// The page with every source as a curve.
     fn look(&self) -> Result<Vec<u8>, Report> {
         let listing = self.listing()?;
-        let drawn = report::drawn(&listing);
-        let mut page = report::FirstLook::of(&listing, &drawn);
+        let drawn = report::drawn_sources(&listing);
+        let mut page = report::FirstLook::new(&listing, &drawn);
         let add = |number, looked| page.add(number, looked);
         stages::look_at_each(self.recording(), &drawn, Limits::of_memory(MEMORY_BYTES), &|_| (), add);
         let mut files = page.files(&ingest::sha256(self.recording())?)?;
@@ -144,7 +144,7 @@ impl Question {
         let file = self.cask_file()?;
         let recording = self.read(&file)?;
         let mut analysis = dropcheck::analyze(&recording, &file);
-        analysis.result.program = Some(Program::this());
+        analysis.result.program = Some(Program::current());
         analysis.result.analysed.clone_from(&self.header.analysed);
         Ok(analysis)
     }

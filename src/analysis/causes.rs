@@ -6,9 +6,9 @@ use super::flight_search::Patience;
 use super::second_look::{Doubt, closes, is_too_large};
 use crate::data::shown::digits;
 use crate::data::{
-    Analysis, Axis, CLEARLY, CaskFile, Channel, ChannelFinding, Cure, DropFinding, DropResult, Effect, End,
-    Events, Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat, ResultPart,
-    STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
+    Analysis, Axis, CaskFile, Channel, ChannelFinding, Cure, DECISIVE_CHI_SQUARE, DropFinding, DropResult,
+    Effect, End, Events, Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat,
+    ResultPart, STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
 };
 use crate::numerics::robust;
 use crate::{events, judge};
@@ -41,7 +41,7 @@ const SAME_CLOCK_S: f64 = 1.5e-3;
 /// Places that differ by less are one, m.
 const SAME_M: f64 = 0.01;
 /// Openings that are tried: no more than so many, of a χ² up to this many times the least and three times
-/// [`CLEARLY`] more; and how often: a place 0.7 m off is found by the second time.
+/// [`DECISIVE_CHI_SQUARE`] more; and how often: a place 0.7 m off is found by the second time.
 const MOST_OPENED: usize = 5;
 const NEARLY: f64 = 2.0;
 const ROUNDS: usize = 2;
@@ -118,7 +118,7 @@ impl Contradicted<'_> {
     /// roughly as both ends show the drop.
     fn clocks_behind_s(&self, found: &Analysis) -> Vec<f64> {
         let roughly =
-            events::Changes::of(&self.recording.channels).behind_s(self.file.drop.impact_velocity_m_s);
+            events::Changes::new(&self.recording.channels).delays_s(self.file.drop.impact_velocity_m_s);
         let apart = roughly.into_iter().filter(|behind_s| behind_s.abs() > APART_S);
         let sooner_s = apart.flat_map(|behind_s| SEEM_LATER_S.map(|later_s| behind_s - later_s));
         let mut all_s: Vec<f64> = late_s(found, &self.far_names()).into_iter().chain(sooner_s).collect();
@@ -193,7 +193,7 @@ impl Contradicted<'_> {
         let possible = found.openings.iter().map(first).filter(|(_, slip)| is_possible(slip, self.file));
         let mut most = f64::INFINITY;
         let near = possible.take_while(|(chi_square, _)| {
-            most = most.min(NEARLY * chi_square + 3.0 * CLEARLY);
+            most = most.min(NEARLY * chi_square + 3.0 * DECISIVE_CHI_SQUARE);
             *chi_square < most
         });
         let channels = &self.recording.channels;
@@ -298,7 +298,7 @@ fn less_doubted((a, _): &(Doubt, Cure), (b, _): &(Doubt, Cure)) -> Ordering {
 /// Those that do as well as the best, in their order.
 fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
     tried.sort_by(less_doubted);
-    let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + CLEARLY, ..*doubt };
+    let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + DECISIVE_CHI_SQUARE, ..*doubt };
     let least = tried.first().map(|(doubt, _)| clearly(doubt));
     tried.retain(|(doubt, _)| least.is_some_and(|least| *doubt < least));
     tried.into_iter().map(|(_, cure)| cure).collect()
@@ -324,8 +324,9 @@ fn is_possible(slip: &Slip, file: &CaskFile) -> bool {
 fn is_cured(analysis: &Analysis, [most_u95_k, most_u95_speed]: [f64; 2]) -> bool {
     let result = &analysis.result;
     let (Some(k), Some(speed)) = (result.k, result.slap_down.speed) else { return false };
-    let is_doubted =
-        |f: &Finding| f.takes(ResultPart::Motion) || f.effect.doubts_cask_file() || f.code == IssueCode::Skew;
+    let is_doubted = |f: &Finding| {
+        f.removes(ResultPart::Motion) || f.effect.doubts_cask_file() || f.code == IssueCode::Skew
+    };
     let mut left = result.quality.iter().filter(|f| f.severity > Severity::Note);
     let is_usual = k.u95 < most_u95_k && speed.u95 < most_u95_speed * speed.value;
     is_usual && LIKELY_K.contains(&k.value) && closes(analysis) && !left.any(is_doubted)
@@ -345,7 +346,7 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     // No slip gives back what a clipped or dead channel lost.
     let is_lost = |f: &Finding| match f.what {
         FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
-        _ => f.takes(ResultPart::Channel),
+        _ => f.removes(ResultPart::Channel),
     };
     let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
     if errors.peek().is_some() {
@@ -357,7 +358,7 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
 
 /// Whether warnings take the motion and no channel, as where ends on two clocks seem to ring as no cask does.
 fn is_motion_taken(findings: &[Finding]) -> bool {
-    let warns = |part| findings.iter().any(move |f| f.severity > Severity::Note && f.takes(part));
+    let warns = |part| findings.iter().any(move |f| f.severity > Severity::Note && f.removes(part));
     warns(ResultPart::Motion) && !warns(ResultPart::Channel)
 }
 
@@ -468,7 +469,7 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
         "cask.cog_m" => mend(&mut cask.cog_m),
         "cask.inertia_kg_m2" => mend(&mut cask.inertia_kg_m2),
         "drop.impact_velocity_m_s" => mend(&mut drop.impact_velocity_m_s),
-        "drop.angular_velocity_deg_s" => *drop = drop.turned(cask, from - drop.angular_velocity_rad_s),
+        "drop.angular_velocity_deg_s" => *drop = drop.add_rotation(cask, from - drop.angular_velocity_rad_s),
         "offset_m" => own.for_each(|c| mend(&mut c.offset_m)),
         "position_m" => own.for_each(|c| mend(&mut c.position_m)),
         "scale" => own.for_each(|c| mend(&mut c.scale_m_s2)),

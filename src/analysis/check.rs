@@ -32,7 +32,7 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
         }
     }
     let across = rest.channels.iter().filter(|channel| has_blows && channel.axis == Axis::Transverse);
-    let felt: Vec<_> = across.map(|channel| (channel, events::blow_answers(channel))).collect();
+    let felt: Vec<_> = across.map(|channel| (channel, events::tap_answers(channel))).collect();
     let first_blow_s = felt.iter().flat_map(|(_, blows)| blows).map(|blow| blow.at_s - BEFORE_BLOW_S);
     let quiet_to_s = first_blow_s.fold(rest.end_s(), f64::min);
     let (signals, mut found) = quiet(rest, file, quiet_to_s);
@@ -81,8 +81,7 @@ fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding
     let mut found = Vec::new();
     for (channel, signal) in rest.channels.iter().zip(signals) {
         let end_s = signal.end_s();
-        let (first_contact, slap_down) =
-            (Some(At::exactly(end_s)), Some(At::exactly(end_s + needs.flight_s)));
+        let (first_contact, slap_down) = (Some(At::exact(end_s)), Some(At::exact(end_s + needs.flight_s)));
         let events = Events { first_contact, slap_down, ..Events::default() };
         found.extend(judge::judge_noise(signal, &events, None, file.drop.impact_velocity_m_s));
         let own = needs.channels.iter().find(|needs| needs.name == channel.name);

@@ -44,7 +44,7 @@ impl Measured {
         let contact_s = impact.contact.time_s;
         let is_told = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
         let is_step = |f: &Finding| is_told && f.effect == Effect::VelocityStep;
-        let takes_motion = |f: &Finding| f.takes(ResultPart::Motion) && !is_step(f);
+        let takes_motion = |f: &Finding| f.removes(ResultPart::Motion) && !is_step(f);
         if !findings.iter().any(|f| f.severity == Severity::Error && takes_motion(f)) {
             let of_motion = of_motion(flown, impact, events, file);
             findings.extend(judge::judge_pressed(flight, &of_motion));
@@ -52,7 +52,7 @@ impl Measured {
             let landed = flight.landing.as_ref().zip(events.slap_down_s());
             findings.extend(landed.map(|(landing, struck_s)| {
                 Finding::from(DropFinding::Landed { before_s: struck_s - landing.begin_s })
-                    .between(landing.begin_s, landing.begin_s)
+                    .span(landing.begin_s, landing.begin_s)
             }));
             // One blow is told once.
             if findings.iter().all(|f| f.code != IssueCode::SecondContact || f.effect == Effect::Nothing) {
@@ -90,7 +90,7 @@ fn of_motion(flown: &FlightResult, impact: &Impact, events: &Events, file: &Cask
     found.extend(judge::judge_separation(flight, left_s));
     let step = judge::judge_late_blow(flight, file.drop.impact_velocity_m_s, quantities.speed);
     let is_sharp = |at_s| judge::is_sharp(impact.recorded(), flight, events, &file.cask, at_s);
-    found.extend(step.filter(|step| step.takes(ResultPart::Motion) || step.from_s.is_none_or(is_sharp)));
+    found.extend(step.filter(|step| step.removes(ResultPart::Motion) || step.from_s.is_none_or(is_sharp)));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
         let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);
@@ -124,9 +124,9 @@ fn change_the_motion(
         from_s: flight.from_s,
         to_s: events.slap_down_s().map_or(flight.to_s, |struck_s| struck_s - motion::BEFORE_SLAP_DOWN_S),
         drift: flight.drift,
-        angular_velocity_rad_s: motion::turned_rad_s(signals, flight, drop.angular_velocity_rad_s, events_s),
+        angular_velocity_rad_s: motion::spin_rad_s(signals, flight, drop.angular_velocity_rad_s, events_s),
     };
-    let integrated = Integrated::over(signals, contact_s);
+    let integrated = Integrated::new(signals, contact_s);
     let step_m_s = |at_s| motion::step_m_s(flight, &integrated, &window, file.cask.cog_m, at_s);
     [shocks.from_s, shocks.to_s]
         .into_iter()

@@ -52,7 +52,7 @@ fn separation(signal: &Signal, contact_s: f64) -> Option<At> {
     let left_s = events::first_separation(signal, contact_s, signal.end_s())?;
     let by_force = At { time_s: left_s, u_s: 1.0 / signal.sample_rate_hz };
     let flight_s = left_s + BEHIND * (left_s - contact_s)..signal.end_s();
-    Some(events::by_impulse(signal, contact_s, by_force, &flight_s))
+    Some(events::refine_end(signal, contact_s, by_force, &flight_s))
 }
 
 /// By the mean of the axial channels that show the impact whole   (57)
@@ -92,7 +92,7 @@ fn gain(signal: &Signal, events: &Events, file: &CaskFile) -> Option<Estimate> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let from_s = contact_s - CLEAR_S;
     let until_s = left_s + FLIGHT_S.max(left_s - contact_s);
-    let is_cut = [&signal.clipped, &signal.gaps].iter().any(|spans| signal.touches(spans, from_s, until_s));
+    let is_cut = [&signal.clipped, &signal.gaps].iter().any(|spans| signal.overlaps(spans, from_s, until_s));
     let [from, left, to] = [from_s, left_s, until_s].map(|time_s| signal.index_from(time_s));
     let velocity_m_s = running_integral(signal.force_m_s2.get(from..to)?, 1.0 / signal.sample_rate_hz);
     let after_m_s = velocity_m_s.get(left.checked_sub(from)?..).filter(|after| !is_cut && after.len() > 1)?;
@@ -100,7 +100,7 @@ fn gain(signal: &Signal, events: &Events, file: &CaskFile) -> Option<Estimate> {
     let length_s = f64::midpoint(left_s, until_s) - from_s;
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
     let u_own_m_s = u_ringing_m_s.hypot(noise_m_s.max(signal.u_offset_m_s2 * length_s));
-    let u_scale_m_s = value_m_s * (file.calibration_of(&signal.name) / COVERAGE).hypot(signal.u_around);
+    let u_scale_m_s = value_m_s * (file.scale_half_width(&signal.name) / COVERAGE).hypot(signal.u_around);
     let u_strain_m_s = fit::u_base_strain_m_s(signal, events, &file.tolerances);
     let u_m_s = u_own_m_s.hypot(u_scale_m_s).hypot(u_strain_m_s);
     Some(Estimate::new(value_m_s, COVERAGE * u_m_s, "m/s"))

@@ -60,7 +60,8 @@ fn first_level(channel: &Channel, impact_s: Option<f64>) -> (f64, f64) {
 /// When the first large change of velocity begins, s.
 pub(super) fn impact_s(channel: &Channel) -> Option<f64> {
     // A share of the largest change, however small one an impact would make.
-    let event = events::Changes::along(std::slice::from_ref(channel), channel.axis).locate(f64::INFINITY)?;
+    let event =
+        events::Changes::along_axis(std::slice::from_ref(channel), channel.axis).locate(f64::INFINITY)?;
     let [from, near, to] = [-1.0, 0.0, 2.0].map(|n| channel.index_at(event.near_s + n * event.spread_s));
     let force_m_s2 = channel.force_m_s2(from, to);
     let before = force_m_s2[..near - from].iter().copied().filter(|f| f.is_finite());
@@ -73,7 +74,7 @@ pub(super) fn impact_s(channel: &Channel) -> Option<f64> {
 
 /// A fall with rest before it, whichever way the sensor is mounted, s.
 fn fall_s(channel: &mut Channel, impact_s: f64) -> Option<Range<f64>> {
-    let usual = Drop::of_height(USUAL_HEIGHT_M, 0.0);
+    let usual = Drop::from_height(USUAL_HEIGHT_M, 0.0);
     let mut turned = || {
         let fall = events::free_fall(channel, &usual, impact_s);
         channel.scale_m_s2 = -channel.scale_m_s2;

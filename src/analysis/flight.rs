@@ -7,8 +7,8 @@ use super::rotation;
 use super::second_impact::{Mirror, SecondImpact};
 use super::setup::{by_law, sticking};
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
-    Events, Finding, FlightFit, Motion, Opening, Quantities, ReconstructionChoice, Setup, Signal, Untested,
+    AssumedFriction, At, AxialSource, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
+    Events, Finding, FlightFit, MethodChoice, Motion, Opening, Quantities, Setup, Signal, Untested,
     transverse,
 };
 use crate::motion::{self, CornerRinging, Integrated};
@@ -25,7 +25,7 @@ pub(super) struct FlightResult {
     pub motion: Motion,
     pub quantities: Quantities,
     pub budget: Vec<Contribution>,
-    pub reconstruction: ReconstructionChoice,
+    pub reconstruction: MethodChoice,
     pub untested: Vec<Untested>,
     /// Where a closure is missed, the inputs of which another number would explain it.
     pub openings: Vec<Opening>,
@@ -52,7 +52,7 @@ pub(super) fn flight_result(
             return (events, None);
         }
     }
-    let integrated = Integrated::over(&impact.signals, impact.contact.time_s);
+    let integrated = Integrated::new(&impact.signals, impact.contact.time_s);
     let Some(flight) = fitted(impact, file, &integrated, &mut events, findings) else {
         return (events, None);
     };
@@ -78,7 +78,7 @@ fn fitted(
     let shows_slap_down = !is_made(End::Second);
     let contact_s = impact.contact.time_s;
     let At { time_s: left_s, u_s } = found.separation;
-    let is_cut = |s: &Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact_s, left_s));
+    let is_cut = |s: &Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.overlaps(spans, contact_s, left_s));
     // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its
     // length.
     let is_uncertain = is_made(End::First) || transverse(signals, End::First).is_some_and(is_cut);
@@ -101,7 +101,7 @@ fn fitted(
         let after_s = impact.sought_to_s - left_s;
         findings.push(judge::judge_no_slap_down(&file.cask, &file.drop, after_s, impact.is_record_end));
     }
-    let flight = found.flight.filter(|flight| impact.stand_in.is_none() || flight.is_told_apart());
+    let flight = found.flight.filter(|flight| impact.stand_in.is_none() || flight.can_rank_fits());
     let Some(mut flight) = flight else {
         findings.push(DropFinding::ShortFlight.into());
         return None;
@@ -124,7 +124,7 @@ fn moved(
     let (setup, friction) = contact(file, integrated, &flight, events);
     let contact_s = impact.contact.time_s;
     let events_s = [contact_s, events.separation_s().unwrap_or(contact_s)];
-    let turning_rad_s = motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s, events_s);
+    let turning_rad_s = motion::spin_rad_s(signals, &flight, file.drop.angular_velocity_rad_s, events_s);
     let cask = &file.cask;
     let measured = fit::FitData {
         signals,
@@ -154,23 +154,24 @@ fn moved(
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let up_to_crush = if second.is_none() { find(true) } else { None };
     let u_late_s = [End::First, End::Second].map(|end| {
-        let most_s = |s| motion::most_late_s(&flight, s, cask.length_m, taken.quantities.duration.value);
+        let most_s = |s| motion::largest_delay_s(&flight, s, cask.length_m, taken.quantities.duration.value);
         transverse(signals, end).map_or(0.0, most_s) / 3.0_f64.sqrt()
     });
     let tabulated = |second| impacts::tabulated(file, integrated, &taken, second, u_late_s);
     let tabulated = tabulated(second.as_ref().or(up_to_crush.as_ref()))
         .or_else(|| tabulated(None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
-    let untested = taken.untested(&|flight| {
+    let untested = taken.find_untested(&|flight| {
         let places = judge::places(&impact.signals);
         judge::judge_rigid(places, flight, &file.tolerances, &file.drop, events).is_some()
     });
-    let ringing =
-        events.slap_down.filter(|_| is_whole).map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at }).and_then(
-            |at| motion::ringing_of_second_end(integrated, moved, turning_rad_s, at, as_taken, cask),
-        );
+    let ringing = events
+        .slap_down
+        .filter(|_| is_whole)
+        .map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at })
+        .and_then(|at| motion::second_end_ringing(integrated, moved, turning_rad_s, at, as_taken, cask));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
-    let fit::RungTaken { quantities, budget, choice: reconstruction, openings, .. } = taken;
+    let fit::SelectedMethod { quantities, budget, choice: reconstruction, openings, .. } = taken;
     Some(FlightResult {
         flight,
         setup,
@@ -192,14 +193,14 @@ fn taken(
     integrated: &Integrated,
     measured: &fit::FitData,
     second: Option<&SecondImpact>,
-) -> Option<fit::RungTaken> {
+) -> Option<fit::SelectedMethod> {
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     let without = || fit::ladder(measured, &moved);
     let Some(second) = second else { return without() };
-    let contact = fit::SecondContact {
+    let contact = fit::SecondImpactData {
         inputs: &second.inputs(),
-        turned_beyond_rad_s: &|inputs: &_, first: &_| second.turned_beyond_rad_s(inputs, first),
-        turned_rad_s: second.turned_rad_s(),
+        excess_rotation_rad_s: &|inputs: &_, first: &_| second.turned_beyond_rad_s(inputs, first),
+        rotation_rad_s: second.turned_rad_s(),
     };
     fit::ladder(&fit::FitData { second: Some(contact), ..*measured }, &moved).or_else(without)
 }
@@ -222,7 +223,7 @@ pub(super) fn contact(
 ) -> (Setup, Option<AssumedFriction>) {
     let sticking = sticking(file);
     if integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
-        return (Setup { axial: AxialClosure::Measured, ..sticking }, None);
+        return (Setup { axial: AxialSource::Measured, ..sticking }, None);
     }
     // What sticking needs; more friction than that does nothing.
     let needed =
@@ -238,7 +239,7 @@ fn judge_open_contact(
     flown: &FlightResult,
     events: &Events,
 ) -> Option<Finding> {
-    if file.contact != Contact::Unknown || flown.setup.axial == AxialClosure::Measured {
+    if file.contact != Contact::Unknown || flown.setup.axial == AxialSource::Measured {
         return None;
     }
     let speed_m_s = |axial| {
@@ -246,8 +247,8 @@ fn judge_open_contact(
         let (x, z) = motion::outcome(integrated, &flown.flight, events, &setup)?.second_end_m_s?;
         Some(f64::hypot(x, z))
     };
-    let sticking_m_s = speed_m_s(AxialClosure::Sticking)?;
-    let sliding_m_s = speed_m_s(AxialClosure::Sliding { friction: 0.0 })?;
+    let sticking_m_s = speed_m_s(AxialSource::Sticking)?;
+    let sliding_m_s = speed_m_s(AxialSource::Sliding { friction: 0.0 })?;
     let taken = flown.quantities.friction;
     Some(DropFinding::OpenContact { sticking_m_s, sliding_m_s, taken }.into())
 }

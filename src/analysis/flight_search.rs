@@ -148,7 +148,7 @@ pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Opt
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
         let early_s = (found.separation.time_s, found.calm_s);
         motion::compare_early(flight, integrated, window, file.cask.cog_m, early_s);
-        flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
+        flight.strike = motion::find_shock(flight, integrated, window, file.cask.cog_m);
         let is_off =
             flight.plateaus.iter().any(|p| p.late_mismatch_m_s.is_some_and(|off_m_s| off_m_s != 0.0));
         let landing = || motion::landing(flight, integrated, window, &file.cask);
@@ -195,7 +195,7 @@ fn searched(
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
     // A contact in stages may last beyond the clearance: first where its impulse has been given.
-    let given_s = events::impulse_given(ends.0.signal(), contact_s, before_s)
+    let given_s = events::impulse_end(ends.0.signal(), contact_s, before_s)
         .filter(|given_s| !is_hopeless && *given_s > cleared_s(contact_s, before_s));
     let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { beginnings });
     let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
@@ -231,7 +231,7 @@ fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
 
 /// What the cask turns by from first contact to separation, rad.
 pub fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
-    let integrated = Integrated::over(signals, contact_s);
+    let integrated = Integrated::new(signals, contact_s);
     let moved = find(file, &integrated, Patience::EachBeginning)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
@@ -245,7 +245,7 @@ impl FoundFlight {
     /// The motion that the signals, the times and the flight give where L sticks.
     pub fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
         let times = Events {
-            first_contact: Some(At::exactly(integrated.contact_s)),
+            first_contact: Some(At::exact(integrated.contact_s)),
             separation: Some(self.separation),
             slap_down: self.slap_down,
             ..Events::default()
@@ -328,7 +328,7 @@ impl Search<'_> {
         // After R the modes ring on from both impacts: what drove them is not one force.
         let drive = || {
             let left_s = attempt.separation.time_s;
-            motion::drive(self.integrated, before, left_s, window.from_s, cog_m, before_rad_s)
+            motion::contact_drive(self.integrated, before, left_s, window.from_s, cog_m, before_rad_s)
         };
         let drive = self.to_target.then(drive).flatten();
         let fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m, attempt.most_modes);
@@ -338,12 +338,7 @@ impl Search<'_> {
     /// The rotation that pulls outward in a flight, rad/s.
     fn turned_rad_s(&self, flight: &FlightFit, attempt: &Attempt) -> f64 {
         let events_s = [self.integrated.contact_s, attempt.separation.time_s];
-        motion::turned_rad_s(
-            &self.integrated.signals,
-            flight,
-            self.file.drop.angular_velocity_rad_s,
-            events_s,
-        )
+        motion::spin_rad_s(&self.integrated.signals, flight, self.file.drop.angular_velocity_rad_s, events_s)
     }
 
     /// Takes off the signals of both ends what rings and pulls in the flight.
@@ -393,9 +388,9 @@ impl Search<'_> {
         }
         if let Some(window) = &window {
             separation =
-                events::by_impulse(first.signal(), contact_s, separation, &(window.from_s..window.to_s));
+                events::refine_end(first.signal(), contact_s, separation, &(window.from_s..window.to_s));
         }
-        let seat_s = events::seat_s(first.signal(), contact_s, separation.time_s);
+        let seat_s = events::seat_delay_s(first.signal(), contact_s, separation.time_s);
         self.best_of(FoundFlight { separation, seat_s, calm_s, slap_down, flight, window }, others)
     }
 
@@ -441,7 +436,7 @@ impl Search<'_> {
     /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the
     /// closures do not speak against.
     fn best_of(&self, found: FoundFlight, others: Vec<FlightFit>) -> FoundFlight {
-        if self.cost(&found) < 1.0 || found.flight.as_ref().is_none_or(FlightFit::is_told_apart) {
+        if self.cost(&found) < 1.0 || found.flight.as_ref().is_none_or(FlightFit::can_rank_fits) {
             return found;
         }
         let with = |flight| FoundFlight { flight: Some(flight), ..found };
@@ -453,7 +448,7 @@ impl Search<'_> {
     fn cost(&self, found: &FoundFlight) -> f64 {
         let Some(flight) = &found.flight else { return f64::INFINITY };
         let left_m_s = flight.plateaus.iter().map(|p| p.slow_residual_m_s).fold(0.0, f64::max);
-        let most_left_m_s = if flight.is_told_apart() {
+        let most_left_m_s = if flight.can_rank_fits() {
             EXPLAINED_M_S
         } else {
             EXPLAINED_M_S.min(EXPLAINED_SHORT * self.file.drop.impact_velocity_m_s)
@@ -482,5 +477,5 @@ fn is_explained(flight: &FlightFit) -> bool {
 /// Whether the flight is explained by modes that it shows for long enough: another beginning would end there
 /// too, and what it misses is not the flight's.
 fn is_clearly_explained(flight: &FlightFit) -> bool {
-    is_explained(flight) && flight.is_told_apart() && flight.resolves_modes()
+    is_explained(flight) && flight.can_rank_fits() && flight.resolves_modes()
 }

@@ -8,7 +8,7 @@ use crate::data::{
     DropFinding, Effect, End, Events, Finding, FindingKind, JoinedRecording, OtherChannels, Recording,
     RestLevel, Severity, Signal, transverse,
 };
-use crate::events::Hiding;
+use crate::events::HidingNoise;
 use crate::{condition, events, judge};
 use missing_end::StandIn;
 use std::ops::Range;
@@ -78,13 +78,13 @@ impl Impact {
         let is_told = |channel: &&Channel| !is_on_end || channel.axis == struck;
         let (silent, changes) = rayon::join(
             || judge::judge_silent(&recording.channels.iter().filter(is_told).collect::<Vec<_>>()),
-            || events::Changes::along(&recording.channels, struck),
+            || events::Changes::along_axis(&recording.channels, struck),
         );
         findings.extend(silent.clone());
         let copied = judge::judge_copies(&recording.channels);
         let across_m_s = missing_end::least_step_m_s(file, recording);
         let least_step_m_s = if is_on_end { drop.impact_velocity_m_s } else { across_m_s };
-        if let Some(Hiding { channel, noise_m_s }) = changes.hiding(least_step_m_s) {
+        if let Some(HidingNoise { channel, noise_m_s }) = changes.find_hiding_noise(least_step_m_s) {
             let least_m_s = least_step_m_s;
             findings.push(DropFinding::Hidden { channel, noise_m_s, least_m_s }.into());
             return None;
@@ -95,8 +95,8 @@ impl Impact {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), None));
             return None;
         };
-        if let Some(ahead) = changes.ahead(&event, drop.impact_velocity_m_s) {
-            findings.push(ChannelFinding::Ahead { ahead_s: -ahead.delay_s }.on(&ahead.channel));
+        if let Some(ahead) = changes.find_leading_clock(&event, drop.impact_velocity_m_s) {
+            findings.push(ChannelFinding::Ahead { ahead_s: -ahead.delay_s }.tag(&ahead.channel));
             return None;
         }
         let usual = condition::Reach::of(&file.cask, drop);
@@ -117,7 +117,7 @@ impl Impact {
             return None;
         };
         findings.extend(found);
-        let another = changes.another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
+        let another = changes.find_another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
         findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
         // Where nothing happens any more the record was looked at as far as any flight lasts.
         let sought = if goes_on { farthest } else { farthest.longest() };
@@ -173,7 +173,8 @@ pub(super) struct OwnContact {
 /// The first contact as the channels of a recorder show it by themselves.
 pub(super) fn own_contact(recording: &Recording, file: &CaskFile) -> Option<OwnContact> {
     let least_m_s = file.drop.least_impact_m_s();
-    let event = events::Changes::of(&recording.channels).locate(missing_end::least_step_m_s(file, recording));
+    let event =
+        events::Changes::new(&recording.channels).locate(missing_end::least_step_m_s(file, recording));
     let event = event.filter(|event| event.velocity_step_m_s.abs() > least_m_s)?;
     let reach = condition::Reach::of(&file.cask, &file.drop);
     let (mut signals, _) = conditioned(recording, file, &event, &reach);

@@ -3,11 +3,11 @@
 use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
 use crate::data::{
-    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ChannelPulse, ClosureKind, DropFinding, DropResult, End,
+    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, ChannelPulse, CheckKind, DropFinding, DropResult, End,
     Estimate, Events, FilteredPeak, Finding, FlightFit, ForceOverCrush, ImpactNumbers, ImpactTable, MISSED_U,
     Mode, PulseLength, Quantities, RigidBodyDeceleration, STANDARD_GRAVITY_M_S2, Signal, transverse,
 };
-use crate::fit::{COVERAGE, Inputs, RungTaken};
+use crate::fit::{COVERAGE, Inputs, SelectedMethod};
 use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
 use std::f64::consts::TAU;
 
@@ -47,7 +47,7 @@ impl Tabulated {
             let deceleration = &mut table.rigid_body_deceleration;
             (deceleration.at_cog, deceleration.at_struck_end) = (None, None);
             deceleration.at_cog_unfiltered = None;
-            for number in table.numbers.of_course() {
+            for number in table.numbers.course_numbers() {
                 *number = None;
             }
             deceleration.others.clear();
@@ -80,7 +80,7 @@ impl Tabulated {
         let struck_s = events.slap_down_s().filter(|_| !is_whole)?;
         let is_open = second.is_some();
         let recorded_s = flight_search::record_end_s(recorded) - struck_s;
-        Some(DropFinding::SecondUntold { recorded_s, is_open }.into())
+        Some(DropFinding::SecondUndetermined { recorded_s, is_open }.into())
     }
 }
 
@@ -96,7 +96,7 @@ pub(super) fn of_result(
     let told = |i: usize| measured.and_then(|m| m.tables[i].clone());
     let stretches_s = stretches_s(&result.events, measured.and_then(|m| m.left_s), file.cask.length_m);
     let with = |table: Option<ImpactTable>, end: End, start: Option<Estimate>, stretch: Option<[f64; 2]>| {
-        let table = table.unwrap_or_else(|| ImpactTable::unknown(end));
+        let table = table.unwrap_or_else(|| ImpactTable::empty(end));
         let channels = stretch.map_or_else(Vec::new, |s| channel_peaks(file, recorded, s, &table));
         ImpactTable { start, channels, ..table }
     };
@@ -137,7 +137,7 @@ struct BothImpacts<'a> {
 pub(super) fn tabulated(
     file: &CaskFile,
     integrated: &Integrated,
-    taken: &RungTaken,
+    taken: &SelectedMethod,
     second: Option<&SecondImpact>,
     u_late_s: [f64; 2],
 ) -> Option<Tabulated> {
@@ -150,7 +150,7 @@ pub(super) fn tabulated(
         own.duration.1 = own.duration.1.hypot(u_s);
     }
     // What turned the cask was one contact at R that a passive end can give.
-    let mut turning = taken.choice.closures.iter().filter(|c| c.kind == ClosureKind::SecondTurning);
+    let mut turning = taken.choice.closures.iter().filter(|c| c.kind == CheckKind::SecondTurning);
     let is_one = turning.all(|closure| closure.miss_in_u.abs() <= MISSED_U);
     let is_passive = |numbers: &&ImpactNumbers<(f64, f64)>| {
         RESTITUTION_RANGE.contains(&numbers.restitution.0) && numbers.duration.0 > 0.0
@@ -190,7 +190,7 @@ impl BothImpacts<'_> {
     fn courses(&self, inputs: &Inputs, by: ForceCourse) -> Option<(Course, Option<Course>)> {
         let (motion, states) =
             motion::with_states(self.integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
-        let contact = ContactCourse::of(&states, &inputs.setup, by)?;
+        let contact = ContactCourse::from_states(&states, &inputs.setup, by)?;
         let mut after = None;
         if let Some(second) = self.second {
             after = Some(second.course(inputs, &motion, by)?);
@@ -224,12 +224,12 @@ impl BothImpacts<'_> {
 
     /// These with their standard uncertainties: what else could have told the course of the force says how
     /// well that is known.
-    fn known(&self, taken: &RungTaken) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
+    fn known(&self, taken: &SelectedMethod) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
         let flat = |inputs: &Inputs| {
             let numbers = self.numbers(inputs, ForceCourse::Rotation)?;
             Some(numbers.into_iter().flat_map(ImpactNumbers::into_array).collect())
         };
-        let spread = taken.spread(&flat)?;
+        let spread = taken.propagate_numbers(&flat)?;
         let by_name = |contact: &[(f64, f64)]| ImpactNumbers::from_fn(|i| contact[i]);
         let mut known: Vec<_> = spread.chunks_exact(ImpactNumbers::COUNT).map(by_name).collect();
         let left_ringing = |flight: &FlightFit, own: &ImpactNumbers<(f64, f64)>| {
@@ -242,7 +242,7 @@ impl BothImpacts<'_> {
             // Where no flight follows R's impact, that leaves of its own what the first one does.
             let told = self.second.filter(|second| i == 1 && !second.is_open);
             let (share, bends_s) = told.map_or(by_first, |second| left_ringing(&second.flight, own));
-            for (value, u) in own.of_course() {
+            for (value, u) in own.course_numbers() {
                 *u = u.hypot(RINGING_SHARE * share * *value);
             }
             let bends_m = BENDS_SHARE * bends_s * own.velocity_change.0;
@@ -251,7 +251,7 @@ impl BothImpacts<'_> {
         for (by, share) in OTHER_COURSES {
             let others = self.numbers(&taken.taken, by)?;
             for (own, mut other) in known.iter_mut().zip(others) {
-                for ((value, u), other) in own.of_course().into_iter().zip(other.of_course()) {
+                for ((value, u), other) in own.course_numbers().into_iter().zip(other.course_numbers()) {
                     *u = u.hypot(share * (*other - *value));
                 }
             }
@@ -273,7 +273,7 @@ impl BothImpacts<'_> {
             numbers,
             rigid_body_deceleration: decelerations(self.file, course, [known.at_cog, known.at_struck_end]),
             force_over_crush: force_over_crush(&course.contact, mass_kg, self.cutoff_hz),
-            ..ImpactTable::unknown(end)
+            ..ImpactTable::empty(end)
         }
     }
 }
@@ -287,7 +287,7 @@ fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64)
     let [begin, end] = &contact.ends;
     let courses = [&contact.up_m_s2[..], &contact.at_cog_m_s2, &contact.at_end_m_s2];
     let [force_peak, at_cog, at_struck_end] =
-        contact.low_passed(courses, cutoff_hz).map(|course| largest(&course));
+        contact.low_pass(courses, cutoff_hz).map(|course| largest(&course));
     ImpactNumbers {
         duration: end.time_s - begin.time_s,
         velocity_change: motion.rebound_m_s - contact.struck_m_s,
@@ -312,7 +312,7 @@ fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64)
 fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> RigidBodyDeceleration {
     let contact = &course.contact;
     let through = |(filter, cutoff_hz): (String, f64)| {
-        let low_passed = contact.low_passed([&contact.at_cog_m_s2, &contact.at_end_m_s2], cutoff_hz);
+        let low_passed = contact.low_pass([&contact.at_cog_m_s2, &contact.at_end_m_s2], cutoff_hz);
         let deceleration = |i: usize| {
             let (value, (taken, u)) = (largest(&low_passed[i]), taken[i]);
             Some(Estimate::new(value, COVERAGE * u * value / taken, "m/s^2"))
@@ -357,7 +357,7 @@ pub(super) fn filters(file: &CaskFile, recorded: &[Signal], result: &DropResult)
 }
 
 fn force_over_crush(contact: &ContactCourse, mass_kg: f64, cutoff_hz: f64) -> ForceOverCrush {
-    let [force_m_s2] = contact.low_passed([&contact.up_m_s2], cutoff_hz);
+    let [force_m_s2] = contact.low_pass([&contact.up_m_s2], cutoff_hz);
     let step = (force_m_s2.len() / CURVE_POINTS).max(1);
     ForceOverCrush {
         crush_m: contact.crush_m.iter().copied().step_by(step).collect(),
@@ -392,7 +392,7 @@ fn channel_peaks(
         by_force.unwrap_or(transverse_m_s2 * (sin + cos) / cos.max(GRAZING_COS))
     };
     let channel_peak = |(signal, pulse): (&Signal, &Option<ChannelPulse>)| {
-        let calibration = file.calibration_of(&signal.name);
+        let calibration = file.scale_half_width(&signal.name);
         let aside_m_s2 = match signal.axis {
             Axis::Transverse => axial_m_s2,
             Axis::Axial => transverse_m_s2,

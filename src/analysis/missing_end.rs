@@ -2,7 +2,7 @@
 
 use crate::data::planar::arms_m;
 use crate::data::{
-    Axis, BodyModel, Cask, CaskFile, Contact, Drop, End, FlightFit, Recording, Signal, StoodIn,
+    Axis, BodyModel, Cask, CaskFile, Contact, Drop, End, FlightFit, Recording, ScaledCopy, Signal,
 };
 use crate::predict;
 
@@ -49,10 +49,10 @@ impl StandIn {
     }
 
     /// Which of the signals it is, and of which it is made.
-    pub fn stood_in(&self, signals: &[Signal]) -> Option<StoodIn> {
+    pub fn stood_in(&self, signals: &[Signal]) -> Option<ScaledCopy> {
         let is_made_of = |s: &Signal| s.axis == Axis::Transverse && s.end != self.end;
         let channel = signals.iter().position(|s| s.name == Self::name(self.end))?;
-        Some(StoodIn { channel, by: signals.iter().position(is_made_of)?, share: self.share })
+        Some(ScaledCopy { channel, by: signals.iter().position(is_made_of)?, share: self.share })
     }
 
     /// Tells a flight fit how little is known of this end.

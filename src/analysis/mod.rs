@@ -67,7 +67,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     rayon::scope(|_| causes::name_causes(recording, cask_file, &mut found));
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
-    result.prototype = cask_file.scale.map(|scale| result.of_prototype(scale));
+    result.prototype = cask_file.scale.map(|scale| result.to_prototype(scale));
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
@@ -171,7 +171,7 @@ fn slower_waves_s((findings, found): &ImpactAndFlight, length_m: f64) -> Option<
     let contact_s = events.separation_s()? - events.first_contact_s()?;
     let flight = &flown.as_ref()?.flight;
     let struck = transverse(&impact.signals, End::First)?;
-    let lag_s = motion::most_late_s(flight, struck, length_m, contact_s);
+    let lag_s = motion::largest_delay_s(flight, struck, length_m, contact_s);
     let wave_s = WAVE_PERIODS / flight.first_bending_hz(contact_s);
     let is_explained = |f: &Finding| match f.what {
         FindingKind::Channel(ChannelFinding::AnswersLate { delay_s, u_s, .. }) => {
@@ -201,7 +201,7 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     file.drop = if file.drop.impact_velocity_given {
         Drop { angular_velocity_rad_s: before.rad_s, ..file.drop }
     } else {
-        file.drop.turned(&file.cask, before.rad_s)
+        file.drop.add_rotation(&file.cask, before.rad_s)
     };
     file.is_rotation_measured = true;
     Cow::Owned(file)

@@ -53,9 +53,9 @@ fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
 /// Ranges, rate and record that the predicted drop needs; of a cask file without channels for sensors at both
 /// ends.
 pub(super) fn needs(file: &CaskFile) -> RecordingNeeds {
-    let predicted = predict::predict(&predict::richest(file), &file.drop, file.contact, LARGEST_K);
+    let predicted = predict::predict(&predict::richest_body(file), &file.drop, file.contact, LARGEST_K);
     let ends = [("first end", End::First, 0.0), ("second end", End::Second, file.cask.length_m)];
-    let ends = ends.map(|(name, end, position_m)| ChannelSpec::plain(name, end, "", position_m));
+    let ends = ends.map(|(name, end, position_m)| ChannelSpec::new(name, end, "", position_m));
     let specs = if file.channels.is_empty() { &ends[..] } else { &file.channels };
     let channel = |spec: &ChannelSpec| {
         let peaks = judge::expected_peaks(largest_step_m_s(spec, file, &predicted), &file.drop);
@@ -120,7 +120,7 @@ struct ExpectedDrop {
 impl ExpectedDrop {
     fn of(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
         let at_once = Drop { contact_duration_s: 0.0, ..file.drop };
-        let predicted = predict::predict(&predict::richest(file), &at_once, file.contact, k);
+        let predicted = predict::predict(&predict::richest_body(file), &at_once, file.contact, k);
         let flies = predicted.first_end_impacts == 1 && predicted.regime == FlightRegime::Free;
         let flight_s = predicted.flight_time_s.filter(|_| flies && !predicted.turns_over())?;
         let lasts_s = judge::pulse_lengths_s(&file.drop).0;
@@ -141,7 +141,7 @@ impl ExpectedDrop {
         let read = |spec: &&ChannelSpec| half_sine(spec, step_m_s(spec, file, &predicted), lasts_s, flight_s);
         let (signals, plateaus): (Vec<_>, Vec<_>) = specs.iter().map(read).unzip();
         let flight = FlightFit { from_s: left_s, to_s: struck_s, plateaus, ..FlightFit::default() };
-        let integrated = Integrated::over(&signals, CONTACT_S).into_owned();
+        let integrated = Integrated::new(&signals, CONTACT_S).into_owned();
         Some(Self { integrated, flight, events })
     }
 

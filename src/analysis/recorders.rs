@@ -56,11 +56,11 @@ fn join(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<()
     names.sort_unstable();
     names.dedup();
     // Each against the recording as it was read: none hangs on another one's shift.
-    let main = if names.is_empty() { None } else { own_contact(recording, &file.of_recorder(None)) };
+    let main = if names.is_empty() { None } else { own_contact(recording, &file.for_recorder(None)) };
     for name in names {
         let path = file.path.parent().unwrap_or(Path::new("")).join(name);
         let refuse = |problem: &str, mend: &str| Err(error::of_file(&path, Refusal::new(problem, mend)));
-        let of_file = file.of_recorder(Some(name));
+        let of_file = file.for_recorder(Some(name));
         if of_file.channels.is_empty() {
             let mend = "add one accelerometer of this recorder with end = \"first\" or \"second\"";
             return refuse("no accelerometer of this recording joins its clock to the other one", mend);

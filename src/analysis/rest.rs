@@ -115,7 +115,7 @@ pub(super) fn levels(
             rest_m_s2: channel.scale_m_s2 * rest.level - signal.removed_offset_m_s2,
             u_m_s2: (channel.scale_m_s2 * rest.u).hypot(signal.u_offset_m_s2),
         };
-        let level = || events::rest_over_fall(channel, rest, &file.drop, contact_s).unwrap_or_else(by_offset);
+        let level = || events::rest_level(channel, rest, &file.drop, contact_s).unwrap_or_else(by_offset);
         is_known.then(level)
     };
     recording.channels.iter().filter_map(level).collect()

@@ -51,7 +51,7 @@ pub(super) fn of(
     let mut result = result(recording, file, findings, events, quantities);
     for (signal, smooth) in signals.iter().zip(&shown.smooth) {
         let Some(summary) = result.channels.iter_mut().find(|c| c.name == signal.name) else { continue };
-        let peak = |of: &Signal| peak(&of.force_m_s2[motion::shown(of, &events)]);
+        let peak = |of: &Signal| peak(&of.force_m_s2[motion::visible(of, &events)]);
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);
         summary.peak_raw_m_s2 = Some(peak(signal));
@@ -182,7 +182,7 @@ fn result(
         first_impact: FirstImpact::new(events.first_contact.map(time), quantities),
         slap_down: SlapDown::new(events.slap_down.map(time), quantities),
         k: quantities.map(|q| q.k),
-        impacts: [End::First, End::Second].map(ImpactTable::unknown),
+        impacts: [End::First, End::Second].map(ImpactTable::empty),
         predictions: predictions(file, None),
         test: file.test.clone(),
         quality: findings,
@@ -226,8 +226,8 @@ pub(super) struct ShownSignals {
 impl ShownSignals {
     pub fn of(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
         let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
-        let signals = motion::around(signals, events, cutoff_hz);
-        Self { smooth: motion::filtered(&signals, cutoff_hz), signals }
+        let signals = motion::cut_shown(signals, events, cutoff_hz);
+        Self { smooth: motion::filter(&signals, cutoff_hz), signals }
     }
 }
 
@@ -238,7 +238,7 @@ fn filter_effect(
     FlightResult { setup, quantities, flight, .. }: &FlightResult,
 ) -> Option<String> {
     let speed = quantities.speed?;
-    let integrated = motion::Integrated::over(smooth, events.first_contact?.time_s);
+    let integrated = motion::Integrated::new(smooth, events.first_contact?.time_s);
     let flight = motion::with_modes(&integrated, flight, quantities.angular_velocity.value, setup.cog_m)?;
     let motion = motion::outcome(&integrated, &flight, events, setup)?;
     let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;

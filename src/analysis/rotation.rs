@@ -34,7 +34,7 @@ pub(super) fn judged(
 ) -> Option<Finding> {
     let flight = result.flight.as_ref()?;
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    let gained_rad_s = motion::rotation_by(across.map(|c| (&c.name[..], c.position_m)), flight);
+    let gained_rad_s = motion::rotation_from_names(across.map(|c| (&c.name[..], c.position_m)), flight);
     let read = read(channel, file, &result.events, flight)?;
-    judge::judge_rotation(&read, gained_rad_s).map(|found| found.on(&channel.name))
+    judge::judge_rotation(&read, gained_rad_s).map(|found| found.tag(&channel.name))
 }

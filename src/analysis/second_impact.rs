@@ -4,7 +4,7 @@
 use super::flight_search;
 use super::setup::by_law;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Contact, Drop, End, Events, FlightFit, Motion,
+    AssumedFriction, At, AxialSource, Axis, Cask, CaskFile, Contact, Drop, End, Events, FlightFit, Motion,
     MotionState, Setup, Signal, transverse,
 };
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
@@ -42,7 +42,7 @@ pub(super) struct SecondImpact<'a> {
     pub left: At,
     /// Whether no flight determines what the contact gave in all, and it is followed to its greatest crush.
     pub is_open: bool,
-    axial: AxialClosure,
+    axial: AxialSource,
     friction: Option<AssumedFriction>,
     /// Whether that is measured or stated.
     is_known: bool,
@@ -63,7 +63,7 @@ struct MovedMirror {
 }
 
 /// The drop in a mirror, from the state in which R strikes; `None` where it does not.
-fn mirrored(first: &Setup, motion: &Motion, axial: AxialClosure) -> Option<Setup> {
+fn mirrored(first: &Setup, motion: &Motion, axial: AxialSource) -> Option<Setup> {
     let (at, (_, up_m_s)) = motion.slap_down.zip(motion.second_end_m_s)?;
     Some(Setup {
         cog_m: first.length_m - first.cog_m,
@@ -112,7 +112,7 @@ fn pressed(integrated: &Integrated) -> Option<(At, FlightFit)> {
     let record_end_s = flight_search::record_end_s(&integrated.signals);
     let struck = transverse(&integrated.signals, End::First)?;
     let time_s = events::first_separation(struck, integrated.contact_s, record_end_s)?;
-    Some((At { time_s, u_s: 0.0 }, motion::at_once(integrated, time_s)))
+    Some((At { time_s, u_s: 0.0 }, motion::flight_at(integrated, time_s)))
 }
 
 impl Mirror {
@@ -121,9 +121,9 @@ impl Mirror {
         let (before, first) = (measured.flight, measured.setup);
         let struck = measured.events.slap_down?;
         let turning_rad_s = motion.separation.angular_velocity_rad_s;
-        let setup = mirrored(first, motion, AxialClosure::Sticking)?;
-        let signals = motion::mirrored(recorded, before, turning_rad_s, first.length_m, first.cog_m);
-        let integrated = Integrated::over(&signals, struck.time_s).into_owned();
+        let setup = mirrored(first, motion, AxialSource::Sticking)?;
+        let signals = motion::mirror(recorded, before, turning_rad_s, first.length_m, first.cog_m);
+        let integrated = Integrated::new(&signals, struck.time_s).into_owned();
         Some(Self { setup, struck, signals, integrated })
     }
 }
@@ -143,7 +143,7 @@ impl<'a> SecondImpact<'a> {
         let law = if file.contact == Contact::Smooth { Contact::Smooth } else { Contact::Unknown };
         let friction = (!is_measured).then(|| by_law(file, law, needed));
         let is_known = is_measured || law != Contact::Unknown;
-        setup.axial = friction.map_or(AxialClosure::Measured, |(axial, _)| axial);
+        setup.axial = friction.map_or(AxialSource::Measured, |(axial, _)| axial);
         let basis = fit::FitData { signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
@@ -202,14 +202,14 @@ impl<'a> SecondImpact<'a> {
         let inertia_m2 = inputs.inertia_m2?;
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
         let motion = motion::outcome(&self.mirror.integrated, &flight, &times, &setup)?;
-        Some(motion.turned_beyond_rad_s(inertia_m2))
+        Some(motion.excess_rotation_rad_s(inertia_m2))
     }
 
     /// The contact of R after a first impact with these inputs and this motion.
     pub fn course(&self, inputs: &fit::Inputs, first: &Motion, by: ForceCourse) -> Option<Course> {
         let MovedMirror { setup, flight, times } = self.moved(inputs, first)?;
         let (motion, states) = motion::with_states(&self.mirror.integrated, &flight, &times, &setup)?;
-        Some(Course { motion, contact: ContactCourse::of(&states, &setup, by)? })
+        Some(Course { motion, contact: ContactCourse::from_states(&states, &setup, by)? })
     }
 
     /// Setup, flight and times of the mirror after a first impact with these inputs and this motion.
@@ -223,7 +223,7 @@ impl<'a> SecondImpact<'a> {
             (steps, *rest.first_chunk()?)
         };
         if let Some(AssumedFriction { ratio, u }) = self.friction {
-            setup.axial = AxialClosure::Sliding { friction: ratio + by_friction * u };
+            setup.axial = AxialSource::Sliding { friction: ratio + by_friction * u };
         }
         let left = At { time_s: self.left.time_s + by_left * self.left.u_s, ..self.left };
         let times =

@@ -4,8 +4,8 @@
 use super::analyse_once;
 use super::flight_search::Patience;
 use crate::data::{
-    Analysis, Axis, CLEARLY, CaskFile, ChannelFinding, DropFinding, Effect, Finding, FindingKind, IssueCode,
-    MISSED_U, Opening, Recording, Severity,
+    Analysis, Axis, CaskFile, ChannelFinding, DECISIVE_CHI_SQUARE, DropFinding, Effect, Finding, FindingKind,
+    IssueCode, MISSED_U, Opening, Recording, Severity,
 };
 use crate::judge;
 
@@ -46,7 +46,7 @@ pub(super) fn closes(analysis: &Analysis) -> bool {
     let result = &analysis.result;
     let is_one_ended = result.quality.iter().any(lacks_end);
     let agrees = is_one_ended || result.comparison.is_some_and(|comparison| comparison.agrees);
-    let meets = |closures: &[crate::data::Closure]| closures.iter().all(|c| c.miss_in_u.abs() < MISSED_U);
+    let meets = |closures: &[crate::data::Consistency]| closures.iter().all(|c| c.miss_in_u.abs() < MISSED_U);
     let is_sound = result.quality.iter().all(|f| f.severity < Severity::Error || lacks_end(f));
     is_sound && agrees && result.reconstruction.as_ref().is_some_and(|choice| meets(&choice.closures))
 }
@@ -79,7 +79,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     let before = Doubt::of(&found);
     let is_alone = |best: &Doubt, next: &Doubt| {
         (next.errors, next.warnings) > (best.errors, best.warnings)
-            || next.chi_square > best.chi_square + CLEARLY
+            || next.chi_square > best.chi_square + DECISIVE_CHI_SQUARE
     };
     let is_told = tried.split_first().is_some_and(|((doubt, _, better), others)| {
         closes(better)
@@ -92,7 +92,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
             let counts = |o: &&Opening| o.channel.as_deref().is_some_and(|own| (own == name) == is_own);
             found.openings.iter().filter(counts).map(|o| o.chi_square).fold(f64::INFINITY, f64::min)
         };
-        least(false) + CLEARLY < least(true)
+        least(false) + DECISIVE_CHI_SQUARE < least(true)
     };
     let remains = |(_, name, without): &(Doubt, String, Analysis)| {
         *name != tried[0].1 && is_alone_at_its_end(recording, name) && !is_refuted(without)
@@ -114,7 +114,7 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     better.result.quality.extend(causes.map(as_warning));
     let speed_and_k = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
     let finding =
-        ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.on(&name);
+        ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.tag(&name);
     better.result.quality.push(finding);
     better.result.verdict = judge::verdict(&mut better.result.quality);
     better

@@ -8,7 +8,7 @@ use crate::data::{
 };
 use crate::ingest::{self, IngestError, Limits};
 use crate::motion;
-use crate::numerics::filter::ZeroPhaseLowPass;
+use crate::numerics::filter::LowPass;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::rating::{self, RATING_STEP_S};
 use crate::numerics::{as_count, as_f64, reduce};
@@ -87,7 +87,7 @@ impl<'a> CurvePair<'a> {
         if force_m_s2.iter().any(|f| !f.is_finite()) {
             return Err(format!("{} has empty samples; write it without them", channel.source));
         }
-        let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, rate_hz).ok_or_else(|| {
+        let filter = LowPass::with_cutoff_hz(cutoff_hz, rate_hz).ok_or_else(|| {
             format!("{rate_hz:.0} values a second do not carry the low-pass of {cutoff_hz:.0} Hz; write more")
         })?;
         let smooth = measured_signal(measured).ok_or("the recording has no curve of it")?;

@@ -89,7 +89,7 @@ impl SwitchedOff {
 
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
-        for (key, made) in cask_file.corrections.by_key() {
+        for (key, made) in cask_file.corrections.switches() {
             *made &= !self.names(key);
         }
     }
@@ -195,7 +195,7 @@ pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> 
         }
         print(&otherwise)?;
     }
-    let not_strict = report::not_strict(&analysis).filter(|_| arguments.strict);
+    let not_strict = report::why_not_strict(&analysis).filter(|_| arguments.strict);
     if let Some(why) = &not_strict {
         note(&format!("--strict: {why}"));
     }
@@ -252,7 +252,7 @@ fn without_cask(recording: &Path) -> miette::Report {
 
 /// A path as a word for a shell.
 fn quoted(path: &Path) -> String {
-    let path = report::printable(&path.display().to_string());
+    let path = report::sanitize(&path.display().to_string());
     if path.contains(' ') { format!("\"{path}\"") } else { path }
 }
 

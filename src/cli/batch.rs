@@ -114,7 +114,7 @@ fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
 
 fn tell_page(out: &Path) -> miette::Result<()> {
     let page = out.join("campaign.html").display().to_string();
-    Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
+    Ok(print(&format!("\nCampaign: {}\n", report::sanitize(&page)))?)
 }
 
 /// The file that holds the lines: that of `--jsonl`, else one in `--out`.
@@ -182,8 +182,8 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     // A fault of the program costs a row too.
     let made = catch_unwind(AssertUnwindSafe(|| {
         let analysis = analysed(plan, test, arguments)?;
-        let curves = report::in_a_line(&report::drop_curves(&analysis))?;
-        Ok(format!("\"curves\":{curves},{}", &report::in_a_line(&analysis.result)?[1..]))
+        let curves = report::to_line(&report::drop_curves(&analysis))?;
+        Ok(format!("\"curves\":{curves},{}", &report::to_line(&analysis.result)?[1..]))
     }));
     let fault = |_| Err(miette!("{}: the program has a fault here; please report it", test.shown));
     let made = made.unwrap_or_else(fault);
@@ -192,7 +192,7 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
         Err(complaint) => {
             let error = untold(test, arguments).unwrap_or_else(|| sentence(&complaint));
             let failed = json!({"exit": 2, "error": error});
-            format!("{head}{}\n", &report::in_a_line(&failed).unwrap_or_default()[1..])
+            format!("{head}{}\n", &report::to_line(&failed).unwrap_or_default()[1..])
         }
     }
 }
@@ -208,7 +208,7 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     let mut files = [Some(&test.recording), cask].into_iter().flatten();
     files.find(|file| std::fs::canonicalize(file).is_ok_and(|file| !file.starts_with(&folder)))?;
     let (recording, cask) = (&test.shown, test.cask_shown.as_deref().unwrap_or("FILE"));
-    Some(report::printable(&format!(
+    Some(report::sanitize(&format!(
         "{recording} or its cask file lies in another folder, so that what is wrong with it is not written \
          here; `dropcheck analyze {recording} --cask {cask}` says it"
     )))

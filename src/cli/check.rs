@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if !json.is_standard_output() {
         print(&report::check_table(&setup, columns()))?;
         if let Some(folder) = &folder {
-            print(&format!("\nPage: {}\n", report::printable(&folder.file(names[0]))))?;
+            print(&format!("\nPage: {}\n", report::sanitize(&folder.file(names[0]))))?;
         }
     }
     Ok(if check.ready { Ending::Clear } else { Ending::NeedsALook })

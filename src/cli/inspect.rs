@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if !json.is_standard_output() {
         print(&report::listing_table(&listing, columns()))?;
         if let Some(folder) = &folder {
-            print(&format!("\nPage: {}\n", report::printable(&folder.file(names[0]))))?;
+            print(&format!("\nPage: {}\n", report::sanitize(&folder.file(names[0]))))?;
         }
     }
     let sound = listing.issues.iter().all(|issue| issue.severity == crate::data::Severity::Note);
@@ -55,8 +55,8 @@ fn look(arguments: &Arguments, listing: &Listing, folder: &Folder) -> miette::Re
     if !force {
         folder.spares_others(&sha256)?;
     }
-    let drawn = report::drawn(listing);
-    let mut page = report::FirstLook::of(listing, &drawn);
+    let drawn = report::drawn_sources(listing);
+    let mut page = report::FirstLook::new(listing, &drawn);
     with_progress("drawing", |progress| {
         let add = |number, looked| page.add(number, looked);
         analysis::look_at_each(recording, &drawn, bounds.limits(), progress, add);

@@ -39,7 +39,7 @@ fn after_help() -> String {
 
 /// "0.2.0 (0123abc)": the commit as far as the build was told.
 fn version() -> &'static str {
-    let words: &'static str = Program::this().words().leak();
+    let words: &'static str = Program::current().words().leak();
     words.split_once(' ').map_or(words, |(_, version)| version)
 }
 

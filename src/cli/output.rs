@@ -6,7 +6,7 @@ use super::replace::{
 };
 use crate::data::shown;
 use crate::ingest::{bytes_of, opened};
-use crate::report::{ReportError, printable};
+use crate::report::{ReportError, sanitize};
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ fn refused_where(is_wrong: bool, why: fn(String) -> CannotWrite, path: &Path) ->
 
 /// The operating system's words without its error number and without names of files on the way.
 fn bare(source: &io::Error) -> io::Error {
-    io::Error::new(source.kind(), shown::bare(source))
+    io::Error::new(source.kind(), shown::os_text(source))
 }
 
 /// A folder for files, found fit before the work.
@@ -242,7 +242,7 @@ pub fn print(text: &str) -> Result<(), CannotWrite> {
 /// Says something to whoever watches, beside the output.
 pub fn note(words: &str) {
     // There is no one left to tell where standard error is closed.
-    let _ = writeln!(anstream::stderr(), "{}", printable(words));
+    let _ = writeln!(anstream::stderr(), "{}", sanitize(words));
 }
 
 /// Columns that tables may take: those of the terminal, 80 where there is none.

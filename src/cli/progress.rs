@@ -30,7 +30,7 @@ pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} %") {
         bar.set_style(style);
     }
-    bar.set_message(crate::report::printable(what));
+    bar.set_message(crate::report::sanitize(what));
     let in_log = is_log();
     let told = AtomicU64::new(0);
     let done = work(&|fraction: f64| {

@@ -1,7 +1,7 @@
 //! A result to the record of the run that made it, and such a record to the same run again and what differs.
 
 use super::Ending;
-use crate::data::{CaskFile, DropResult, Program, shortened};
+use crate::data::{CaskFile, DropResult, Program, shorten};
 use crate::ingest::bytes_of;
 use crate::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr, miette};
@@ -40,7 +40,7 @@ pub fn program_sha256() -> Option<String> {
 pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()> {
     // As the commit, for a release alone.
     let sha256 = if cfg!(debug_assertions) { None } else { program_sha256() };
-    result.program = Some(Program { sha256, ..Program::this() });
+    result.program = Some(Program { sha256, ..Program::current() });
     result.command = command;
     let now = match std::env::var("SOURCE_DATE_EPOCH") {
         Ok(seconds) => {
@@ -113,7 +113,7 @@ impl EarlierResult {
             None => "every number within 1e-9".to_owned(),
             Some((_, line)) => format!("{values} of its values differ, most of all {line}"),
         };
-        let shown = |line: &str| report::printable(&shortened(line));
+        let shown = |line: &str| report::sanitize(&shorten(line));
         let head = format!("{}.\n\n", shown(&format!("{recording}; {numbers}")));
         let title = (!found.is_empty()).then(|| format!("Otherwise than {}:\n", shown(&self.name)));
         let lines = found.iter().take(MOST_LINES).map(|(_, line)| format!("  {}\n", shown(line)));

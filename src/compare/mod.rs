@@ -1,21 +1,21 @@
-//! Measured beside predicted: the models tried, the one taken and whether it agrees.
+//! Compares measurement and prediction: the models tried, the model selected, and whether it agrees.
 
 use crate::data::{
     Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, ModelCandidate, ModelChoice, Prediction,
     Quantities, Rung, UNSTATED_INERTIA,
 };
 
-/// A rung of the analytical models as a function, such as `predict::predict_by`.
+/// Predicts a drop with one of the analytical models, such as `predict::predict_by`.
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
-/// Standard uncertainty of what a pulse of finite length changes, as a share of it: simulated limiters with
-/// other shapes than a half-sine, that harden, yield or spring back at once, lie up to 5 % off it where L
-/// sticks and 17 % where it slides.
+/// Relative standard uncertainty of the change that a pulse of finite length makes: simulated limiters with
+/// other shapes than a half-sine, that harden, yield or spring back at once, differ by up to 5 % if L sticks
+/// and 17 % if it slides.
 const U_PULSE_SHAPE: f64 = 0.1;
 
-/// What a rung is asked: the rod and the richest body, the cask file, the drop with its contact's length, and
-/// what was measured.
-struct Comparing<'a> {
+/// Inputs of the comparison: the rod and the richest body, the cask file, the drop with the duration of its
+/// contact, and the measured values.
+struct ModelComparison<'a> {
     rod: &'a Body,
     body: &'a Body,
     file: &'a CaskFile,
@@ -25,12 +25,13 @@ struct Comparing<'a> {
     predict: PredictBy<'a>,
 }
 
-/// Holds every rung's prediction with the measured k against the measured slap-down speed, simplest first.
+/// Compares every model's prediction at the measured k with the measured slap-down speed, simplest first.
 ///
-/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always held
-/// against it, a higher rung where it changes the speed; the finite pulse has the measured duration. Returns
-/// the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins
-/// whose own and all richer predictions agree, none of them further from it than the measured speed is known.
+/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always compared, a
+/// higher model only where it changes the speed; the finite pulse has the measured duration. Returns the
+/// choice and, where both speeds exist, the comparison with the selected model. The simplest model is
+/// selected that agrees together with all richer ones, none of them further from it than the uncertainty of
+/// the measured speed.
 pub fn compare(
     bodies: &[Body],
     cask_file: &CaskFile,
@@ -40,11 +41,11 @@ pub fn compare(
     let (rod, body) = (bodies.first()?, bodies.last()?);
     let contact = contact_as_measured(cask_file, measured);
     let drop = Drop { contact_duration_s: measured.duration.value.max(0.0), ..cask_file.drop };
-    let scene = Comparing { rod, body, file: cask_file, drop, contact, measured, predict };
+    let scene = ModelComparison { rod, body, file: cask_file, drop, contact, measured, predict };
     let candidates = scene.candidates();
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as
-    // well. What all of them take from the same uncertain inputs moves them together; a test can tell them
-    // apart by what it measures.
+    // well. Uncertain inputs that all models share move them together; a test can separate models only by
+    // what it measures.
     let known_m_s = measured.speed.map_or(0.0, |speed| speed.u95);
     let taken = (0..candidates.len())
         .find(|&i| objection(&candidates[i..], known_m_s).is_none())
@@ -65,15 +66,15 @@ pub fn compare(
     Some((ModelChoice { name: taken.model, rung: taken.rung, reason, candidates }, comparison))
 }
 
-impl Comparing<'_> {
-    /// The rungs that say something of their own.
+impl ModelComparison<'_> {
+    /// Lists the models that differ from the simpler ones.
     fn candidates(&self) -> Vec<ModelCandidate> {
         let mut candidates: Vec<ModelCandidate> = Vec::new();
-        for rung in Rung::of(&self.drop) {
+        for rung in Rung::for_drop(&self.drop) {
             let candidate = self.candidate(rung);
             let always = rung == Rung::Rod || (rung == Rung::Body && self.body.model == BodyModel::Body);
             let below = candidates.last().and_then(|c| c.predicted);
-            if always || !Rung::say_the_same(below, candidate.predicted) {
+            if always || !Rung::agree(below, candidate.predicted) {
                 candidates.push(candidate);
             }
         }
@@ -115,7 +116,7 @@ impl Comparing<'_> {
         let by_k = change(body, drop, k + measured.k.u95 / 2.0);
         let turned = |by_rad: f64| Drop { angle_rad: (drop.angle_rad + by_rad).max(0.0), ..*drop };
         let by_angle = change(body, &turned(file.tolerances.angle_rad / 2.0), k);
-        let by_inertia = self.by_inertia_m_s(rung, k);
+        let by_inertia = self.inertia_influence_m_s(rung, k);
         let known = &file.tolerances;
         let faster_m_s = drop.impact_velocity_m_s * (1.0 + known.impact_velocity / 2.0);
         let by_velocity = change(body, &Drop { impact_velocity_m_s: faster_m_s, ..*drop }, k);
@@ -128,7 +129,7 @@ impl Comparing<'_> {
         let by_turn = change(body, &Drop { angular_velocity_rad_s: omega, ..*drop }, k);
         let along = drop.horizontal_velocity_m_s + known.horizontal_velocity_m_s / 2.0;
         let by_swing = change(body, &Drop { horizontal_velocity_m_s: along, ..*drop }, k);
-        let by_law = self.by_friction_m_s(rung, k);
+        let by_law = self.friction_influence_m_s(rung, k);
         let lasting = |contact_duration_s: f64| change(body, &Drop { contact_duration_s, ..*drop }, k);
         let by_duration = lasting(drop.contact_duration_s + measured.duration.u95 / 2.0);
         let by_pulse = by_duration.hypot(U_PULSE_SHAPE * lasting(0.0));
@@ -137,9 +138,9 @@ impl Comparing<'_> {
         Some(2.0 * by_k.hypot(stated).hypot(by_pulse))
     }
 
-    /// How a friction that is off by its standard uncertainty changes the speed, m/s; towards less, where
-    /// more does nothing.
-    fn by_friction_m_s(&self, rung: Rung, k: f64) -> f64 {
+    /// Change of the speed when the friction is off by its standard uncertainty, m/s; towards less friction
+    /// where more has no effect.
+    fn friction_influence_m_s(&self, rung: Rung, k: f64) -> f64 {
         // The lower rungs take any friction for rough.
         let predicted = |contact| (self.predict)(rung.max(Rung::Friction), self.body, &self.drop, contact, k);
         let Estimate { value, u95, .. } = self.measured.friction;
@@ -155,8 +156,9 @@ impl Comparing<'_> {
         other.zip(taken.slap_down_speed_m_s).map_or(0.0, |(other, taken)| other - taken)
     }
 
-    /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
-    fn by_inertia_m_s(&self, rung: Rung, k: f64) -> f64 {
+    /// Change of the speed when the inertia is heavier by its standard uncertainty, m/s. The rod's own
+    /// inertia cannot change, so it is treated as a body.
+    fn inertia_influence_m_s(&self, rung: Rung, k: f64) -> f64 {
         let (rung, body, inertia) = match rung {
             Rung::Rod => (Rung::Body, self.rod, UNSTATED_INERTIA),
             rung => (rung, self.body, self.file.tolerances.inertia),
@@ -167,13 +169,14 @@ impl Comparing<'_> {
     }
 }
 
-/// The contact law that the prediction goes by: the stated one, else the friction that was measured.
+/// The contact law of the prediction: the stated one, else the friction that was measured.
 pub fn contact_as_measured(file: &CaskFile, measured: &Quantities) -> Contact {
     let by_ratio = Contact::Coulomb(measured.friction.value.max(0.0));
     if file.has_open_friction() { by_ratio } else { file.contact }
 }
 
-/// What keeps the first of these models, the others being richer, from being taken; `None` if nothing does.
+/// The reason why the first of these models, the others being richer, is not selected; `None` if there is
+/// none.
 fn objection(models: &[ModelCandidate], known_m_s: f64) -> Option<String> {
     let (own, richer) = models.split_first()?;
     if !own.consistent {
@@ -188,7 +191,7 @@ fn objection(models: &[ModelCandidate], known_m_s: f64) -> Option<String> {
     Some(format!(", which agrees, but '{name}' lies farther from it than ±{known_m_s:.2} m/s"))
 }
 
-/// What decided for the model taken, and what the others predict.
+/// The reason for the selected model, and what the other models predict.
 fn reason(taken: usize, candidates: &[ModelCandidate], known_m_s: f64) -> String {
     let own = &candidates[taken];
     let lead = match (own.predicted, own.difference_percent) {
@@ -203,7 +206,7 @@ fn reason(taken: usize, candidates: &[ModelCandidate], known_m_s: f64) -> String
             format!("is the richest model, and {agrees} within both intervals ({percent:+.1} %)")
         }
     };
-    let mut said = vec![format!("'{}' {lead}", own.rung.words())];
+    let mut words = vec![format!("'{}' {lead}", own.rung.words())];
     for (i, other) in candidates.iter().enumerate().filter(|(i, _)| *i != taken) {
         let name = other.rung.words();
         let predicts = match (other.predicted, other.difference_percent) {
@@ -212,9 +215,9 @@ fn reason(taken: usize, candidates: &[ModelCandidate], known_m_s: f64) -> String
             _ => format!("by '{name}' the second end would not strike"),
         };
         let objection = objection(&candidates[i..], known_m_s).filter(|_| i < taken);
-        said.push(predicts + &objection.unwrap_or_default());
+        words.push(predicts + &objection.unwrap_or_default());
     }
-    said.join("; ") + "."
+    words.join("; ") + "."
 }
 
 #[cfg(test)]
@@ -236,9 +239,9 @@ mod tests {
 
     fn file() -> CaskFile {
         let cask = example::cask(1000.0, 5.0, 0.6);
-        CaskFile::plain(
+        CaskFile::new(
             cask,
-            Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) },
+            Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, 0.26) },
             Contact::Rough,
         )
     }

@@ -105,7 +105,7 @@ pub(super) fn beyond_full_scale(channel: &Channel, force: &[f64], noise_m_s2: f6
     let reads_m_s2 = reduce::peak(force);
     let most_m_s2 = BEYOND * full_scale_m_s2 + NOISE_FACTOR * noise_m_s2;
     let found = ChannelFinding::BeyondFullScale { reads_m_s2, full_scale_m_s2 };
-    (reads_m_s2 > most_m_s2).then(|| found.on(&channel.name))
+    (reads_m_s2 > most_m_s2).then(|| found.tag(&channel.name))
 }
 
 /// The converter's step where it exceeds the noise, else 0.

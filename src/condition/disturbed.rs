@@ -72,7 +72,7 @@ pub(super) fn spikes(signals: &[Signal], index: usize, velocity_step_m_s: f64) -
     let (first, last) = (found.first()?, found.last()?);
     let severity = if held_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::Spikes { count: found.len(), held_m_s, severity };
-    Some(found.on(&signal.name).between(signal.time_s(*first), signal.time_s(*last)))
+    Some(found.tag(&signal.name).span(signal.time_s(*first), signal.time_s(*last)))
 }
 
 /// What the `width` samples from `i` on hold above their neighbours, m/s² × samples, if they are a spike.
@@ -163,7 +163,7 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     signal.gaps.extend(dropouts);
     signal.gaps.sort_by_key(|gap| gap.from);
     let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
-    Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+    Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
 }
 
 /// Whether equal samples are one step of numbers cut to three digits, as `7.27E+02`: they rise and fall about

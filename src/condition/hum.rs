@@ -1,7 +1,7 @@
 //! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
-use crate::numerics::reduce::{block_means, block_of};
+use crate::numerics::reduce::{block_means, block_size};
 use crate::numerics::sinusoid::{self, Sinusoid};
 use crate::numerics::{as_f64, robust};
 use std::f64::consts::{PI, TAU};
@@ -34,7 +34,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     if signal.gaps.iter().any(|gap| gap.from < end) {
         return None;
     }
-    let block = block_of(SEARCH_RATE_HZ, signal.sample_rate_hz);
+    let block = block_size(SEARCH_RATE_HZ, signal.sample_rate_hz);
     let means = block_means(signal.force_m_s2.get(..end)?, block);
     let block_rate_hz = signal.sample_rate_hz / as_f64(block);
     let lines: Vec<Sinusoid> = lines(&means, block_rate_hz)
@@ -52,7 +52,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     if take_off {
         for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
             let since_s = (as_f64(i) - middle) / signal.sample_rate_hz;
-            *f -= lines.iter().map(|line| line.at(since_s)).sum::<f64>();
+            *f -= lines.iter().map(|line| line.value_at(since_s)).sum::<f64>();
         }
         for gap in signal.gaps.clone() {
             signal.force_m_s2[gap.from..gap.to].fill(0.0);
@@ -68,7 +68,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         left_m_s,
         severity: if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note },
     };
-    Some(found.on(&signal.name))
+    Some(found.tag(&signal.name))
 }
 
 /// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.
@@ -86,7 +86,7 @@ fn lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
     let fundamental = MAINS_HZ
         .iter()
         .filter(|f| length_s * **f >= LEAST_PERIODS)
-        .filter_map(|f| sinusoid::strongest(&left, sample_rate_hz, band(*f)))
+        .filter_map(|f| sinusoid::search(&left, sample_rate_hz, band(*f)))
         .max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
     let mut found = Vec::new();
     let Some(fundamental) = fundamental.filter(|line| stands_out(line, &left, sample_rate_hz)) else {
@@ -130,7 +130,7 @@ fn line_uncertainty(line: &Sinusoid, rest: &[f64]) -> f64 {
 fn take(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
     let middle = (as_f64(samples.len()) - 1.0) / 2.0;
     for (i, x) in samples.iter_mut().enumerate() {
-        *x -= line.at((as_f64(i) - middle) / sample_rate_hz);
+        *x -= line.value_at((as_f64(i) - middle) / sample_rate_hz);
     }
 }
 

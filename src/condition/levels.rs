@@ -109,7 +109,7 @@ impl<'a> Gauge<'a> {
         }
         let squares = |part: &&[f64]| {
             let mean = reduce::sum(part) / as_f64(part.len());
-            reduce::sum_of(part, |f| (f - mean).powi(2))
+            reduce::sum_by(part, |f| (f - mean).powi(2))
         };
         let rms = (inner.iter().map(squares).sum::<f64>() / as_f64(count)).sqrt();
         let most = self.noise * (MOST_NOISE + 3.0 / (2.0 * as_f64(count)).sqrt());

@@ -92,14 +92,14 @@ pub fn signal(
     let mut force = match channel.coupling {
         Coupling::Dc => channel.force_m_s2(from, to),
         Coupling::Ac { time_constant_s } => {
-            findings.push(ChannelFinding::AcStated { time_constant_s }.on(&channel.name));
+            findings.push(ChannelFinding::AcStated { time_constant_s }.tag(&channel.name));
             let mut whole = channel.force_m_s2(0, to);
             restore_low_frequencies(&mut whole, channel.sample_rate_hz, time_constant_s);
             whole.split_off(from.min(whole.len()))
         }
     };
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
-    let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
+    let quiet: Vec<f64> = robust::thin(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
     let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, before);
     findings.extend(clipping::beyond_full_scale(channel, &force, noise_m_s2));

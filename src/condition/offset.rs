@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
-use crate::numerics::reduce::{self, block_means, block_of};
+use crate::numerics::reduce::{self, block_means, block_size};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
@@ -51,7 +51,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     let (quiet, spread_m_s2) = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
     let noise_m_s2 = spread_m_s2.max(1e-3 * rms);
-    let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
+    let block = block_size(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     let u_offset_m_s2 = robust::mean_and_u(&quiet).1.hypot(rounding_m_s2(signal, spread_m_s2));
     let mut findings = Vec::new();
@@ -104,7 +104,7 @@ fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Finding {
         // As long a fall with as few samples is a rate at fault, not a late start.
         ChannelFinding::FewSamples { length_s, samples, sample_rate_hz: signal.sample_rate_hz }
     };
-    found.on(&signal.name)
+    found.tag(&signal.name)
 }
 
 /// The samples with wild ones set to the median, and the spread that is left: a spike is no offset.
@@ -126,11 +126,11 @@ fn offset(name: &str, mean_m_s2: f64, taken_off: bool, large_m_s2: f64) -> Optio
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
     if taken_off {
         let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
-        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.on(name));
+        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.tag(name));
     }
     let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
-    (adds_m_s > 0.1 * SMALL_M_S).then(|| found.on(name))
+    (adds_m_s > 0.1 * SMALL_M_S).then(|| found.tag(name))
 }
 
 /// A slope of the free fall beyond its noise whose continuation into the flight would matter.
@@ -152,7 +152,7 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Findin
     // From the middle of the free fall, whose mean was taken off, through contact and flight.
     let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
     let found = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
-    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| found.on(name).between(from_s, to_s))
+    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| found.tag(name).span(from_s, to_s))
 }
 
 #[cfg(test)]

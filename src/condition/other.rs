@@ -38,7 +38,7 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
     };
     let quiet =
         events.release_s.or(events.first_contact_s()).map_or(0, |before_s| channel.index_at(before_s));
-    let mut at_rest: Vec<f64> = robust::sampled(&values[..quiet]).filter(|value| value.is_finite()).collect();
+    let mut at_rest: Vec<f64> = robust::thin(&values[..quiet]).filter(|value| value.is_finite()).collect();
     if !at_rest.is_empty() {
         let (noise, rest) = (robust::spread(&at_rest), robust::median(&mut at_rest));
         for value in &mut values {
@@ -156,7 +156,7 @@ mod tests {
     }
 
     fn read(values: Vec<f64>) -> OtherSummary {
-        let events = Events { first_contact: Some(At::exactly(0.05)), ..Events::default() };
+        let events = Events { first_contact: Some(At::exact(0.05)), ..Events::default() };
         read_other(&example::other(values), &events)
     }
 
@@ -176,7 +176,7 @@ mod tests {
         assert!((530..545).contains(&span.from) && (655..670).contains(&span.to), "{span:?}");
         let mut stated = example::other(vec![1.0, 5.0, 5.0, -5.0, 2.0]);
         stated.full_scale = Some(5.0);
-        let events = Events { first_contact: Some(At::exactly(1e-4)), ..Events::default() };
+        let events = Events { first_contact: Some(At::exact(1e-4)), ..Events::default() };
         assert_eq!(read_other(&stated, &events).clipped, [Span { from: 1, to: 4 }]);
     }
 }

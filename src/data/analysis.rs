@@ -1,4 +1,4 @@
-//! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
+//! The result of `analyze`, as the JSON document has it, and further data for the report.
 
 use super::cask_file::CaskFile;
 use super::cause::{Opening, StatedCause};
@@ -14,14 +14,14 @@ use super::other::OtherSummary;
 use super::prediction::{BodyModel, Prediction};
 use super::prototype::Prototype;
 use super::quantities::{Contribution, FirstImpact, SlapDown, Untested};
-use super::reconstruction::ReconstructionChoice;
+use super::reconstruction::MethodChoice;
 use super::recording::RecordingFormat;
 use super::shocks::{FilteredPeak, Shock};
 use super::simulation::{CalculatedNumber, SimulationRow};
 use super::test_record::{Limit, LimitState, ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// The overall word on a result, in the order of their gravity.
+/// The verdict on a result, in the order of severity.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
@@ -34,42 +34,43 @@ pub enum Verdict {
     Fail,
 }
 
-/// Which files went in.
+/// Files that the analysis read.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Input {
     /// The recording, as given.
     pub recording: String,
-    /// Its SHA-256.
+    /// SHA-256 of the recording.
     pub recording_sha256: String,
-    /// Its format.
+    /// Format of the recording.
     pub format: RecordingFormat,
-    /// What read it and handed it on in that format, with its version; `None` where dropcheck itself did.
+    /// Converter that read the recording and passed it on in that format, with its version; `None` if
+    /// dropcheck read it itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reader: Option<String>,
     /// The cask file, as given.
     pub cask: String,
-    /// Its SHA-256.
+    /// SHA-256 of the cask file.
     pub cask_sha256: String,
     /// The file with the rest before the drop, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<String>,
-    /// Its SHA-256.
+    /// SHA-256 of that file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest_sha256: Option<String>,
     /// The file of the calculation, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation: Option<String>,
-    /// Its SHA-256.
+    /// SHA-256 of that file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation_sha256: Option<String>,
 }
 
-/// How one analytical model stands against the measurement.
+/// Comparison of one analytical model with the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelCandidate {
-    /// Which rung of the ladder of models.
+    /// Model, by its level of detail.
     pub rung: Rung,
-    /// Which body.
+    /// Body that the model describes.
     pub model: BodyModel,
     /// Predicted slap-down speed with the measured k, m/s.
     pub predicted: Option<f64>,
@@ -77,20 +78,20 @@ pub struct ModelCandidate {
     pub u95: Option<f64>,
     /// (measured − predicted) / predicted, percent.
     pub difference_percent: Option<f64>,
-    /// Whether it lies within both intervals.
+    /// True if the prediction lies within both intervals.
     pub consistent: bool,
 }
 
-/// Which analytical model explains the measurement with the least.
+/// The simplest analytical model that explains the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelChoice {
-    /// The body of the model taken.
+    /// Body of the selected model.
     pub name: BodyModel,
-    /// Its rung of the ladder of models.
+    /// Level of detail of the selected model.
     pub rung: Rung,
-    /// One sentence: why, and what the next one would have changed.
+    /// One sentence: the reason, and what the next model would change.
     pub reason: String,
-    /// The rungs that say something of their own at this k and angle, simplest first.
+    /// Models that differ from the simpler ones at this k and angle, simplest first.
     pub candidates: Vec<ModelCandidate>,
 }
 
@@ -109,11 +110,11 @@ pub struct Comparison {
     pub measured_u95: f64,
     /// (measured − predicted) / predicted, percent.
     pub difference_percent: f64,
-    /// Whether the difference lies within both intervals.
+    /// True if the difference lies within both intervals.
     pub agrees: bool,
 }
 
-/// A number that JSON has as null where it is none.
+/// Reads a number that JSON writes as null if it is not finite.
 pub(crate) fn number_or_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
@@ -121,9 +122,9 @@ pub(crate) fn number_or_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, 
 /// The times that the report marks, s from the recording's first sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Events {
-    /// Release, where the record has the rest before it.
+    /// Release, if the record has the rest before it.
     pub release_s: Option<f64>,
-    /// First touch that ends the free fall, where its release was seen; first contact, or before it.
+    /// First touch that ends the free fall, if its release was seen: first contact, or a time before it.
     pub fall_end_s: Option<f64>,
     /// First contact of L.
     #[serde(rename = "first_contact_s", serialize_with = "time_s")]
@@ -158,7 +159,7 @@ fn time_s<S: Serializer>(at: &Option<At>, to: S) -> Result<S::Ok, S::Error> {
     at.map(|at| at.time_s).serialize(to)
 }
 
-/// What one channel is worth.
+/// Summary of one channel: its place, its levels and its quality.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ChannelSummary {
     /// The channel's name.
@@ -167,13 +168,13 @@ pub struct ChannelSummary {
     pub end: super::cask::End,
     /// "transverse" or "axial".
     pub axis: super::cask::Axis,
-    /// Where the samples were found.
+    /// Path at which the samples were found.
     pub source: String,
     /// Samples read.
     pub samples: usize,
     /// Rate, Hz.
     pub sample_rate_hz: f64,
-    /// The unit they are in and who says so, such as "g (cask file)".
+    /// Unit and its origin, such as "g (cask file)".
     pub unit: String,
     /// Offset removed, m/s².
     pub offset_m_s2: Option<f64>,
@@ -183,7 +184,7 @@ pub struct ChannelSummary {
     pub peak_filtered_m_s2: Option<f64>,
     /// Largest magnitude, unfiltered, m/s².
     pub peak_raw_m_s2: Option<f64>,
-    /// Which sensor it is, as the cask file states it.
+    /// Sensor, as the cask file states it.
     #[serde(flatten)]
     pub sensor: SensorRecord,
     /// Samples at a limit, as index spans.
@@ -191,14 +192,14 @@ pub struct ChannelSummary {
     pub clipped: Vec<Span>,
 }
 
-/// One setting, its value and where it came from.
+/// One setting with its value and its origin.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Setting {
-    /// What it is, as a person says it: "low-pass for the curves".
+    /// Name as a report prints it: "low-pass for the curves".
     pub name: String,
-    /// Its value with its unit: "CFC 180 (−3 dB at 298 Hz)".
+    /// Value with its unit: "CFC 180 (−3 dB at 298 Hz)".
     pub value: String,
-    /// "cask file", "recording", "default", "from the data: …".
+    /// Origin: "cask file", "recording", "default", "from the data: …".
     pub origin: String,
 }
 
@@ -207,19 +208,19 @@ pub struct Setting {
 pub struct Program {
     /// "dropcheck".
     pub name: &'static str,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
-    /// The commit that it was built of, where the build was told.
+    /// Commit that the program was built from, if the build knew it.
     pub commit: Option<&'static str>,
-    /// What it was built for, such as "x86_64-linux".
+    /// Platform that the program was built for, such as "x86_64-linux".
     pub target: String,
-    /// SHA-256 of its file, where a release ran as a program of its own.
+    /// SHA-256 of the program file, if a released program ran.
     pub sha256: Option<String>,
 }
 
 impl Program {
-    /// This one.
-    pub fn this() -> Self {
+    /// Describes the running program.
+    pub fn current() -> Self {
         Self {
             name: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
@@ -243,14 +244,13 @@ pub struct DropResult {
     pub schema: &'static str,
     /// The program's version.
     pub version: &'static str,
-    /// Which program made it, with which words on its command line, and when (RFC 3339); where a command line
-    /// did.
+    /// Program, command line and time (RFC 3339), if a command line made the result.
     pub program: Option<Program>,
     /// See `program`.
     pub command: Vec<String>,
     /// See `program`.
     pub analysed: Option<String>,
-    /// Which files went in.
+    /// Files that the analysis read.
     pub input: Input,
     /// The first impact.
     pub first_impact: FirstImpact,
@@ -262,57 +262,58 @@ pub struct DropResult {
     pub amplification: Option<Estimate>,
     /// The first impact and the second, as test reports tabulate them.
     pub impacts: [ImpactTable; 2],
-    /// What every channel reads in each of them, also where the motion is not determined.
+    /// Readings of every channel in each impact, even if the motion is not determined.
     pub shocks: Vec<Shock>,
-    /// What the choice of the low-pass makes of the first end's first impact.
+    /// Peak of the first end's first impact with each of several low-pass filters.
     pub filters: Vec<FilteredPeak>,
-    /// All that as of the prototype, where the cask is a scale model.
+    /// Results scaled to the prototype, if the cask is a scale model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub prototype: Option<Prototype>,
-    /// How the motion was had.
-    pub reconstruction: Option<ReconstructionChoice>,
-    /// Which analytical model explains the measurement.
+    /// Method that determined the motion.
+    pub reconstruction: Option<MethodChoice>,
+    /// The simplest analytical model that explains the measurement.
     pub model: Option<ModelChoice>,
-    /// What the analytical models say.
+    /// Predictions of the analytical models.
     pub predictions: Vec<Prediction>,
     /// Measured beside predicted.
     pub comparison: Option<Comparison>,
     /// Who tested what, where and when.
     pub test: TestRecord,
-    /// What was seen otherwise, beside the result.
+    /// Independent observations beside the result.
     pub observed: Vec<ObservedBeside>,
-    /// The limits of the cask file, beside the result.
+    /// Limits of the cask file, with the result.
     pub limits: Vec<Limit>,
-    /// How the calculated curves agree with the measured ones.
+    /// Agreement of calculated curves with the measured ones.
     pub simulation: Vec<SimulationRow>,
-    /// Numbers of the calculation beside the measured ones.
+    /// Numbers of the calculation and the measured ones.
     #[serde(skip)]
     pub calculated: Vec<CalculatedNumber>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
-    /// Every quantity that is null, with the finding that took it.
+    /// Every null quantity, with the finding that removed it.
     pub missing: Vec<MissingQuantity>,
-    /// What would explain an analysis that contradicts itself, best first; empty where several would.
+    /// Mistakes in the cask file that would explain a contradiction, best first; empty if several explain it
+    /// equally well.
     pub causes: Vec<StatedCause>,
     /// The overall word.
     pub verdict: Verdict,
     /// Times of the events.
     pub events: Events,
-    /// What each channel is worth.
+    /// Summary of each channel.
     pub channels: Vec<ChannelSummary>,
-    /// What the channels read that take no part in the motion; left out where there are none.
+    /// Readings of the channels that take no part in the motion; omitted if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub other_channels: Vec<OtherSummary>,
     /// The fit of the free-flight window.
     pub flight: Option<FlightFit>,
-    /// What each input contributes to the uncertainty, largest first.
+    /// Contribution of each input to the uncertainty, largest first.
     pub budget: Vec<Contribution>,
-    /// What nothing in the recording tests, largest effect first; empty where no number is stated.
+    /// Inputs that this recording cannot check, largest effect first; empty if no number is stated.
     pub untested: Vec<Untested>,
-    /// What was done with the samples and how, in words.
+    /// Processing of the samples, in words.
     #[serde(rename = "processing")]
     pub settings: Vec<Setting>,
-    /// Every key of the cask file with its value and where that is from; null where nobody asked.
+    /// Every key of the cask file with its value and the origin of the value; null if nobody asked for it.
     #[serde(rename = "settings")]
     pub keys: serde_json::Value,
     /// The cask file's text.
@@ -320,31 +321,31 @@ pub struct DropResult {
 }
 
 impl DropResult {
-    /// Names every quantity that is null, with the finding that took it.
+    /// Lists every null quantity, with the finding that removed it.
     pub fn find_missing(&mut self) {
         let result = serde_json::to_value(&*self).unwrap_or_default();
         self.missing = missing_in(&result, &self.quality);
     }
 
-    /// Whether a limit of the cask file is exceeded.
+    /// True if a limit of the cask file is exceeded.
     pub fn exceeds_a_limit(&self) -> bool {
         self.limits.iter().any(|limit| limit.state == LimitState::Exceeded)
     }
 
-    /// What holds of the prototype, where the cask is a model of this scale   (46)
-    pub fn of_prototype(&self, scale: f64) -> Prototype {
+    /// Scales the result to the prototype, if the cask is a model of this scale   (46)
+    pub fn to_prototype(&self, scale: f64) -> Prototype {
         Prototype {
             scale,
-            first_impact: self.first_impact.of_prototype(scale),
-            slap_down: self.slap_down.of_prototype(scale),
+            first_impact: self.first_impact.to_prototype(scale),
+            slap_down: self.slap_down.to_prototype(scale),
             k: self.k,
             amplification: self.amplification,
-            impacts: self.impacts.each_ref().map(|impact| impact.of_prototype(scale)),
+            impacts: self.impacts.each_ref().map(|impact| impact.to_prototype(scale)),
         }
     }
 }
 
-/// Everything one analysis found: the result, the cask file it was made with and the curves.
+/// Everything that one analysis found: the result, the cask file behind it and the curves.
 #[derive(Debug)]
 pub struct Analysis {
     /// The result.
@@ -355,6 +356,6 @@ pub struct Analysis {
     pub curves: LazyCurves,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
-    /// Where the motion misses what it must meet, the numbers of which another one would meet it.
+    /// Numbers of the cask file that would make an inconsistent motion consistent.
     pub openings: Vec<Opening>,
 }

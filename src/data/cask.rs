@@ -4,23 +4,22 @@ use super::planar::first_arm_m;
 use super::test_record::SensorRecord;
 use serde::Serialize;
 
-/// L may sink this share of the length below where it left before that counts as another impact   (9)
+/// L may sink this share of the length below the height at which it left before that counts as another impact
+/// (9)
 ///
 /// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at
-/// 15°, 42 mm at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left
-/// to strike.
+/// 15°, 42 mm at 45°, 0.5 m at 60°): less than the first impact has crushed it, so it meets nothing.
 pub const GRAZE_SHARE: f64 = 0.01;
 
-/// No cask of a few metres bends more slowly, Hz: what does is the cask as a whole, which swings on its
-/// contents or is pressed on the target.
+/// No cask of a few metres bends more slowly, Hz: a slower mode belongs to the cask as a whole, which moves
+/// on its contents or is pressed on the target.
 pub const SLOWEST_BENDING_HZ: f64 = 25.0;
 
-/// More channels than any drop test has, and `init` gives each a table of twenty lines.
+/// Upper limit on channels, more than any drop test has; `init` gives each a table of twenty lines.
 pub const MOST_CHANNELS: usize = 1000;
 
-/// Sample rates that are believed, Hz: the fastest transient recorders take 10⁸ samples a second, and below
-/// one in a quarter of an hour no drop is seen. Spans of time, as those of filters and windows, become counts
-/// of samples by it.
+/// Accepted sample rates, Hz: the fastest transient recorders take 10⁸ samples a second, and below one in a
+/// quarter of an hour no drop is visible. The limit also bounds the sample counts of filters and windows.
 pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
 
 /// An end of the cask.
@@ -54,8 +53,8 @@ pub enum Axis {
     Axial,
 }
 
-/// Which way a sensor on the skin reads: away from the axis of the cask, towards a growing angle around it,
-/// or along it from L to R.
+/// Direction in which a sensor on the skin reads: away from the axis of the cask, towards a growing angle
+/// around it, or along it from L to R.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the words above")]
 pub enum SkinDirection {
@@ -64,18 +63,18 @@ pub enum SkinDirection {
     Axial,
 }
 
-/// Where around the skin a sensor sits, and which way it reads.
+/// Place of a sensor around the skin, and the direction in which it reads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkinPlace {
-    /// From the lowest line (0) by the side (π/2) to the uppermost (π), rad.
+    /// Angle from the lowest line (0) over the side (π/2) to the uppermost line (π), rad.
     pub around_rad: f64,
-    /// Which way it reads.
+    /// Direction in which it reads.
     pub direction: SkinDirection,
 }
 
 impl SkinPlace {
-    /// What the sensor reads of an acceleration away from the target (an axial one: along the axis), and of
-    /// one across the plane of the drop, as shares of each   (53)
+    /// Shares that the sensor reads of an acceleration away from the target (an axial sensor: along the
+    /// axis), and of one across the plane of the drop   (53)
     pub fn shares(self) -> [f64; 2] {
         let (sin, cos) = self.around_rad.sin_cos();
         match self.direction {
@@ -85,14 +84,14 @@ impl SkinPlace {
         }
     }
 
-    /// True if the sensor reads across the plane of the drop, within 6° of it: of the motion in the plane it
-    /// shows next to nothing.
+    /// True if the sensor reads across the plane of the drop, within 6°: it shows next to nothing of the
+    /// motion in the plane.
     pub fn is_across(self) -> bool {
         self.shares()[0].abs() < 0.1
     }
 }
 
-/// How the first end meets the target tangentially.
+/// Tangential contact law of the first end on the target.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Contact {
     /// The contact point does not slide.
@@ -123,7 +122,7 @@ impl Serialize for Contact {
     }
 }
 
-/// How a sensor is coupled.
+/// Coupling of a sensor.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Coupling {
     /// Down to 0 Hz.
@@ -155,8 +154,8 @@ pub enum Unit {
     },
 }
 
-/// Where a channel's samples are: as written, and for MCAP the topic and field apart where the file gave them
-/// so.
+/// Location of a channel's samples: as written, and for MCAP the topic and the field separately if the file
+/// gives them so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     /// `"/topic.field.field"`, `"/group/dataset[2]"` or a CSV header.
@@ -172,12 +171,12 @@ pub enum Source {
     },
 }
 
-/// Which rows of a table, or messages of a topic, are those of one sensor.
+/// Selects the rows of a table, or the messages of a topic, that belong to one sensor.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct RowsOf {
     /// The column, field or dataset that names the sensor.
     pub column: String,
-    /// What stands there in its rows.
+    /// Content of that column in the sensor's rows.
     pub is: String,
 }
 
@@ -230,25 +229,25 @@ pub struct Cask {
     pub height_m: f64,
     /// Section across the plane, m.
     pub width_m: Option<f64>,
-    /// Centre of gravity from the first end, m; l/2 where the file is silent.
+    /// Centre of gravity from the first end, m; l/2 if the file does not state it.
     pub cog_m: f64,
-    /// Inertia about the centre of gravity, kg m²; m (l² + h²)/12 where the file is silent.
+    /// Inertia about the centre of gravity, kg m²; m (l² + h²)/12 if the file does not state it.
     pub inertia_kg_m2: f64,
-    /// Whether the file gives any of `height_m` (above 0), `cog_m`, `inertia_kg_m2`: then the body is
-    /// predicted beside the rod.
+    /// True if the file gives `height_m` (above 0), `cog_m` or `inertia_kg_m2`: then the body is predicted
+    /// beside the rod.
     pub is_body: bool,
 }
 
 /// The `[drop]` table with its defaults filled in.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Drop {
-    /// Free-fall height of the lowest point, of the centre of gravity where the cask rotates, m.
+    /// Free-fall height of the lowest point, m; of the centre of gravity if the cask rotates.
     pub height_m: f64,
     /// φ0, rad.
     pub angle_rad: f64,
-    /// Speed at which L strikes, m/s: √(2 g h) − ω a (3), or as the file says.
+    /// Speed at which L strikes, m/s: √(2 g h) − ω a (3), or as the file states.
     pub impact_velocity_m_s: f64,
-    /// Whether the file states that speed itself.
+    /// True if the file states the impact speed itself.
     pub impact_velocity_given: bool,
     /// g, m/s².
     pub gravity_m_s2: f64,
@@ -256,7 +255,7 @@ pub struct Drop {
     pub angular_velocity_rad_s: f64,
     /// ẋ of the centre of gravity at first contact, m/s.
     pub horizontal_velocity_m_s: f64,
-    /// How long L's first impact lasts, s: `[contact] duration_s`, or as measured; 0 is an impulse.
+    /// Duration of L's first impact, s: `[contact] duration_s`, or the measured value; 0 is an impulse.
     pub contact_duration_s: f64,
 }
 
@@ -282,14 +281,14 @@ pub fn block_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
 }
 
 impl Drop {
-    /// What a channel of this axis without offset reads at rest, m/s².
+    /// Reading at rest of an ideal channel on this axis, m/s².
     pub fn weight_m_s2(&self, axis: Axis) -> f64 {
         let (along, across) = self.angle_rad.sin_cos();
         self.gravity_m_s2 * if axis == Axis::Axial { along } else { across }
     }
 
     /// A free fall from this height at 9.81 m/s², without rotation.
-    pub fn of_height(height_m: f64, angle_rad: f64) -> Self {
+    pub fn from_height(height_m: f64, angle_rad: f64) -> Self {
         Self {
             height_m,
             angle_rad,
@@ -299,8 +298,9 @@ impl Drop {
         }
     }
 
-    /// The same fall of the centre of gravity, with so much more rotation, rad/s: v0 = √(2 g h) − ω a   (3)
-    pub fn turned(self, cask: &Cask, more_rad_s: f64) -> Self {
+    /// The same fall of the centre of gravity with `more_rad_s` added to the rotation: v0 = √(2 g h) − ω a
+    /// (3)
+    pub fn add_rotation(self, cask: &Cask, more_rad_s: f64) -> Self {
         let a_m = first_arm_m(cask.cog_m, cask.height_m, self.angle_rad);
         Self {
             angular_velocity_rad_s: self.angular_velocity_rad_s + more_rad_s,
@@ -309,38 +309,38 @@ impl Drop {
         }
     }
 
-    /// v0 cos φ0, m/s: what a struck end loses across the axis at the least.
+    /// v0 cos φ0, m/s: the least velocity that a struck end loses across the axis.
     pub fn transverse_velocity_m_s(&self) -> f64 {
         self.impact_velocity_m_s * self.angle_rad.cos()
     }
 
-    /// True if the cask falls onto its end face, as far as a release is usually off.
+    /// True if the cask falls onto its end face, within the usual error of a release.
     pub fn is_on_end(&self) -> bool {
         self.angle_rad.to_degrees() >= 88.0
     }
 
-    /// A tenth of v0, m/s: what changes an end's velocity by less is no first impact.
+    /// A tenth of v0, m/s: a smaller velocity change of an end is no first impact.
     pub fn least_impact_m_s(&self) -> f64 {
         0.1 * self.impact_velocity_m_s
     }
 }
 
-/// The slowest that bending runs along a cask, m/s: a 5 ms pulse in one that bends at 50 Hz takes its length
-/// in 5 ms.
+/// Lowest speed at which bending travels along a cask, m/s: a 5 ms pulse in one that bends at 50 Hz travels
+/// its length in 5 ms.
 pub const BENDING_WAVE_M_S: f64 = 1000.0;
 
-/// One `[[channel]]` table.
+/// One `[[channel]]` table of the cask file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ChannelSpec {
     /// Name, unique in the file.
     pub name: String,
-    /// Which end it sits on.
+    /// End of the cask at which the sensor sits.
     pub end: End,
     /// Along which axis it reads.
     pub axis: Axis,
-    /// Where the samples are.
+    /// Location of the samples.
     pub source: Source,
-    /// Declared unit; `None`: what the recording says.
+    /// Declared unit; `None` uses that of the recording.
     pub unit: Option<Unit>,
     /// Position along the axis from the first end, m.
     pub position_m: f64,
@@ -348,49 +348,48 @@ pub struct ChannelSpec {
     pub offset_m: f64,
     /// 1.0 or −1.0.
     pub polarity: f64,
-    /// What the samples as they are read are to be multiplied by, where the file says it.
+    /// Factor from the samples as read to the unit, if the file states it.
     pub scale: Option<f64>,
-    /// Where the channel clips, in its unit.
+    /// Full scale, at which the channel clips, in its unit.
     pub full_scale: Option<f64>,
     /// Overrides what the recording says, Hz.
     pub sample_rate_hz: Option<f64>,
-    /// The recording beside the cask file that holds it, where it is of another recorder.
+    /// The recording beside the cask file that holds the channel, if it belongs to another recorder.
     pub file: Option<String>,
-    /// Which rows of the source are this sensor's, where it holds those of several.
+    /// Rows of the source that belong to this sensor, if the source holds several sensors.
     pub rows: Option<RowsOf>,
-    /// This channel's own times: a CSV column, an HDF5 dataset, a field of the messages.
+    /// Times of this channel alone: a CSV column, an HDF5 dataset, a field of the messages.
     pub time: Option<String>,
-    /// How the sensor is coupled.
+    /// Coupling of the sensor.
     pub coupling: Coupling,
-    /// 95 % half-width of this channel's scale, as a share, where the file gives it its own.
+    /// 95 % half-width of this channel's scale, as a share, if the file states one for the channel.
     pub calibration: Option<f64>,
-    /// What it was calibrated with: channels of one name share the error of their scale.
+    /// Reference of the calibration: channels with the same reference share the error of their scale.
     pub reference: Option<String>,
     /// Place off the plane of the drop, m.
     pub lateral_m: f64,
-    /// Where around the skin it sits and which way it reads, where the file states that in place of an axis.
+    /// Place around the skin and direction of reading, if the file states these instead of an axis.
     pub skin: Option<SkinPlace>,
-    /// Which sensor it is.
+    /// Type, serial number and calibration of the sensor.
     pub sensor: SensorRecord,
 }
 
 impl ChannelSpec {
-    /// What the sensor reads of an acceleration along its axis, as a share with its sign; 1 of one that reads
-    /// across the plane of the drop.
+    /// Share, with its sign, that the sensor reads of an acceleration along its axis; 1 for a sensor that
+    /// reads across the plane of the drop.
     pub fn axis_share(&self) -> f64 {
         self.skin.filter(|skin| !skin.is_across()).map_or(1.0, |skin| skin.shares()[0])
     }
 
-    /// What it reads of an acceleration along the axis, away from the target and across the plane of the
-    /// drop   (53)
+    /// Shares that the channel reads along the axis, away from the target and across the plane of the drop
+    /// (53)
     pub fn direction(&self) -> [f64; 3] {
         let [own, across] = self.skin.map_or([1.0, 0.0], SkinPlace::shares);
         if self.axis == Axis::Axial { [own, 0.0, 0.0] } else { [0.0, own, across] }
     }
 
-    /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else
-    /// is stated.
-    pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {
+    /// A DC-coupled transverse channel on the axis, in the unit of its recording, with nothing else stated.
+    pub fn new(name: &str, end: End, source: &str, position_m: f64) -> Self {
         let (name, source) = (name.to_owned(), Source::Path(source.to_owned()));
         Self { name, end, source, position_m, polarity: 1.0, ..Self::default() }
     }

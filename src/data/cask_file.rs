@@ -13,9 +13,9 @@ use std::path::PathBuf;
 pub struct CaskFile {
     /// The file.
     pub path: PathBuf,
-    /// Its SHA-256, lower-case hexadecimal.
+    /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
-    /// Its text, byte-order mark and all; empty where it was never a file.
+    /// Text of the file, with its byte-order mark; empty if there was no file.
     pub text: String,
     /// `[cask]`.
     pub cask: Cask,
@@ -25,7 +25,7 @@ pub struct CaskFile {
     pub drop: Drop,
     /// `[contact] friction`.
     pub contact: Contact,
-    /// How long the first contact lasts, s: `[contact] duration_s`, or what replaces it; `None`: not stated.
+    /// Duration of the first contact, s: `[contact] duration_s`, or what replaces it; `None` if not stated.
     pub contact_duration_s: Option<f64>,
     /// `[filter]`.
     pub filter: FilterChoice,
@@ -35,7 +35,7 @@ pub struct CaskFile {
     pub corrections: Corrections,
     /// `[recording] time`.
     pub time: Option<String>,
-    /// `[recording] rest`, from where the program runs.
+    /// `[recording] rest`, relative to the working directory of the program.
     pub rest: Option<PathBuf>,
     /// `[[channel]]` of the accelerometers, in the file's order.
     pub channels: Vec<ChannelSpec>,
@@ -51,26 +51,26 @@ pub struct CaskFile {
     pub simulation: Option<SimulationSpec>,
     /// `[report]`.
     pub letterhead: Letterhead,
-    /// Whether the rotation before the contact is that of an angular-rate sensor.
+    /// True if an angular-rate sensor determines the rotation before the contact.
     pub is_rotation_measured: bool,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
 }
 
 impl CaskFile {
-    /// The times that the file names for a channel: its own, else those of the recording.
-    pub fn time_of<'a>(&'a self, spec: &'a ChannelSpec) -> Option<&'a str> {
+    /// The times that the file names for a channel, else those of the recording.
+    pub fn time_source<'a>(&'a self, spec: &'a ChannelSpec) -> Option<&'a str> {
         spec.time.as_deref().or(self.time.as_deref())
     }
 
-    /// 95 % half-width of a channel's scale, as a share: its own, else that of all.
-    pub fn calibration_of(&self, channel: &str) -> f64 {
+    /// 95 % half-width of a channel's scale, as a share: that of the channel, else that of all.
+    pub fn scale_half_width(&self, channel: &str) -> f64 {
         let own = self.channels.iter().find(|spec| spec.name == channel).and_then(|spec| spec.calibration);
         own.unwrap_or(self.tolerances.calibration)
     }
 
-    /// The file as readers of recordings take it: the other channels behind those of the motion.
-    pub fn to_be_read(&self) -> Cow<'_, Self> {
+    /// The file for readers of recordings: the other channels follow those of the motion.
+    pub fn with_all_channels(&self) -> Cow<'_, Self> {
         if self.others.is_empty() {
             return Cow::Borrowed(self);
         }
@@ -79,9 +79,9 @@ impl CaskFile {
         Cow::Owned(all)
     }
 
-    /// The file as of one recorder: the channels of the recording that this key `file` names, of `None` those
-    /// of the recording that is analysed.
-    pub fn of_recorder(&self, file: Option<&str>) -> Cow<'_, Self> {
+    /// The file for one recorder: the channels of the recording that this key `file` names; for `None` those
+    /// of the analysed recording.
+    pub fn for_recorder(&self, file: Option<&str>) -> Cow<'_, Self> {
         let others = self.others.iter().map(|other| &other.read);
         if file.is_none() && self.channels.iter().chain(others).all(|spec| spec.file.is_none()) {
             return Cow::Borrowed(self);
@@ -95,15 +95,15 @@ impl CaskFile {
         Cow::Owned(of_one)
     }
 
-    /// Whether the impulse ratio of L lies anywhere up to a bound: its friction is not stated, or without its
+    /// True if the impulse ratio of L is open up to a bound: its friction is not stated, or without its
     /// tolerance.
     pub fn has_open_friction(&self) -> bool {
         let is_bound = || self.defaults.iter().any(|key| key == "tolerance.friction_percent");
         self.contact == Contact::Unknown || (matches!(self.contact, Contact::Coulomb(_)) && is_bound())
     }
 
-    /// A file that states cask, drop and contact alone, with the usual tolerances.
-    pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
+    /// A file that states only cask, drop and contact, with the usual tolerances.
+    pub fn new(cask: Cask, drop: Drop, contact: Contact) -> Self {
         Self { path: "cask.toml".into(), cask, drop, contact, ..Self::default() }
     }
 }

@@ -1,15 +1,15 @@
-//! One accelerometer channel on a uniform time base.
+//! One accelerometer channel with uniform sampling.
 
 use super::cask::{Axis, Coupling, End};
 use serde::Serialize;
 
-/// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number
-/// (9.91E+37) in SCPI 1999.0, 7.2.1.4.
+/// True if a sample is a value: finite, and not the number that SCPI 1999.0, 7.2.1.4, uses for an overrange
+/// (9.9E+37) or for "not a number" (9.91E+37).
 pub(crate) fn is_number(sample: f64) -> bool {
     sample.abs() < 9.89e37
 }
 
-/// Samples as the recording stores them: f32 stays f32 until it is worked on.
+/// Samples as the recording stores them: f32 values are converted only when they are used.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Samples {
     /// Single precision, or integers of up to 16 bits.
@@ -18,7 +18,7 @@ pub enum Samples {
     F64(Vec<f64>),
 }
 
-/// What is made alike of samples of either precision.
+/// Evaluates one expression for samples of either precision.
 macro_rules! of_either {
     ($samples:expr, $values:ident => $made:expr) => {
         match $samples {
@@ -29,7 +29,7 @@ macro_rules! of_either {
 }
 pub(crate) use of_either;
 
-fn wide<T: Copy + Into<f64>>(sample: &T) -> f64 {
+fn widen<T: Copy + Into<f64>>(sample: &T) -> f64 {
     (*sample).into()
 }
 
@@ -45,17 +45,17 @@ impl Samples {
         of_either!(self, v => v.len())
     }
 
-    /// Whether there are none.
+    /// True if there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Sample `index` as f64; panics beyond the end, as a slice does.
     pub fn get(&self, index: usize) -> f64 {
-        of_either!(self, v => wide(&v[index]))
+        of_either!(self, v => widen(&v[index]))
     }
 
-    /// All as f64.
+    /// Converts all samples to f64.
     pub(crate) fn into_f64(self) -> Vec<f64> {
         match self {
             Self::F32(v) => v.into_iter().map(f64::from).collect(),
@@ -64,7 +64,7 @@ impl Samples {
     }
 
     /// Other samples, as precise as these.
-    pub(crate) fn alike(&self, samples: Vec<f64>) -> Self {
+    pub(crate) fn match_precision(&self, samples: Vec<f64>) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "made of f32 samples")]
         match self {
             Self::F32(_) => Self::F32(samples.into_iter().map(|x| x as f32).collect()),
@@ -72,20 +72,20 @@ impl Samples {
         }
     }
 
-    /// How many are no numbers.
+    /// Counts the samples that are not numbers.
     pub(crate) fn missing(&self) -> usize {
-        of_either!(self, v => v.iter().filter(|x| !is_number(wide(*x))).count())
+        of_either!(self, v => v.iter().filter(|x| !is_number(widen(*x))).count())
     }
 
-    /// Makes those of a stretch missing.
-    pub(crate) fn lose(&mut self, span: Span) {
+    /// Marks the samples of a span as missing.
+    pub(crate) fn erase(&mut self, span: Span) {
         match self {
             Self::F32(samples) => samples[span.from..span.to].fill(f32::NAN),
             Self::F64(samples) => samples[span.from..span.to].fill(f64::NAN),
         }
     }
 
-    /// Puts what `f` makes of each in its place.
+    /// Replaces each sample by the value of `f`.
     pub(crate) fn change(&mut self, f: impl Fn(f64) -> f64) {
         #[allow(clippy::cast_possible_truncation, reason = "as precise as before")]
         match self {
@@ -99,22 +99,22 @@ impl Samples {
         of_either!(self, v => v.shrink_to_fit());
     }
 
-    /// Keeps the first `count` of them.
+    /// Keeps the first `count` samples.
     pub(crate) fn truncate(&mut self, count: usize) {
         of_either!(self, v => v.truncate(count));
     }
 
-    /// Those at the indices given, in that order.
-    pub(crate) fn picked(&self, indices: &[usize]) -> Self {
+    /// Returns the samples at the given indices, in that order.
+    pub(crate) fn select(&self, indices: &[usize]) -> Self {
         match self {
             Self::F32(v) => Self::F32(indices.iter().map(|&i| v[i]).collect()),
             Self::F64(v) => Self::F64(indices.iter().map(|&i| v[i]).collect()),
         }
     }
 
-    /// Stretches of them, each at a place among `count` samples, NaN between.
-    pub(crate) fn spread(&self, count: usize, stretches: &[(Span, usize)]) -> Self {
-        fn laid<T: Copy>(from: &[T], mut laid: Vec<T>, stretches: &[(Span, usize)]) -> Vec<T> {
+    /// Copies spans of the samples to new positions among `count` samples, with NaN between.
+    pub(crate) fn distribute(&self, count: usize, stretches: &[(Span, usize)]) -> Self {
+        fn lay_out<T: Copy>(from: &[T], mut laid: Vec<T>, stretches: &[(Span, usize)]) -> Vec<T> {
             for (span, place) in stretches {
                 let stretch = &from[span.from..span.to];
                 laid[*place..][..stretch.len()].copy_from_slice(stretch);
@@ -122,8 +122,8 @@ impl Samples {
             laid
         }
         match self {
-            Self::F32(v) => Self::F32(laid(v, vec![f32::NAN; count], stretches)),
-            Self::F64(v) => Self::F64(laid(v, vec![f64::NAN; count], stretches)),
+            Self::F32(v) => Self::F32(lay_out(v, vec![f32::NAN; count], stretches)),
+            Self::F64(v) => Self::F64(lay_out(v, vec![f64::NAN; count], stretches)),
         }
     }
 }
@@ -131,9 +131,9 @@ impl Samples {
 /// A value and when it was read.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Extreme {
-    /// In the channel's unit.
+    /// Value in the channel's unit.
     pub value: f64,
-    /// When, s: beside a motion from the first sample of the accelerometers.
+    /// Time, s; beside a motion it counts from the first sample of the accelerometers.
     pub time_s: f64,
 }
 
@@ -142,7 +142,7 @@ pub struct Extreme {
 pub struct Span {
     /// First index.
     pub from: usize,
-    /// One past the last index.
+    /// Index after the last sample.
     pub to: usize,
 }
 
@@ -152,13 +152,13 @@ pub struct Span {
 /// on the body axis, is `samples[i] · scale_m_s2`. Missing samples are NaN and listed in `gaps`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// The cask file's name of it.
+    /// Name in the cask file.
     pub name: String,
-    /// Which end it sits on.
+    /// End of the cask at which the sensor sits.
     pub end: End,
     /// Along which body axis it reads.
     pub axis: Axis,
-    /// Where the samples were found, as the cask file says.
+    /// Path at which the samples were found, as the cask file says.
     pub source: String,
     /// Position along the axis from the first end, m.
     pub position_m: f64,
@@ -168,15 +168,15 @@ pub struct Channel {
     pub start_s: f64,
     /// Sample rate of the uniform base, Hz.
     pub sample_rate_hz: f64,
-    /// The samples, in `unit`, times `scale_m_s2` gives m/s².
+    /// Samples in `unit`; times `scale_m_s2` they are in m/s².
     pub samples: Samples,
     /// m/s² per unit of `samples`, polarity included.
     pub scale_m_s2: f64,
     /// The unit the samples are in, as a person would write it ("g", "m/s^2", "mV").
     pub unit: String,
-    /// Where that unit comes from: "cask file" or "recording".
+    /// Origin of that unit: "cask file" or "recording".
     pub unit_origin: &'static str,
-    /// Whether the recording itself says that unit.
+    /// True if the recording itself states the unit.
     pub is_unit_recorded: bool,
     /// The cask file's clipping limit, in `unit` (of either sign).
     pub full_scale: Option<f64>,
@@ -184,9 +184,9 @@ pub struct Channel {
     pub gaps: Vec<Span>,
     /// RMS distance of the recorded times from the uniform base, s; 0 where the base is the recording's own.
     pub time_jitter_s: f64,
-    /// How the sensor is coupled.
+    /// Coupling of the sensor.
     pub coupling: Coupling,
-    /// What the sensor reads in a file of its own with the rest before the drop, offset and all.
+    /// Reading in a separate file that records the rest before the drop, including the offset.
     pub rest: Option<RestReading>,
 }
 
@@ -195,7 +195,7 @@ pub struct Channel {
 pub struct RestReading {
     /// The level.
     pub level: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of that reading.
     pub u: f64,
 }
 
@@ -206,20 +206,21 @@ impl Channel {
         self.start_s + index as f64 / self.sample_rate_hz
     }
 
-    /// Where it clips, m/s², as far as it is stated.
+    /// Clipping level, m/s², as far as it is stated.
     pub fn range_m_s2(&self) -> Option<f64> {
         Some(self.full_scale? * self.scale_m_s2.abs())
     }
 
-    /// The samples `from..to` as specific force on the body axis, m/s²; the range is cut to what there is.
+    /// The samples `from..to` as specific force on the body axis, m/s²; the range is limited to the available
+    /// samples.
     pub fn force_m_s2(&self, from: usize, to: usize) -> Vec<f64> {
         let to = to.min(self.samples.len());
         let from = from.min(to);
-        of_either!(&self.samples, v => v[from..to].iter().map(|x| wide(x) * self.scale_m_s2).collect())
+        of_either!(&self.samples, v => v[from..to].iter().map(|x| widen(x) * self.scale_m_s2).collect())
     }
 
-    /// The smallest and the largest sample, in `unit`, each the first of its size; `None` where no sample is
-    /// a number.
+    /// The smallest and the largest sample, in `unit`, each at its first occurrence; `None` if no sample is a
+    /// number.
     pub fn extremes(&self) -> Option<[Extreme; 2]> {
         let at = |index| Extreme { value: self.samples.get(index), time_s: self.time_s(index) };
         let numbers = (0..self.samples.len()).map(at).filter(|sample| is_number(sample.value));
@@ -231,7 +232,7 @@ impl Channel {
         })
     }
 
-    /// Index of the sample nearest to `time_s`, cut to what there is.
+    /// Index of the sample nearest to `time_s`, limited to the available samples.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -1,59 +1,59 @@
-//! A set-up before the drop as `check` judges it by a recording at rest.
+//! Judgement of a set-up before the drop, which `check` makes from a recording at rest.
 
 use super::finding::{Finding, RestCause};
 use serde::Serialize;
 
-/// Whether a set-up is ready for its drop.
+/// Result of checking a set-up at rest before its drop.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
     /// "dropcheck.check/1".
     pub schema: &'static str,
-    /// Whether no channel and nothing else speaks against it.
+    /// True if neither a channel nor anything else has a finding against it.
     pub ready: bool,
     /// The channels, in the order of the cask file.
     pub channels: Vec<CheckedChannel>,
-    /// What is of no single channel.
+    /// Findings that belong to no single channel.
     pub findings: Vec<Finding>,
 }
 
-/// One channel at rest.
+/// Result of checking one channel at rest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CheckedChannel {
-    /// Its name.
+    /// Name of the channel.
     pub name: String,
-    /// Whether nothing speaks against it.
+    /// True if the channel has no finding against it.
     pub ready: bool,
-    /// What it reads, its offset in it, g of 9.80665 m/s².
+    /// Reading with its offset, g of 9.80665 m/s².
     pub reads_g: f64,
-    /// What it must read without offset, g; an AC-coupled one must read nothing.
+    /// Reading expected without offset, g; an AC-coupled channel must read zero.
     pub expected_g: Option<f64>,
     /// Standard deviation of its noise, g.
     pub noise_g: f64,
-    /// What was found, the most severe first.
+    /// Findings on this channel, the most severe first.
     pub findings: Vec<Finding>,
-    /// What would read the same, but for an offset.
+    /// Mistakes that an offset could hide: with any of them the channel could read this level.
     #[serde(skip)]
     pub open: Vec<RestCause>,
 }
 
-/// A recording of rest alone, as one channel shows it.
+/// One channel in a recording at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtRest {
-    /// Mean of the levels about the median one, its offset in it, m/s².
+    /// Mean of the levels close to the median level, with the offset, m/s².
     pub level_m_s2: f64,
-    /// Standard uncertainty of it, from the scatter of the levels, m/s².
+    /// Standard uncertainty of that mean, from the scatter of the levels, m/s².
     pub u_m_s2: f64,
-    /// Whether most of the levels lie about the median one.
+    /// True if most of the levels lie close to the median level.
     pub is_still: bool,
-    /// Smallest difference of neighbouring samples, m/s²; 0 where all are equal.
+    /// Smallest difference of neighbouring samples, m/s²; 0 if all are equal.
     pub least_step_m_s2: f64,
 }
 
-/// How a channel answers a blow.
+/// Response of a channel to a tap on the cask.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BlowAnswer {
-    /// When, s from the recording's first sample.
+pub struct TapAnswer {
+    /// Time from the recording's first sample, s.
     pub at_s: f64,
-    /// Whether its first swing goes up.
+    /// True if the first swing is positive.
     pub goes_up: bool,
 }

@@ -1,9 +1,9 @@
-//! Curves a person looks at: accelerations, velocities, the motion of the cask.
+//! Curves for a reader: accelerations, velocities, the motion of the cask.
 
 use super::other::OtherCurve;
 use std::sync::LazyLock;
 
-/// Curves that are made where somebody asks for them: a campaign of thousands of drops does not.
+/// Curves that are computed when first needed: a campaign of thousands of drops does not need them.
 pub type LazyCurves = LazyLock<Curves, Box<dyn FnOnce() -> Curves + Send>>;
 
 /// Curves of one channel over the event window.
@@ -15,7 +15,7 @@ pub struct ChannelCurve {
     pub time_s: Vec<f64>,
     /// Specific force, offset removed, unfiltered, m/s².
     pub raw_m_s2: Vec<f64>,
-    /// The same, filtered without phase, m/s².
+    /// Specific force, filtered without phase shift, m/s².
     pub filtered_m_s2: Vec<f64>,
     /// Velocity along the sensor's axis, integrated from the unfiltered force with gravity left out between
     /// contacts (Fig. 13), m/s.
@@ -46,13 +46,13 @@ pub struct MotionCurve {
 /// All curves of one analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curves {
-    /// One a channel, in the cask file's order.
+    /// Curves of the channels, in the cask file's order.
     pub channels: Vec<ChannelCurve>,
-    /// The rigid-body motion from just before first contact to the slap-down, where it could be had.
+    /// Rigid-body motion from just before first contact to the slap-down, if it is determined.
     pub motion: Option<MotionCurve>,
-    /// One for each channel that takes no part in the motion, where the first contact is known.
+    /// Curves of the channels that take no part in the motion, if the first contact is known.
     pub others: Vec<OtherCurve>,
-    /// The calculated curves, laid over the measured ones of the same channels; unfiltered without the level
+    /// Calculated curves, aligned with the measured ones of the same channels; unfiltered, without the level
     /// before first contact.
     pub calculated: Vec<ChannelCurve>,
 }

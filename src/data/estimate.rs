@@ -22,15 +22,15 @@ impl Estimate {
         Self { value, u95, unit }
     }
 
-    /// That of the prototype where this is of a model of this scale: each unit by its law   (46)
-    pub fn of_prototype(self, scale: f64) -> Self {
+    /// Converts a value of a model of this scale to its prototype; each unit scales by its own law   (46)
+    pub fn to_prototype(self, scale: f64) -> Self {
         let power = UNITS.iter().find(|(unit, _)| *unit == self.unit).map_or(0, |(_, power)| *power);
         let factor = scale.powi(power);
         Self { value: self.value * factor, u95: self.u95 * factor, ..self }
     }
 }
 
-/// One that is not finite is null as a whole: half a quantity is none.
+/// An estimate that is not finite becomes null as a whole: half a quantity is of no use.
 impl Serialize for Estimate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !(self.value.is_finite() && self.u95.is_finite()) {
@@ -44,7 +44,8 @@ impl Serialize for Estimate {
     }
 }
 
-/// Units of the quantities of a result, each with the power of a model's scale that leads to its prototype.
+/// Units of the quantities of a result, each with the power of the model scale that converts it to the
+/// prototype.
 const UNITS: [(&str, i32); 10] = [
     ("s", -1),
     ("m/s", 0),
@@ -75,15 +76,15 @@ impl<'de> Deserialize<'de> for Estimate {
 /// A time and its standard uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct At {
-    /// From the recording's first sample, s.
+    /// Time from the recording's first sample, s.
     pub time_s: f64,
-    /// Its standard uncertainty, s.
+    /// Standard uncertainty, s.
     pub u_s: f64,
 }
 
 impl At {
     /// A time that is known.
-    pub const fn exactly(time_s: f64) -> Self {
+    pub const fn exact(time_s: f64) -> Self {
         Self { time_s, u_s: 0.0 }
     }
 }

@@ -1,5 +1,5 @@
-//! The nouns that pass between stages as tests need them: plain ones, of which a test names what it is about
-//! and leaves the rest (`Signal { noise_m_s2: 1.0, ..example::signal(1e4, force) }`).
+//! Minimal values of the types that pass between stages, for tests: a test states the fields that matter and
+//! leaves the others at these defaults (`Signal { noise_m_s2: 1.0, ..example::signal(1e4, force) }`).
 
 use super::{
     At, Axis, Body, BodyModel, Cask, Channel, Coupling, End, Events, FlightFit, Plateau, Samples, Signal,
@@ -52,8 +52,8 @@ pub(crate) fn flight(from_s: f64, to_s: f64, plateaus: Vec<Plateau>) -> FlightFi
 /// First contact and slap-down known exactly.
 pub(crate) fn events(first_contact_s: f64, slap_down_s: f64) -> Events {
     Events {
-        first_contact: Some(At::exactly(first_contact_s)),
-        slap_down: Some(At::exactly(slap_down_s)),
+        first_contact: Some(At::exact(first_contact_s)),
+        slap_down: Some(At::exact(slap_down_s)),
         ..Events::default()
     }
 }

@@ -1,4 +1,4 @@
-//! What the free-flight window gave: a plateau per channel, and the modes that ring on it.
+//! Result of the fit to the free-flight window: a plateau per channel, and the modes that ring on it.
 
 use super::{Axis, Cask, End, SLOWEST_BENDING_HZ, Signal};
 use serde::Serialize;
@@ -14,20 +14,20 @@ pub struct Mode {
     pub amplitude_m_s: f64,
 }
 
-/// Error of a plateau from a mode of which the flight shows one period, as a share of the mode's amplitude;
-/// twice the periods leave half of it. On simulated drops a window of one period leaves half a percent, one
+/// Error of a plateau that a mode causes if the flight shows one period of it, as a share of the mode's
+/// amplitude; twice the periods halve it. On simulated drops a window of one period has half a percent, one
 /// of half a period two percent (docs/uncertainty.md).
 const RINGING_SHARE: f64 = 0.005;
 
-/// Periods of the first bending mode in a contact after which nothing rings, at the least: 25 of 28 sound
-/// flights of simulated elastic bodies without a mode had 2.2 and more.
+/// Fewest periods of the first bending mode in a contact after which nothing rings: 25 of 28 sound flights of
+/// simulated elastic bodies without a mode had 2.2 and more.
 const SHORTEST_CALM: f64 = 2.0;
 /// The first bending mode has more than this share of the largest amplitude.
 const FIRST_SHARE: f64 = 0.3;
 
 impl Mode {
-    /// Standard uncertainty of a plateau on which the mode rings with this amplitude for so long, in the unit
-    /// of the amplitude.
+    /// Standard uncertainty of a plateau on which the mode rings with this amplitude for this duration, in
+    /// the unit of the amplitude.
     pub fn u_plateau(&self, amplitude: f64, flight_s: f64) -> f64 {
         let periods = self.frequency_hz * flight_s;
         // A mode of which the flight shows less than a period looks like a bend of the plateau.
@@ -43,44 +43,43 @@ pub struct Plateau {
     /// Integral of specific force from before first contact to the reference time, ringing and drift removed,
     /// m/s.
     pub velocity_step_m_s: f64,
-    /// Standard uncertainty of it, m/s.
+    /// Standard uncertainty of that integral, m/s.
     pub u_m_s: f64,
-    /// Change of the channel's offset from before the impact to the flight, m/s²; 0 where none was called
-    /// for.
+    /// Change of the channel's offset from before the impact to the flight, m/s²; 0 if the fit needs none.
     pub zero_shift_m_s2: f64,
-    /// Standard uncertainty of it, m/s².
+    /// Standard uncertainty of that change, m/s².
     pub u_zero_shift_m_s2: f64,
-    /// RMS of what the fit leaves, m/s.
+    /// RMS of the residual, m/s.
     pub residual_m_s: f64,
-    /// RMS of that in means over a 24th of the window, m/s: what of it may move the plateau.
+    /// RMS of the residual in means over a 24th of the window, m/s: the part that may move the plateau.
     #[serde(skip)]
     pub slow_residual_m_s: f64,
     /// Cosine and sine amplitude of each mode at the window's start, m/s.
     pub ringing_m_s: Vec<(f64, f64)>,
-    /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long
-    /// enough to tell.
+    /// Mean velocity just before the flight ends, less the fitted value, m/s, if the flight is long enough to
+    /// show it.
     pub late_mismatch_m_s: Option<f64>,
-    /// Mean velocity behind the separation less what the fit, carried back, says of it, m/s, where the fit
+    /// Mean velocity after the separation, less the value of the fit extrapolated back, m/s, if the fit
     /// begins later.
     #[serde(skip)]
     pub early_mismatch_m_s: Option<f64>,
 }
 
-/// How one candidate of the flight fit scored.
+/// Score of one candidate of the flight fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FlightModelScore {
+pub struct FlightScore {
     /// Number of modes.
     pub modes: usize,
-    /// Whether each channel has a drift (zero shift).
+    /// True if each channel has a drift (zero shift).
     pub drift: bool,
-    /// Whether the contact force gives the modes their phases; else they are free.
+    /// True if the contact force determines the phases of the modes; else they are free.
     pub driven: bool,
-    /// Whether it is the fit taken: the one of the lowest criterion, or where the motion speaks against that
-    /// one the next.
+    /// True if this fit is selected: the one with the lowest criterion, or the next if the motion contradicts
+    /// that one.
     pub taken: bool,
     /// Bayesian information criterion; lower is better.
     pub bic: f64,
-    /// RMS of what the fit leaves over all channels, m/s.
+    /// RMS of the residual over all channels, m/s.
     pub residual_m_s: f64,
 }
 
@@ -91,16 +90,16 @@ pub struct FlightFit {
     pub from_s: f64,
     /// End of the window, s.
     pub to_s: f64,
-    /// One plateau a channel, transverse channels first.
+    /// Plateaus of the channels, transverse channels first.
     pub plateaus: Vec<Plateau>,
-    /// The modes taken, lowest frequency first.
+    /// Fitted modes, lowest frequency first.
     pub modes: Vec<Mode>,
-    /// Whether a drift was taken.
+    /// True if a drift was fitted.
     pub drift: bool,
-    /// Every candidate that was tried, the one taken among them.
-    pub candidates: Vec<FlightModelScore>,
-    /// The blow in the flight that explains it best, however little.
-    pub strike: Option<Strike>,
+    /// All candidates, including the selected one.
+    pub candidates: Vec<FlightScore>,
+    /// The shock in the flight that explains it best, however weak.
+    pub strike: Option<FlightShock>,
     /// The touch of L near its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landing: Option<Landing>,
@@ -109,79 +108,82 @@ pub struct FlightFit {
 /// Touches of L between its flight and the slap-down, as one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Landing {
-    /// When the first of them begins, s from the recording's first sample.
+    /// Time at which the first touch begins, s from the recording's first sample.
     pub begin_s: f64,
-    /// When they are taken to act, s: as one step they lead on as they do.
+    /// Time of one equivalent step with the same effect on the later motion, s.
     pub time_s: f64,
-    /// What it changes the velocity of each channel by, m/s, in the order of the plateaus.
+    /// Change of each channel's velocity, m/s, in the order of the plateaus.
     pub steps_m_s: Vec<f64>,
     /// Standard uncertainty of each, m/s.
     pub u_m_s: Vec<f64>,
-    /// What it changes along the axis, and its standard uncertainty, m/s, where no axial channel shows that.
+    /// Change along the axis and its standard uncertainty, m/s, if no axial channel shows it.
     pub along_m_s: Option<[f64; 2]>,
 }
 
 /// A step of all velocities within a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Strike {
-    /// When, s from the recording's first sample.
+pub struct FlightShock {
+    /// Time from the recording's first sample, s.
     pub time_s: f64,
-    /// What it changes the velocity of a transverse channel by at most, m/s.
+    /// Largest change of a transverse channel's velocity, m/s.
     pub step_m_s: f64,
-    /// How much lower the Bayesian information criterion is with it.
+    /// Reduction of the Bayesian information criterion by the shock.
     pub gain: f64,
 }
 
-/// Fits of a flight with fewer periods of its slowest mode may differ by much and leave the same.
-const TOLD_APART_PERIODS: f64 = 1.5;
+/// Below this many periods of its slowest mode, different fits of a flight may have the same residual.
+const RANKING_PERIODS: f64 = 1.5;
 
-/// Modes nearer to one another than this over the window's length are one mode to it: half the width of its
-/// spectral lines. Two of them bend around whatever else the window holds, a part of the contact first of
-/// all.
-const RESOLVED: f64 = 0.5;
+/// Modes closer than this over the window's length cannot be separated: half the width of its spectral lines.
+/// Two of them would adapt to anything else in the window, such as a part of the contact.
+const SEPARATION: f64 = 0.5;
 
-/// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam
-/// do alike.
-const ALONE: f64 = 10.0;
-/// Nor with so much damping: bolted and welded steel has 0.01 to 0.03, a cable that whips is damped by the
-/// air.
+/// A mode this many times larger at one end than at the other rings at that end alone: a free beam moves
+/// alike at both ends.
+const ONE_END: f64 = 10.0;
+/// Damping above which a mode is not a bending mode: bolted and welded steel has 0.01 to 0.03, a whipping
+/// cable is damped by the air.
 const STRONG_DAMPING: f64 = 0.08;
-/// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits
-/// on a node by chance.
-const WHOLLY_ALONE: f64 = 30.0;
+/// Above this ratio the fitted mode is not a bending mode at all, however long the window: within a hundredth
+/// of its length no sensor sits on a node by chance.
+const ONE_END_ONLY_RATIO: f64 = 30.0;
 /// An overtone of the slowest mode has its nodes at 0.13 and 0.09 of the length, where sensors often sit: the
-/// second mode of a short cask is 1.6 times as fast as the first.
+/// second mode of a short cask has 1.6 times the frequency of the first.
 const OVERTONE: f64 = 1.5;
-/// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
+/// No cask bends more slowly, Hz: a mode this slow is at the edge of the searched range.
 const SLOWEST_HZ: f64 = 16.5;
 
-/// The second bending mode, in which the ends go apart, is faster than the first by more than this: 2.76
-/// times in a slender uniform beam.
+/// The second bending mode, in which the ends move in opposite directions, exceeds this multiple of the
+/// first: 2.76 in a slender uniform beam.
 const SECOND_MODE: f64 = 1.8;
-/// The same of a beam of one height, and how it grows with the slenderness: 1.4 at two heights, where shear
-/// leaves 1.49 of it in a thick tube, 1.55 at 2.5, where it leaves 1.65 (Timoshenko beams of steel).
+/// Second mode's frequency ratio for a beam of one height, and its growth with the slenderness: 1.4 at two
+/// heights, where shear leaves 1.49 of it in a thick tube, 1.55 at 2.5, where it leaves 1.65 (Timoshenko
+/// beams of steel).
 const SECOND_MODE_THICK: (f64, f64) = (0.8, 0.3);
-/// No mount of contents that weigh tons is stiffer, Hz.
+/// Contents that weigh tons have no stiffer mounts, Hz.
 const FASTEST_SWING_HZ: f64 = 100.0;
-/// In its first bending mode a uniform beam goes nearly straight from its end to a node at this share of its
+/// A uniform beam in its first bending mode is nearly straight from its end to a node at this share of its
 /// length.
 const NODE: f64 = 0.2155;
-/// A limiter on either end weighs up to this share of the beam …
+/// An impact limiter on either end weighs at most this share of the beam.
 const MOST_END_MASS: f64 = 0.12;
-/// … and draws the node of its own end outwards by this share of its own, that of the other inwards by that.
+/// Such a limiter moves the node of its own end outwards by the first factor times its share of the mass, and
+/// that of the other end inwards by the second.
 const NODE_BY_END_MASS: (f64, f64) = (0.55, 0.137);
-/// Sensors farther in than this share of the length on either end stand so near to that node, or beyond it,
-/// that their signs tell no shape.
+/// Sensors farther in than this share of the length on either end are so near to that node, or beyond it,
+/// that their signs do not show the shape.
 const NEAR_NODE: f64 = 0.175;
-/// Ends that would differ by this factor in bending tell it from swinging.
-const TELLS: f64 = 1.3;
-/// A mode with less than this share of the largest says nothing of how the cask moves.
-const SHOWN: f64 = 0.1;
+/// If bending would make the ends differ by this factor, they show whether the cask bends or moves as a
+/// whole.
+const SHAPE_RATIO: f64 = 1.3;
+/// A mode with less than this share of the largest does not show how the cask moves.
+const LEAST_SHARE: f64 = 0.1;
 
 impl FlightFit {
-    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a
-    /// period, slower than any cask's or damped as none; or wholly at one end, as a cable that whips.
-    pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
+    /// True if the fitted mode is an artefact: it bends one channel's plateau instead of ringing at both
+    /// ends. It appears at one end alone and for less than a period, or slower than any cask, or strongly
+    /// damped; or it is wholly at one end, like a whipping cable.
+    pub fn is_fit_artefact(&self, mode: usize, signals: &[Signal]) -> bool {
         let (frequency_hz, damping) =
             self.modes.get(mode).map_or((f64::INFINITY, 0.0), |m| (m.frequency_hz, m.damping));
         let largest_m_s = |end: End| {
@@ -196,9 +198,9 @@ impl FlightFit {
         let is_overtone =
             self.modes.first().is_some_and(|slowest| frequency_hz > OVERTONE * slowest.frequency_hz);
         let alone = match is_slow || damping > STRONG_DAMPING {
-            true => ALONE,
+            true => ONE_END,
             false if is_overtone => f64::INFINITY,
-            false => WHOLLY_ALONE,
+            false => ONE_END_ONLY_RATIO,
         };
         first.max(second) > alone * first.min(second)
     }
@@ -210,9 +212,9 @@ impl FlightFit {
         sizes_m_s.fold(0.0, f64::max)
     }
 
-    /// How far the outermost channel on the first end goes along with that on the second in a mode, as a
-    /// share of it; negative where it goes the other way.
-    pub fn goes_along(&self, mode: usize, signals: &[Signal]) -> f64 {
+    /// Motion of the outermost channel on the first end relative to that on the second in a mode; negative if
+    /// the ends move in opposite directions.
+    pub fn end_ratio(&self, mode: usize, signals: &[Signal]) -> f64 {
         let across = || signals.iter().zip(&self.plateaus).filter(|(s, _)| s.axis == Axis::Transverse);
         let by_place =
             |a: &(&Signal, &Plateau), b: &(&Signal, &Plateau)| a.0.position_m.total_cmp(&b.0.position_m);
@@ -224,28 +226,28 @@ impl FlightFit {
         if square > 0.0 { (last.0 * first.0 + last.1 * first.1) / square } else { 0.0 }
     }
 
-    /// How many of the slowest modes the cask swings in as a whole, on its contents or mounts, since a free
-    /// body does not bend so: slower than any cask; both ends go apart, or together once more, near the
-    /// slowest in which they go together; or as far as one another where bending would let them differ. Of a
-    /// cask of `height_m`; 0 where it is slender.
-    pub fn swinging(&self, signals: &[Signal], cask: &Cask) -> usize {
+    /// Counts the slowest modes in which a cask of `height_m` moves as a whole on its mounts or contents,
+    /// since a free body does not bend so: slower than any cask; both ends in opposite directions, or in the
+    /// same direction once more near the slowest such mode; or equally far where bending would make the ends
+    /// differ. 0 for a slender cask.
+    pub fn rigid_modes(&self, signals: &[Signal], cask: &Cask) -> usize {
         let &Cask { length_m, height_m, .. } = cask;
         let second_mode = if height_m > 0.0 {
             SECOND_MODE.min(SECOND_MODE_THICK.0 + SECOND_MODE_THICK.1 * length_m / height_m)
         } else {
             SECOND_MODE
         };
-        // What axial channels show of a mode is its slope.
+        // Axial channels show the slope of a mode.
         let sizes_m_s: Vec<f64> = (0..self.modes.len()).map(|mode| self.size_m_s(mode, signals)).collect();
         let largest_m_s = sizes_m_s.iter().fold(0.0, |a: f64, b| a.max(*b));
         let goes = |(i, m): (usize, &Mode)| {
-            let along = self.goes_along(i, signals);
-            let is_mode = sizes_m_s[i] > SHOWN * largest_m_s && m.damping < STRONG_DAMPING;
+            let along = self.end_ratio(i, signals);
+            let is_mode = sizes_m_s[i] > LEAST_SHARE * largest_m_s && m.damping < STRONG_DAMPING;
             is_mode.then_some((m.frequency_hz, along))
         };
         let shown: Vec<(f64, f64)> = self.modes.iter().enumerate().filter_map(goes).collect();
-        let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ALONE);
-        let mut apart = shown.iter().filter(|(_, along)| (-ALONE..-1.0 / ALONE).contains(along));
+        let mut together = shown.iter().filter(|(_, along)| *along > 1.0 / ONE_END);
+        let mut apart = shown.iter().filter(|(_, along)| (-ONE_END..-1.0 / ONE_END).contains(along));
         let (slowest, next, apart) = (together.next(), together.next(), apart.next());
         let length_s = self.to_s - self.from_s;
         let is_near = |hz: f64, than_hz: f64| hz < second_mode * than_hz;
@@ -253,8 +255,8 @@ impl FlightFit {
             slowest.map_or(*apart_hz < FASTEST_SWING_HZ, |slowest| is_near(*apart_hz, slowest.0))
         });
         let swings = |(hz, along): &&(f64, f64)| {
-            (*hz < FASTEST_SWING_HZ && goes_straight(*along, signals, cask))
-                || next.is_some_and(|next| is_near(next.0, *hz) && (next.0 - hz) * length_s > RESOLVED)
+            (*hz < FASTEST_SWING_HZ && moves_straight(*along, signals, cask))
+                || next.is_some_and(|next| is_near(next.0, *hz) && (next.0 - hz) * length_s > SEPARATION)
                 || apart_hz.is_some_and(|apart_hz| is_near(*hz, apart_hz))
         };
         let together_hz = slowest.filter(swings).map(|(hz, _)| *hz);
@@ -264,12 +266,12 @@ impl FlightFit {
         self.modes.iter().take_while(|m| m.frequency_hz <= up_to_hz).count()
     }
 
-    /// The bending mode of a free beam that each mode is, by its order, from 1 on: whether both ends go
-    /// together, and which of these it is; 0 where the cask swings.
+    /// Order of the bending mode of a free beam for each fitted mode, from 1 on, by the relative direction of
+    /// the ends; 0 if the cask moves as a whole.
     pub fn bending_orders(&self, signals: &[Signal], cask: &Cask) -> Vec<u8> {
-        let (swinging, mut together) = (self.swinging(signals, cask), 0);
+        let (swinging, mut together) = (self.rigid_modes(signals, cask), 0);
         let order = |mode: usize| {
-            let goes = mode >= swinging && self.goes_along(mode, signals) > 0.0;
+            let goes = mode >= swinging && self.end_ratio(mode, signals) > 0.0;
             together += u8::from(goes);
             if mode < swinging {
                 0
@@ -282,33 +284,33 @@ impl FlightFit {
         (0..self.modes.len()).map(order).collect()
     }
 
-    /// How many periods of its slowest mode it shows; infinite without modes.
+    /// Number of periods of the slowest mode in the window; infinite without modes.
     pub fn periods(&self) -> f64 {
         let lowest_hz = self.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
         lowest_hz * (self.to_s - self.from_s)
     }
 
-    /// Whether the window tells its modes from one another, or shows a period of each, so that they ring
-    /// whatever they are called.
+    /// True if the window separates its modes, or shows a period of each, so that they ring whatever their
+    /// assignment.
     ///
-    /// Neighbours lie apart by half of 1/T, and there is a period of the fastest for each pair of modes.
+    /// Neighbours differ by half of 1/T, and there is a period of the fastest for each pair of modes.
     #[allow(clippy::cast_precision_loss, reason = "a handful of modes")]
     pub fn resolves_modes(&self) -> bool {
         let length_s = self.to_s - self.from_s;
-        let is_apart = |pair: &[Mode]| (pair[1].frequency_hz - pair[0].frequency_hz) * length_s > RESOLVED;
+        let is_apart = |pair: &[Mode]| (pair[1].frequency_hz - pair[0].frequency_hz) * length_s > SEPARATION;
         let fastest_hz = self.modes.iter().map(|m| m.frequency_hz).fold(0.0, f64::max);
         let pairs = (self.modes.len() * self.modes.len().saturating_sub(1) / 2) as f64;
         let has_room = fastest_hz * length_s >= pairs;
         self.periods() > 1.0 || (has_room && self.modes.windows(2).all(is_apart))
     }
 
-    /// Whether it shows its slowest mode for long enough to tell fits apart by what they leave.
-    pub fn is_told_apart(&self) -> bool {
-        self.periods() > TOLD_APART_PERIODS
+    /// True if the window shows the slowest mode for long enough to rank fits by their residuals.
+    pub fn can_rank_fits(&self) -> bool {
+        self.periods() > RANKING_PERIODS
     }
 
-    /// Frequency of the first bending mode, Hz: of the slowest one that rings like the largest; where nothing
-    /// rings after a contact of `contact_s`, at the least.
+    /// Frequency of the first bending mode, Hz: of the slowest one that rings like the largest; if nothing
+    /// rings after a contact of `contact_s`, a lower limit.
     pub fn first_bending_hz(&self, contact_s: f64) -> f64 {
         let largest_m_s = self.modes.iter().map(|mode| mode.amplitude_m_s).fold(0.0, f64::max);
         let rings =
@@ -322,22 +324,22 @@ impl FlightFit {
     }
 }
 
-/// Where the outermost transverse channels sit, as shares of the length.
+/// Positions of the outermost transverse channels, as shares of the length.
 fn outermost(signals: &[Signal], length_m: f64) -> (f64, f64) {
     let across = || signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.position_m / length_m);
     (across().fold(f64::INFINITY, f64::min), across().fold(0.0, f64::max))
 }
 
-/// Whether the outermost channels stand clear of the first mode's nodes, so that their signs tell its shape.
+/// True if the outermost channels are clear of the first mode's nodes, so that their signs show its shape.
 fn shows_shapes(signals: &[Signal], length_m: f64) -> bool {
     let (first, last) = outermost(signals, length_m);
     first.max(1.0 - last) < NEAR_NODE
 }
 
-/// Whether both ends go nearly as far as one another, where the first bending mode would let them differ:
-/// with limiters of no mass or of the most, and with what draws the centre of gravity to where it is in the
-/// beam or in the limiter of its end.
-fn goes_straight(along: f64, signals: &[Signal], cask: &Cask) -> bool {
+/// True if both ends move nearly equally far where the first bending mode would make them differ: with
+/// limiters of no mass or of the largest mass, and with the centre of gravity shifted by the beam or by the
+/// limiter of its end.
+fn moves_straight(along: f64, signals: &[Signal], cask: &Cask) -> bool {
     let (first, last) = outermost(signals, cask.length_m);
     let heavier = 2.0 * (cask.cog_m / cask.length_m - 0.5);
     let mut limiters = [0.0, MOST_END_MASS]
@@ -347,7 +349,7 @@ fn goes_straight(along: f64, signals: &[Signal], cask: &Cask) -> bool {
         let (own, other) = NODE_BY_END_MASS;
         let node = |own_mass: f64, other_mass: f64| NODE - own * own_mass + other * other_mass;
         let bent = (node(masses[0], masses[1]) - first) / (node(masses[1], masses[0]) - (1.0 - last));
-        bent.ln().abs() > TELLS.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
+        bent.ln().abs() > SHAPE_RATIO.ln() && (along / bent).ln().abs() > 2.0 * along.ln().abs()
     })
 }
 
@@ -368,9 +370,9 @@ mod tests {
     #[test]
     fn periods_are_those_of_the_slowest_mode() {
         assert!((flight(0.05, &[30.0, 80.0]).periods() - 1.5).abs() < 1e-9);
-        assert!(!flight(0.049, &[30.0, 80.0]).is_told_apart());
-        assert!(flight(0.051, &[30.0, 80.0]).is_told_apart());
-        assert!(flight(0.001, &[]).is_told_apart(), "nothing rings");
+        assert!(!flight(0.049, &[30.0, 80.0]).can_rank_fits());
+        assert!(flight(0.051, &[30.0, 80.0]).can_rank_fits());
+        assert!(flight(0.001, &[]).can_rank_fits(), "nothing rings");
     }
 
     #[test]
@@ -386,7 +388,7 @@ mod tests {
             let frequencies_hz: Vec<f64> = modes.iter().map(|mode| mode.0).collect();
             let plateaus = vec![plateau(|along| along), plateau(|_| 1.0)];
             FlightFit { plateaus, ..flight(0.1, &frequencies_hz) }
-                .swinging(&signals, &example::cask(1.0, 5.0, height_m))
+                .rigid_modes(&signals, &example::cask(1.0, 5.0, height_m))
         };
         let of_modes = |modes: &[(f64, f64)], second_m: f64| placed(modes, second_m, 0.0);
         let swinging = |modes: &[(f64, f64)]| of_modes(modes, 4.7);
@@ -423,7 +425,7 @@ mod tests {
             };
             let fit = FlightFit { modes: modes.to_vec(), ..flight(0.1, &[]) };
             let cask = Cask { cog_m, ..example::cask(1.0, 5.0, 0.0) };
-            FlightFit { plateaus: vec![plateau(along), plateau(1.0)], ..fit }.swinging(&signals, &cask)
+            FlightFit { plateaus: vec![plateau(along), plateau(1.0)], ..fit }.rigid_modes(&signals, &cask)
         };
         let mode = |frequency_hz, damping| Mode { frequency_hz, damping, amplitude_m_s: 1.0 };
         // At 0.14 and 0.90 of the length a uniform beam goes 0.6 times as far at the first place; with a
@@ -455,23 +457,23 @@ mod tests {
         };
         let plateaus = channels.map(plateau).into();
         let flight = FlightFit { plateaus, ..flight(0.1, &[75.0, 126.0]) };
-        assert_eq!(flight.swinging(&signals, &example::cask(1.0, 5.0, 0.0)), 0);
+        assert_eq!(flight.rigid_modes(&signals, &example::cask(1.0, 5.0, 0.0)), 0);
     }
 
     #[test]
     fn a_slow_swing_of_one_end_is_no_mode() {
         let signal = |end| Signal { end, ..example::signal(1e4, vec![]) };
         let signals = [signal(End::First), signal(End::Second)];
-        let is_bend = |length_s: f64, frequency_hz: f64, second_m_s: f64| {
+        let is_fit_artefact = |length_s: f64, frequency_hz: f64, second_m_s: f64| {
             let plateau =
                 |size_m_s: f64| Plateau { ringing_m_s: vec![(0.0, size_m_s)], ..example::plateau("A", 0.0) };
             let plateaus = vec![plateau(1.0), plateau(second_m_s)];
-            FlightFit { plateaus, ..flight(length_s, &[frequency_hz]) }.is_bend(0, &signals)
+            FlightFit { plateaus, ..flight(length_s, &[frequency_hz]) }.is_fit_artefact(0, &signals)
         };
-        assert!(is_bend(0.04, 20.0, 0.05) && is_bend(0.1, 15.0, 20.0));
-        assert!(!is_bend(0.04, 20.0, 0.2), "both ends ring");
-        assert!(!is_bend(0.06, 20.0, 0.05), "more than a period is a mode with a node there");
-        assert!(is_bend(0.06, 20.0, 0.005), "nothing at all at the other end");
+        assert!(is_fit_artefact(0.04, 20.0, 0.05) && is_fit_artefact(0.1, 15.0, 20.0));
+        assert!(!is_fit_artefact(0.04, 20.0, 0.2), "both ends ring");
+        assert!(!is_fit_artefact(0.06, 20.0, 0.05), "more than a period is a mode with a node there");
+        assert!(is_fit_artefact(0.06, 20.0, 0.005), "nothing at all at the other end");
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! What a row of a file's keys says: what the key takes, its default, and its line in the form that `init`
+//! A row of a file's keys: the values that the key accepts, its default, and its line in the form that `init`
 //! writes.
 
-use super::shown::short;
+use super::shown::show;
 
-/// What stands behind a key.
+/// Type of the value of a key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Takes {
-    /// Text in quotes; where only some words will do, the parser lists them.
+    /// Text in quotes; if only some words are valid, the parser lists them.
     Text,
     /// A word or a number.
     TextOrNumber,
@@ -18,7 +18,7 @@ pub enum Takes {
     Date,
     /// A list of texts.
     Texts,
-    /// A table of the user's own names.
+    /// A table with the user's own keys.
     Table,
     /// A value with its interval, or limits: { value = …, u95 = …, by = "…" }, { least = …, most = … }.
     Observation,
@@ -26,7 +26,7 @@ pub enum Takes {
     Number(Allowed),
 }
 
-/// Which numbers a key allows by itself; what depends on another key is the parser's.
+/// Numbers that a key accepts by itself; the parser checks limits that depend on another key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Allowed {
     /// Every finite one.
@@ -35,14 +35,14 @@ pub enum Allowed {
     FromZero,
     /// More than 0.
     AboveZero,
-    /// From the first to the second; the text says what lies beyond, or what the key means.
+    /// A range from the first to the second; the text says what lies beyond, or the meaning of the key.
     Within(f64, f64, &'static str),
     /// 0, or as [`Allowed::Within`].
     ZeroOrWithin(f64, f64, &'static str),
 }
 
 impl Allowed {
-    /// Whether a number is among them.
+    /// True if the range contains a number.
     pub(crate) fn holds(self, number: f64) -> bool {
         match self {
             Self::Any => true,
@@ -53,14 +53,14 @@ impl Allowed {
         }
     }
 
-    /// Those numbers, in words.
+    /// The range in words.
     pub fn words(self) -> String {
         match self {
             Self::Any => "a number".into(),
             Self::FromZero => "0 or more".into(),
             Self::AboveZero => "a number above 0".into(),
-            Self::Within(least, most, _) => format!("{} to {}", short(least), short(most)),
-            Self::ZeroOrWithin(least, most, _) => format!("0, or {} to {}", short(least), short(most)),
+            Self::Within(least, most, _) => format!("{} to {}", show(least), show(most)),
+            Self::ZeroOrWithin(least, most, _) => format!("0, or {} to {}", show(least), show(most)),
         }
     }
 }
@@ -68,17 +68,17 @@ impl Allowed {
 /// A key of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
-    /// As it is written; a quantity's ends in its unit.
+    /// Name as written in the file; the name of a quantity ends in its unit.
     pub name: &'static str,
-    /// What stands behind it.
+    /// Type of its value.
     pub takes: Takes,
-    /// What holds where it is left out, as docs/formats.md says it; "required" where nothing does.
+    /// Value if the key is absent, as docs/formats.md states it; "required" if there is none.
     pub default: &'static str,
-    /// A value as it could stand in a file; "" where the form has no line of its own for the key.
+    /// A value as it could stand in a file; "" if the form has no line for the key.
     pub example: &'static str,
-    /// What the form says of it.
+    /// Remark in the form.
     pub remark: &'static str,
-    /// Whether the form asks for it, since only the user knows it.
+    /// True if the form asks for it, since only the user knows it.
     pub is_asked: bool,
 }
 
@@ -87,29 +87,28 @@ pub struct Key {
 pub struct KeyTable {
     /// The word in its brackets.
     pub name: &'static str,
-    /// What the form says of it.
+    /// Remark in the form.
     pub remark: &'static str,
-    /// Its keys, in the order of the form.
+    /// Keys of the table, in the order of the form.
     pub keys: &'static [Key],
 }
 
-/// What the form that `init` writes has in place of a text that only the user knows; no key takes it for a
-/// value.
+/// Placeholder in the form of `init` for a text that only the user knows; no key accepts it as a value.
 pub const FILL_IN: &str = "FILL IN";
 
-/// The default of a key that must be there.
+/// Marks a key as required.
 pub const REQUIRED: &str = "required";
 
 pub(crate) const ANY: Takes = Takes::Number(Allowed::Any);
 pub(crate) const FROM_ZERO: Takes = Takes::Number(Allowed::FromZero);
 pub(crate) const ABOVE_ZERO: Takes = Takes::Number(Allowed::AboveZero);
 
-pub(crate) const fn within(least: f64, most: f64, why: &'static str) -> Takes {
+pub(crate) const fn range(least: f64, most: f64, why: &'static str) -> Takes {
     Takes::Number(Allowed::Within(least, most, why))
 }
 
-/// Declares the keys of tables. A row has the name, the default, what stands behind the key, and, for a file
-/// that has a form, its value and remark in the form that `init` writes; `ask` where the form asks for it.
+/// Declares the keys of tables. A row has the name, the default, the type of the value, and, for a file that
+/// has a form, its value and remark in the form that `init` writes; `ask` if the form asks for it.
 macro_rules! keys {
     (@is_asked) => { false };
     (@is_asked ask) => { true };
@@ -132,7 +131,7 @@ macro_rules! keys {
 pub(crate) use keys;
 
 impl Key {
-    /// Whether a value that the file leaves out enters the result all the same.
+    /// True if a value that the file omits enters the result all the same.
     pub(crate) fn is_assumed(&self) -> bool {
         let is_number = matches!(self.takes, Takes::Number(_) | Takes::TextOrNumber);
         is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)

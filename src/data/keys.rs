@@ -1,15 +1,15 @@
-//! The keys of a cask file, one row each; those of `[tolerance]` and `[corrections]` stand in
+//! The keys of a cask file, one row each; those of `[tolerance]` and `[corrections]` are in
 //! [`super::tolerances`] with their values.
 //!
 //! The parser, the form that `init` writes, and the table in docs/formats.md are made from these rows.
 
 use super::SAMPLE_RATES_HZ;
-pub(crate) use super::key::{ABOVE_ZERO, ANY, FROM_ZERO, keys, within};
+pub(crate) use super::key::{ABOVE_ZERO, ANY, FROM_ZERO, keys, range};
 pub use super::key::{Allowed, FILL_IN, Key, KeyTable, REQUIRED, Takes};
 pub use super::tolerances::{CORRECTIONS, TOLERANCE};
 use Takes::{Date, Observation, Table, Text, TextOrNumber, TextOrTable, Texts};
 
-/// Tables that stand as the value of a key: no line of a file begins them.
+/// Tables that are the value of a key: no line of a file begins them.
 pub const INNER_TABLES: [&str; 4] = ["source", "where", "observation", "limit"];
 
 const fn table(name: &'static str, remark: &'static str, keys: &'static [Key]) -> KeyTable {
@@ -41,19 +41,20 @@ pub static TABLES: [KeyTable; 17] = [
     table("limit", "one of the two or both", &LIMIT),
 ];
 
-/// The tables that a house file may have, which cask files name.
+/// The tables of a house file, to which cask files refer.
 pub static OF_HOUSE: [KeyTable; 2] = [table("tolerance", "", &TOLERANCE), table("report", "", &REPORT)];
 
-/// What a person calls the quantity of a key of `[observed]` or `[limits]`, one name for both tables.
+/// Name of a quantity of `[observed]` or `[limits]` in reports, the same for both tables.
 pub fn quantity_words(name: &str) -> &str {
     OBSERVED.iter().chain(&LIMITS).find(|key| key.name == name).map_or(name, |key| key.remark)
 }
 
-/// Five times the impact of a limiter; a body that turns at 5 rad/s comes down in that.
+/// Longest contact: five times the impact of a limiter; in this time a body that turns at 5 rad/s comes down.
 pub const LONGEST_CONTACT_S: f64 = 0.2;
-/// A tenth of the impact of steel on steel. The steps of a prediction grow as its inverse.
+/// Shortest contact: a tenth of the impact of steel on steel. The steps of a prediction grow as its inverse.
 pub const SHORTEST_CONTACT_S: f64 = 1e-5;
-/// The lowest cut-off of a low-pass, Hz: a drop lasts a tenth of a second. Its tails grow as the inverse.
+/// The lowest cut-off of a low-pass, Hz: a drop lasts a tenth of a second. The filter's transients grow as
+/// the inverse.
 const LOWEST_CUTOFF_HZ: f64 = 1.0;
 
 keys! {
@@ -68,7 +69,7 @@ TEST {
     "target": "–", Text, r#""IAEA target, 1000 t""#, "onto what";
     "remarks": "–", Text, r#""second drop of this model""#, "";
     "date": "–", Date, "2026-11-22T09:40:00+01:00", "without quotes";
-    "temperature_c": "–", within(-100.0, 200.0, "of the specimen, in °C"), "12.5", "of the specimen";
+    "temperature_c": "–", range(-100.0, 200.0, "of the specimen, in °C"), "12.5", "of the specimen";
     "photos": "–", Texts, r#"["before.jpg"]"#, "PNG or JPEG in the folder of this file";
     "signatures": "–", Texts, r#"["Test engineer", "Reviewer"]"#, "lines to sign";
     "revisions": "–", Texts, r#"["2026-11-22, 0.1.0, first issue"]"#,
@@ -131,14 +132,14 @@ REPORT {
 
 /// Keys of `[cask]`.
 ///
-/// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it
-/// `predict` ends in a second, and no product of two keys leaves the numbers that a double holds.
+/// The ranges of cask and drop reach from models of a centimetre and a gram to beyond any existing cask.
+/// Within them `predict` ends in a second, and no product of two keys overflows a double.
 CASK {
     "name": "the file's name", Text, r#""CASK""#, "the cask's name; left out: the file's";
-    "mass_kg": REQUIRED, within(1e-3, 1e6, "a model of a gram to more than any cask, in kg"),
+    "mass_kg": REQUIRED, range(1e-3, 1e6, "a model of a gram to more than any cask, in kg"),
         ask "4466.0", "";
     "length_m": REQUIRED,
-        within(0.01, 100.0, "a model of a centimetre to more than any cask, in metres: 5512 mm are 5.512"),
+        range(0.01, 100.0, "a model of a centimetre to more than any cask, in metres: 5512 mm are 5.512"),
         ask "5.512", "along the axis, between the two ends that strike";
     "height_m": REQUIRED, FROM_ZERO, ask "0.8", "section in the plane of the drop; 0 states a thin rod";
     "width_m": "–", ABOVE_ZERO, "0.8", "across that plane, reported only";
@@ -146,33 +147,33 @@ CASK {
         "centre of gravity from the first end; left out: length_m / 2, and wider intervals";
     "inertia_kg_m2": "m (l² + h²)/12", ABOVE_ZERO, "2100.0",
         "about the centre of gravity; left out: m (l² + h²) / 12, and wider intervals";
-    "scale": "–", within(0.01, 1.0, "length of the model over that of its prototype: 0.5 of a half-scale \
+    "scale": "–", range(0.01, 1.0, "length of the model over that of its prototype: 0.5 of a half-scale \
          model; all other keys are the model's own"), "0.5", "of a scale model, over its prototype";
 }
 
 /// Keys of `[drop]`.
 DROP {
     "height_m": "required, but beside `impact_velocity_m_s`: then v0²/(2 g)",
-        within(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower; 9000 mm are 9"),
+        range(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower; 9000 mm are 9"),
         ask "9.0", "free-fall height of the lowest point";
-    "angle_deg": REQUIRED, within(0.0, 90.0, "the inclination of the cask's axis above the horizontal before \
+    "angle_deg": REQUIRED, range(0.0, 90.0, "the inclination of the cask's axis above the horizontal before \
          the drop, in degrees; the first end is the low one"), ask "15.0",
         "inclination of the axis above the horizontal";
-    // From below the velocity of the least drop to above that of the highest; beyond, a body turns thousands
-    // of times in flight.
+    // The range reaches from below the velocity of the lowest drop to above that of the highest; beyond it a
+    // body turns thousands of times in flight.
     "impact_velocity_m_s": "√(2 g h)",
-        within(0.01, 200.0, "in m/s: no drop of a cask is slower or faster; check the value and its unit"),
+        range(0.01, 200.0, "in m/s: no drop of a cask is slower or faster; check the value and its unit"),
         "13.3", "overrides √(2 g h)";
-    // From below the Moon's 1.6 m/s² to three hundred times the Earth's in a centrifuge.
-    "gravity_m_s2": "9.81", within(1.0, 3000.0, "in m/s²: the Moon's to that of a centrifuge"), "9.81",
+    // The range reaches from below the Moon's 1.6 m/s² to three hundred times the Earth's in a centrifuge.
+    "gravity_m_s2": "9.81", range(1.0, 3000.0, "in m/s²: the Moon's to that of a centrifuge"), "9.81",
         "this is the default";
-    // Ten times what a hook that lets go of one end first gives a cask in a fall of 9 m.
+    // The range is ten times the rotation of a cask that falls 9 m after its hook released one end first.
     "angular_velocity_deg_s": "0",
-        within(-60.0, 60.0, "in degrees a second, of the cask as the first end strikes"), "0.0",
+        range(-60.0, 60.0, "in degrees a second, of the cask as the first end strikes"), "0.0",
         "rotation as the first end strikes, positive brings the second end down; `height_m` is then the fall \
          of the centre of gravity";
     "horizontal_velocity_m_s": "0",
-        within(-5.0, 5.0, "in m/s, of the centre of gravity as the first end strikes"), "0.0",
+        range(-5.0, 5.0, "in m/s, of the centre of gravity as the first end strikes"), "0.0",
         "of the centre of gravity as the first end strikes, positive towards the second end";
 }
 
@@ -188,9 +189,9 @@ CONTACT {
 
 /// Keys of `[filter]`.
 FILTER {
-    "cfc": "", within(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the class, such as 60, 180 or 600"), "180",
+    "cfc": "", range(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the class, such as 60, 180 or 600"), "180",
         "a channel frequency class of SAE J211 / ISO 6487";
-    "cutoff_hz": "", within(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the −3 dB cut-off, in Hz"), "400.0",
+    "cutoff_hz": "", range(LOWEST_CUTOFF_HZ, *SAMPLE_RATES_HZ.end(), "the −3 dB cut-off, in Hz"), "400.0",
         "a −3 dB cut-off";
 }
 
@@ -214,7 +215,7 @@ CHANNEL {
     "position_m": REQUIRED, ANY, ask "0.15", "along the axis, from the first end";
     "offset_m": "0", ANY, "0.0",
         "across the axis, positive away from the target: half the section on the upper skin";
-    "around_deg": "–", within(-180.0, 360.0, "around the skin, in degrees: 0 is the lowest line, 90 the \
+    "around_deg": "–", range(-180.0, 360.0, "around the skin, in degrees: 0 is the lowest line, 90 the \
          side, 180 the uppermost line"), "180.0",
         "around the skin from the lowest line (0) to the uppermost (180); gives `offset_m` and `lateral_m`";
     "direction": "–", Text, r#""radial""#,
@@ -224,7 +225,7 @@ CHANNEL {
     "scale": "1", ABOVE_ZERO, "0.9", "what is read times this is in `unit`";
     "full_scale": "–", ABOVE_ZERO, "2000.0", "in `unit`: where the channel clips";
     "sample_rate_hz": "the recording's",
-        within(*SAMPLE_RATES_HZ.start(), *SAMPLE_RATES_HZ.end(), "samples a second, in Hz"), "100000.0",
+        range(*SAMPLE_RATES_HZ.start(), *SAMPLE_RATES_HZ.end(), "samples a second, in Hz"), "100000.0",
         "overrides what the recording says";
     "time": "`[recording] time`", Text, r#""/daq/time_s""#,
         "this channel's own times (CSV column, HDF5 dataset, field of messages)";
@@ -235,7 +236,7 @@ CHANNEL {
     "coupling": "`\"dc\"`", Text, r#""dc""#, r#"or "ac", then also time_constant_s = 0.3"#;
     "time_constant_s": "", ABOVE_ZERO, "", "";
     "calibration_percent": "that of `[tolerance]`",
-        within(0.0, 100.0, "half-width of the 95 % interval, in percent"), "1.0", "this channel's own";
+        range(0.0, 100.0, "half-width of the 95 % interval, in percent"), "1.0", "this channel's own";
     "reference": "–", Text, r#""amplifier 3""#, "channels of one name share the error of their calibration";
     "lateral_m": "0", ANY, "0.0", "off the plane of the drop";
     "serial": "–", Text, r#""A-20311""#, "of the sensor, for the report";
@@ -248,7 +249,7 @@ SOURCE {
     "topic": REQUIRED, Text, r#""/imu""#, "";
     "field": REQUIRED, Text, r#""linear_acceleration.z""#, "";
     "channel": "the only one",
-        within(0.0, 65_535.0, "the number of one of the MCAP channels that write on the topic"), "3", "";
+        range(0.0, 65_535.0, "the number of one of the MCAP channels that write on the topic"), "3", "";
 }
 
 /// Keys of `where = { column = …, is = … }`.

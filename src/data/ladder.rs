@@ -1,10 +1,10 @@
-//! The ladder of analytical models: its rungs, what each says, and how the speed answers to k and angle.
+//! Analytical models of increasing detail, their predictions, and the dependence of the speed on k and angle.
 
 use super::cask::{Contact, Drop};
 use super::prediction::Prediction;
 use serde::Serialize;
 
-/// The models, simplest first; each adds one thing to the one below and agrees with it where that thing is
+/// The models, simplest first; each adds one effect to the previous one and agrees with it if that effect is
 /// absent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -16,27 +16,27 @@ pub enum Rung {
     Body,
     /// Coulomb friction between smooth and rough: L sticks or slides.
     Friction,
-    /// The target only pushes: for k = 0 L lifts off where the contact would need a pull.
+    /// The target only pushes: for k = 0 L lifts off if the contact would need a pull.
     Unilateral,
     /// L's further impacts before R strikes.
     FurtherImpacts,
-    /// L's first impact takes its time: the body turns and falls while the target pushes.
+    /// L's first impact has a duration: the body turns and falls while the target pushes.
     FinitePulse,
 }
 
 impl Rung {
-    /// All, simplest first.
+    /// All models, simplest first.
     pub const ALL: [Self; 6] =
         [Self::Rod, Self::Body, Self::Friction, Self::Unilateral, Self::FurtherImpacts, Self::FinitePulse];
 
-    /// Those that have something to say of a drop: the last one needs the length of the contact.
-    pub fn of(drop: &Drop) -> impl Iterator<Item = Self> {
+    /// Models that apply to a drop: the last one needs the duration of the contact.
+    pub fn for_drop(drop: &Drop) -> impl Iterator<Item = Self> {
         let is_timed = drop.contact_duration_s > 0.0;
         Self::ALL.into_iter().filter(move |rung| is_timed || *rung != Self::FinitePulse)
     }
 
-    /// Whether the speeds by a rung and by a richer one are the same, within the tolerance of the ladder.
-    pub fn say_the_same(speed: Option<f64>, richer: Option<f64>) -> bool {
+    /// True if the speeds of a model and of a richer one are equal within the tolerance.
+    pub fn agree(speed: Option<f64>, richer: Option<f64>) -> bool {
         match (speed, richer) {
             (Some(own), Some(richer)) => (richer - own).abs() <= LADDER_TOLERANCE_PERCENT / 100.0 * own,
             (None, None) => true,
@@ -44,7 +44,7 @@ impl Rung {
         }
     }
 
-    /// Its name for a person.
+    /// Name for a reader.
     pub fn words(self) -> &'static str {
         match self {
             Self::Rod => "rod",
@@ -56,8 +56,8 @@ impl Rung {
         }
     }
 
-    /// What it adds to the rung below, for a person.
-    pub fn adds(self) -> &'static str {
+    /// Physics that this model adds to the next simpler one, for a reader.
+    pub fn physics(self) -> &'static str {
         match self {
             Self::Rod => "thin uniform rod, rough or smooth",
             Self::Body => "section, centre of gravity, inertia",
@@ -69,22 +69,22 @@ impl Rung {
     }
 }
 
-/// One rung's prediction.
+/// Prediction of one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LadderStep {
-    /// Which rung.
+    /// Model.
     pub rung: Rung,
-    /// What it adds to the one below.
+    /// Physics that it adds to the next simpler model.
     pub adds: &'static str,
-    /// What it predicts.
+    /// Predicted values.
     #[serde(flatten)]
     pub prediction: Prediction,
-    /// Change of the slap-down speed against the rung below, percent; `None` for the first and where either
-    /// has no slap-down.
+    /// Change of the slap-down speed against the next simpler model, percent; `None` for the first and if
+    /// either has no slap-down.
     pub change_percent: Option<f64>,
 }
 
-/// All rungs for one contact law and one k, and the simplest that the richer ones do not change.
+/// All models for one contact law and one k, and the simplest that the richer ones do not change.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ladder {
     /// Inclination at first contact, degrees.
@@ -95,10 +95,10 @@ pub struct Ladder {
     pub k: f64,
     /// Simplest first.
     pub steps: Vec<LadderStep>,
-    /// The simplest rung that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`].
+    /// The simplest model that no richer one changes by more than [`LADDER_TOLERANCE_PERCENT`].
     pub suffices: Rung,
 }
 
-/// A rung suffices where no richer one moves the slap-down speed by more than this, percent: a tenth of the 1
+/// A model suffices if no richer one changes the slap-down speed by more than this, percent: a tenth of the 1
 /// % that a test resolves.
 pub const LADDER_TOLERANCE_PERCENT: f64 = 0.1;

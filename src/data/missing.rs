@@ -1,4 +1,4 @@
-//! The JSON of a result to the quantities that are null, each with the finding that took it.
+//! Lists the null quantities of a result, each with the finding that removed it.
 
 use super::finding::{DropFinding, Finding, FindingKind, ResultPart};
 use super::unit::acceleration_unit_m_s2;
@@ -8,20 +8,20 @@ use serde_json::Value;
 /// A quantity that the result lacks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct MissingQuantity {
-    /// Its place in the result: `slap_down.speed`, `impacts[1].crush`.
+    /// Path of the quantity in the result: `slap_down.speed`, `impacts[1].crush`.
     pub quantity: String,
-    /// The place in `quality` of the finding that took it.
+    /// Index in `quality` of the finding that removed it.
     pub because: Option<usize>,
     /// Why it is missing, where no finding took it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<&'static str>,
-    /// That, or what the finding says.
+    /// That reason, or the sentence of the finding.
     #[serde(skip)]
     pub words: String,
 }
 
-/// Where quantities stand in a result, and the part that each of the others belongs to; all else is of the
-/// first impact.
+/// Paths of quantities in a result, and the part to which each belongs; all others belong to the first
+/// impact.
 const PLACES: [&str; 7] =
     ["first_impact", "slap_down", "k", "amplification", "impacts", "shocks", "comparison"];
 const PARTS: [(&str, ResultPart); 5] = [
@@ -35,16 +35,16 @@ const PARTS: [(&str, ResultPart); 5] = [
 const NOT_SHOWN: &str = "this recording does not determine it";
 const PULSE_NOT_SHOWN: &str = "the channel does not show this pulse whole";
 
-/// What is null in a result; the first of the findings that takes its part took it.
+/// Lists the null quantities of a result; the first finding that removes a quantity's part is its reason.
 pub(super) fn missing_in(result: &Value, found: &[Finding]) -> Vec<MissingQuantity> {
     let missing = |quantity: String| {
         let is_in = |(place, _): &&(&str, ResultPart)| quantity.starts_with(place);
         let part = PARTS.iter().find(is_in).map_or(ResultPart::FirstImpact, |(_, part)| *part);
-        let takes = |f: &Finding| f.takes(part) || f.takes(ResultPart::Motion);
-        // The mass properties replace an end in all but in the course of a contact.
+        let takes = |f: &Finding| f.removes(part) || f.removes(ResultPart::Motion);
+        // The mass properties replace an end, except for the course of a contact.
         let is_end = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::MissingEnd { .. }));
         let channel = channel(result, &quantity);
-        let takes_pulse = |f: &Finding| f.takes(ResultPart::Channel) && f.channel.as_deref() == channel;
+        let takes_pulse = |f: &Finding| f.removes(ResultPart::Channel) && f.channel.as_deref() == channel;
         let because = match channel {
             Some(_) => found.iter().position(takes_pulse),
             None => found.iter().position(takes).or_else(|| found.iter().position(is_end)),
@@ -55,17 +55,17 @@ pub(super) fn missing_in(result: &Value, found: &[Finding]) -> Vec<MissingQuanti
         MissingQuantity { quantity, because, reason, words }
     };
     let all = PLACES.iter().flat_map(|place| nulls(&result[place], (*place).to_owned()));
-    all.filter(|quantity| is_meant(result, quantity)).map(missing).collect()
+    all.filter(|quantity| has_meaning(result, quantity)).map(missing).collect()
 }
 
-/// The shock of a place, and which number of it.
+/// The shock at a path, and the name of its number.
 fn shock<'a, 'b>(result: &'a Value, place: &'b str) -> Option<(&'a Value, &'b str)> {
     let (row, number) = place.strip_prefix("shocks[")?.split_once("].")?;
     Some((result.pointer(&format!("/shocks/{row}"))?, number))
 }
 
-/// Whether a quantity has a velocity: strain has none.
-fn is_meant(result: &Value, place: &str) -> bool {
+/// True if the quantity exists: strain has no velocity.
+fn has_meaning(result: &Value, place: &str) -> bool {
     let is_of_motion = |number: &str| number.starts_with("velocity") || number.starts_with("displacement");
     let is_acceleration = |shock: &Value| shock["unit"].as_str().and_then(acceleration_unit_m_s2).is_some();
     shock(result, place).is_none_or(|(shock, number)| is_acceleration(shock) || !is_of_motion(number))

@@ -1,4 +1,4 @@
-//! The rigid-body motion that the channels and a contact law give.
+//! The rigid-body motion that follows from the channels and a contact law.
 
 use super::curves::MotionCurve;
 
@@ -23,8 +23,8 @@ pub struct MotionState {
 /// twenty-fifth of a period of 400 Hz.
 pub const CONTACT_STEPS: usize = 200;
 
-/// What the reconstruction needs beside the signals: geometry, initial motion and how the axial velocity is
-/// had.
+/// Inputs of the reconstruction beside the signals: geometry, initial motion and the source of the axial
+/// velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     /// Length l, m.
@@ -37,7 +37,7 @@ pub struct Setup {
     pub angle_rad: f64,
     /// Speed at which L strikes, m/s.
     pub impact_velocity_m_s: f64,
-    /// Whether that follows from the height of the fall, and so from the rotation too.
+    /// True if that speed follows from the height of the fall, and therefore depends on the rotation.
     pub is_of_fall: bool,
     /// ω at first contact, rad/s.
     pub angular_velocity_rad_s: f64,
@@ -45,45 +45,45 @@ pub struct Setup {
     pub horizontal_velocity_m_s: f64,
     /// g, m/s².
     pub gravity_m_s2: f64,
-    /// How the axial velocity during contact is had.
-    pub axial: AxialClosure,
-    /// How far inward of a corner the force moves for what that crushes, m for each.
+    /// Source of the axial velocity during contact.
+    pub axial: AxialSource,
+    /// Inward movement of the force per crush of the corner, m/m.
     pub inward: f64,
-    /// How long a second of the recorder's clock lasts, s: 1 where its rate is as stated.
+    /// True duration of one second of the recorder's clock, s: 1 if its rate is as stated.
     pub second_s: f64,
     /// Steps that the contact is followed in.
     pub contact_steps: usize,
 }
 
-/// Where the axial velocity during contact comes from.
+/// Source of the axial velocity during contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum AxialClosure {
+pub enum AxialSource {
     /// ẋ_C = 0.
     Sticking,
-    /// A tangential force of so much of the normal force.
+    /// Friction: the tangential force is this share of the normal force.
     Sliding {
-        /// I_x / I_z: positive where it pushes towards R.
+        /// I_x / I_z: positive if it pushes towards R.
         friction: f64,
     },
-    /// From the axial channels.
+    /// The axial channels.
     Measured,
 }
 
 /// The friction of the first contact where no axial channel measures it: I_x / I_z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AssumedFriction {
-    /// As the contact law has it.
+    /// Impulse ratio of the contact law.
     pub ratio: f64,
-    /// Standard uncertainty of it.
+    /// Standard uncertainty of the ratio.
     pub u: f64,
 }
 
-/// A channel that stands in for an end without one: another one times a number.
+/// A reconstructed channel of an end without a sensor: another channel times a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StoodIn {
-    /// Its place among the signals.
+pub struct ScaledCopy {
+    /// Index of the reconstructed channel among the signals.
     pub channel: usize,
-    /// The place of the other one, whose errors it has.
+    /// Index of the channel that replaces it, whose errors it has.
     pub by: usize,
     /// The number.
     pub share: f64,
@@ -92,9 +92,9 @@ pub struct StoodIn {
 /// The motion between first contact and slap-down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// As L strikes.
+    /// State when L strikes.
     pub contact: MotionState,
-    /// As L leaves the target.
+    /// State when L leaves the target.
     pub separation: MotionState,
     /// Speed with which L strikes, m/s.
     pub impact_m_s: f64,
@@ -106,7 +106,7 @@ pub struct Motion {
     pub impulse_ratio: f64,
     /// Angular impulse about S during the contact over mass, m²/s: Θ ω / m of a rigid body   (32)
     pub angular_impulse_m2_s: f64,
-    /// How far L's corner goes below where it touched, m.
+    /// Greatest depth of L's corner below the point of first touch, m.
     pub crush_m: f64,
     /// Just before R strikes, where it does.
     pub slap_down: Option<MotionState>,
@@ -114,21 +114,21 @@ pub struct Motion {
     pub second_end_m_s: Option<(f64, f64)>,
     /// Height of R's corner then, m: 0 but for errors of angle, velocity and time.
     pub second_end_height_m: Option<f64>,
-    /// Height of L's corner over where it left as it touches again, m: 0 likewise.
+    /// Height of L's corner when it touches again, relative to that when it left, m: 0 likewise.
     pub touch_height_m: Option<f64>,
-    /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no
-    /// curve was asked for.
+    /// Lowest height of L's corner between separation and slap-down, relative to that when it left, m;
+    /// infinite without a curve.
     pub lowest_first_end_m: f64,
-    /// The same height as R strikes.
+    /// Height of L's corner when R strikes, m.
     pub last_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,
 }
 
 impl Motion {
-    /// By how much the first contact turns the cask more than its impulse gives a body of this Θ/m, m²: rad/s
-    /// (32)
-    pub fn turned_beyond_rad_s(&self, inertia_m2: f64) -> f64 {
+    /// Excess of the rotation from the first contact over the rotation that its impulse gives a body of this
+    /// Θ/m (m²), rad/s   (32)
+    pub fn excess_rotation_rad_s(&self, inertia_m2: f64) -> f64 {
         self.separation.angular_velocity_rad_s
             - self.contact.angular_velocity_rad_s
             - self.angular_impulse_m2_s / inertia_m2

@@ -1,4 +1,4 @@
-//! A channel that takes no part in the motion, such as strain or temperature: as stated, as read, as told.
+//! A channel that takes no part in the motion, such as strain or temperature: statement, samples and summary.
 
 use super::cask::ChannelSpec;
 use super::channel::{Channel, Extreme, Span};
@@ -9,33 +9,34 @@ use serde::Serialize;
 /// A `[[channel]]` table with `end = "none"` or `axis = "rate"`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherSpec {
-    /// What a reader of recordings takes, which reads all channels alike; end, axis and place say nothing.
+    /// Specification for a reader of recordings, which treats all channels alike; end, axis and position are
+    /// meaningless.
     pub read: ChannelSpec,
-    /// Declared unit, any text; `None`: what the recording says.
+    /// Declared unit, any text; `None` uses that of the recording.
     pub unit: Option<String>,
-    /// What makes it an angular-rate sensor, `axis = "rate"`: its rotation is held against the motion.
+    /// Specification of an angular-rate sensor, `axis = "rate"`: its rotation is compared with the motion.
     pub rate: Option<RateSpec>,
 }
 
-/// What a cask file says of an angular-rate sensor.
+/// Specification of an angular-rate sensor in the cask file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateSpec {
-    /// 1.0, or −1.0 where a positive reading brings R up.
+    /// 1.0, or −1.0 if a positive reading brings R up.
     pub polarity: f64,
-    /// 95 % half-width of its scale, as a share, where the file gives it its own.
+    /// 95 % half-width of its scale, as a share, if the file states one for the sensor.
     pub calibration: Option<f64>,
 }
 
-/// The rotation of the cask by an angular-rate sensor.
+/// Rotation of the cask by an angular-rate sensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredRotation {
     /// The sensor's name.
     pub channel: String,
-    /// 95 % half-width of its scale, as a share, where the file gives it its own.
+    /// 95 % half-width of its scale, as a share, if the file states one for the sensor.
     pub calibration: Option<f64>,
-    /// ω in the fall, where its zero is known from the rest before.
+    /// ω in the fall, if its zero is known from the rest before.
     pub before: Option<RotationRate>,
-    /// How much faster the cask turns in the flight than in the fall.
+    /// Rotation gained from the fall to the flight.
     pub gained: RotationRate,
 }
 
@@ -44,16 +45,17 @@ pub struct MeasuredRotation {
 pub struct RotationRate {
     /// rad/s.
     pub rad_s: f64,
-    /// Standard uncertainty of it, without that of the sensor's scale, rad/s.
+    /// Standard uncertainty of the rate, without that of the sensor's scale, rad/s.
     pub u_rad_s: f64,
 }
 
-/// Such channels as read, apart from those of the motion.
+/// Such channels as read, separate from those of the motion.
 #[derive(Debug, Default)]
 pub struct OtherChannels {
-    /// In the cask file's order; samples are in `unit`, `scale_m_s2` is 1, end, axis and place say nothing.
+    /// Channels in the cask file's order; samples are in `unit`, `scale_m_s2` is 1, and end, axis and
+    /// position are meaningless.
     pub channels: Vec<Channel>,
-    /// What reading them found wrong.
+    /// Problems found when reading them.
     pub issues: Vec<Finding>,
 }
 
@@ -73,25 +75,25 @@ pub struct OtherSummary {
     pub name: String,
     /// Unit, as the cask file or the recording writes it.
     pub unit: String,
-    /// Where the samples were found.
+    /// Path at which the samples were found.
     pub source: String,
     /// Number of samples.
     pub samples: usize,
     /// Sample rate, Hz.
     pub sample_rate_hz: f64,
-    /// Median before the release, or before the first contact where no release is seen.
+    /// Median before the release, or before the first contact if no release is seen.
     pub rest: Option<f64>,
-    /// RMS of the noise about it.
+    /// RMS of the noise about the median.
     pub noise: Option<f64>,
     /// Smallest value of the whole recording.
     pub smallest: Option<Extreme>,
     /// Largest value of the whole recording.
     pub largest: Option<Extreme>,
-    /// The strongest maximum of the spectrum of the curve, from three periods in it on.
+    /// The strongest maximum of the spectrum of the curve with at least three periods in it.
     pub strongest_line: Option<SpectralLine>,
     /// Codes of the findings on it.
     pub findings: Vec<IssueCode>,
-    /// Which sensor it is.
+    /// Sensor.
     #[serde(flatten)]
     pub sensor: SensorRecord,
     /// Samples at a limit, as index spans.
@@ -99,12 +101,12 @@ pub struct OtherSummary {
     pub clipped: Vec<Span>,
 }
 
-/// The curve of such a channel over the event, as recorded, and its spectrum.
+/// Curve of such a channel over the event, as recorded, and its spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherCurve {
     /// The channel's name.
     pub channel: String,
-    /// Its unit.
+    /// Unit of the channel.
     pub unit: String,
     /// Times, s from the first sample of the accelerometers; uniform.
     pub time_s: Vec<f64>,

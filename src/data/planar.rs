@@ -1,7 +1,6 @@
-//! The inclination and the turning of a rigid cask in its plane to where a corner of its lower side lies, and
-//! how fast it moves.
+//! Position and velocity of the lower corners of a rigid cask in its plane, from inclination and rotation.
 
-/// Arms a and b, m: how far S lies ahead of a lower corner along the target, and above it. The corner lies
+/// Arms a and b, m: the distance of S ahead of a lower corner along the target, and above it. The corner lies
 /// `behind_m` behind S along the axis: c for L, c − l for R.
 ///
 /// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)

@@ -1,9 +1,9 @@
-//! The analytical prediction: the body it is made for, and what it says.
+//! The analytical prediction and the body that it describes.
 
 use super::cask::Contact;
 use serde::Serialize;
 
-/// Which body a prediction is for.
+/// Body of a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BodyModel {
@@ -40,7 +40,7 @@ pub struct Body {
     pub inertia_kg_m2: f64,
 }
 
-/// What L does between the first impact and the slap-down.
+/// Motion of L between the first impact and the slap-down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FlightRegime {
@@ -62,16 +62,18 @@ impl std::fmt::Display for FlightRegime {
     }
 }
 
-/// Beyond this inclination the axis has stood upright before R strikes, degrees, however the cask turned.
+/// Beyond this inclination the axis has been upright before R strikes, degrees, whatever the rotation of the
+/// cask.
 const UPRIGHT_DEG: f64 = 90.0;
 
 impl Prediction {
-    /// Whether the cask turns over, a somersault, before R strikes: no slap-down of a drop test.
+    /// True if the cask turns over, a somersault, before R strikes: this is not the slap-down of a drop test.
     pub fn turns_over(&self) -> bool {
         self.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg.abs() >= UPRIGHT_DEG)
     }
 
-    /// Whether R slaps down after one impact of L, without a somersault: the scope of a study's largest.
+    /// True if R slaps down after one impact of L, without a somersault: only these count for the largest
+    /// value of a study.
     ///
     /// Where L strikes again the values jump from angle to angle, hundreds of times between 47° and 90° for a
     /// rough rod with k = 1, and none of them is critical.
@@ -93,10 +95,11 @@ pub struct CogVelocity {
     pub vertical_at_slap_down_m_s: Option<f64>,
 }
 
-/// What one model predicts for one contact law and one k. What does not exist (no slap-down) is `None`.
+/// Prediction of one model for one contact law and one k. A quantity that does not exist (no slap-down) is
+/// `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
-    /// Which body.
+    /// Body.
     pub model: BodyModel,
     /// The contact law: "rough", "smooth" or the Coulomb coefficient.
     pub contact: Contact,
@@ -104,13 +107,13 @@ pub struct Prediction {
     pub k: f64,
     /// Magnitude of R's velocity just before it strikes, m/s.
     pub slap_down_speed_m_s: Option<f64>,
-    /// Its vertical part, negative down, m/s.
+    /// Vertical component, negative down, m/s.
     pub vertical_velocity_m_s: Option<f64>,
-    /// Its horizontal part, m/s.
+    /// Horizontal component, m/s.
     pub horizontal_velocity_m_s: Option<f64>,
     /// ω between the impacts, positive brings R down, rad/s.
     pub angular_velocity_rad_s: f64,
-    /// From first impact to slap-down, s.
+    /// Time from the first impact to the slap-down, s.
     pub flight_time_s: Option<f64>,
     /// Kinetic energy just before slap-down over that before first impact.
     pub energy_ratio: Option<f64>,
@@ -118,18 +121,18 @@ pub struct Prediction {
     pub slap_down_angle_deg: Option<f64>,
     /// Impacts of L before R strikes, the first included.
     pub first_end_impacts: u32,
-    /// I_x / I_z of the first impact: the friction that sticking needs where it sticks, μ where it slides.
+    /// I_x / I_z of the first impact: the friction that sticking needs if it sticks, μ if it slides.
     pub impulse_ratio: f64,
     /// The friction μ* that L needs to stick in the first impact   (6)
     pub friction_to_stick: f64,
-    /// Whether L sticks in the first impact.
+    /// True if L sticks in the first impact.
     pub sticks: bool,
-    /// What L does between the impacts.
+    /// Motion of L between the impacts.
     pub regime: FlightRegime,
-    /// What S does, for `prediction.csv` alone.
+    /// Motion of S, for `prediction.csv` alone.
     #[serde(skip)]
     pub cog: CogVelocity,
-    /// For k = 0 the speed with L held on the target whatever the force, \[P\] Table 2, m/s   (11) (12);
-    /// `None` for k > 0.
+    /// Speed for k = 0 if L is held on the target whatever the force, \[P\] Table 2, m/s   (11) (12); `None`
+    /// for k > 0.
     pub closed_form_speed_m_s: Option<f64>,
 }

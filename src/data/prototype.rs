@@ -1,11 +1,11 @@
-//! What is measured on a scale model to what holds of its prototype   (46)
+//! Scales the values of a scale model to its prototype   (46)
 
 use super::estimate::Estimate;
 use super::impacts::{ImpactTable, RigidBodyDeceleration};
 use super::quantities::{FirstImpact, SlapDown};
 use serde::Serialize;
 
-/// The quantities of a result as those of the prototype; times of the recording have none.
+/// Quantities of a result scaled to the prototype; times of the recording do not scale.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prototype {
     /// Length of the model over that of the prototype.
@@ -23,9 +23,9 @@ pub struct Prototype {
 }
 
 impl ImpactTable {
-    /// Its numbers alone.
-    pub(super) fn of_prototype(&self, scale: f64) -> Self {
-        let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.of_prototype(scale));
+    /// Scales the values alone.
+    pub(super) fn to_prototype(&self, scale: f64) -> Self {
+        let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.to_prototype(scale));
         let RigidBodyDeceleration { filter, cutoff_hz, at_cog, at_struck_end, .. } =
             self.rigid_body_deceleration.clone();
         let rigid_body_deceleration = RigidBodyDeceleration {
@@ -36,7 +36,7 @@ impl ImpactTable {
             at_cog_unfiltered: None,
             others: Vec::new(),
         };
-        Self { numbers: self.numbers.map(scaled), rigid_body_deceleration, ..Self::unknown(self.end) }
+        Self { numbers: self.numbers.map(scaled), rigid_body_deceleration, ..Self::empty(self.end) }
     }
 }
 
@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn a_half_scale_model_tells_its_prototype_by_the_law_of_each_unit() {
         // Equal stress σ and speed v: a force is σ l², a mass ρ l³, so a ∝ F/m, t ∝ v/a, J ∝ F l.
-        let twice = |unit| Estimate::new(3.0, 1.0, unit).of_prototype(0.5);
+        let twice = |unit| Estimate::new(3.0, 1.0, unit).to_prototype(0.5);
         for (unit, factor) in [
             ("s", 2.0),
             ("m", 2.0),

@@ -1,13 +1,12 @@
-//! The quantities of interest by name, as numbers or with their intervals, to what the result says of the
+//! Quantities of interest by name, as numbers or with their intervals, and the parts of the result for the
 //! first impact and the slap-down.
 
 use super::estimate::Estimate;
 use super::motion::Motion;
 use serde::Serialize;
 
-/// Declares numbers by their names, each with its unit: a struct over any type, and the way to and from a
-/// flat array, which linear algebra wants, in the order of declaration. A number of `may_be_missing` is an
-/// `Option`.
+/// Declares numbers by their names, each with its unit: a struct over any type, with conversions to and from
+/// a flat array for linear algebra, in the order of declaration. A number of `may_be_missing` is an `Option`.
 macro_rules! named_numbers {
     (
         $(#[$about:meta])*
@@ -27,7 +26,7 @@ macro_rules! named_numbers {
         }
 
         impl $name<f64> {
-            /// How many numbers there are.
+            /// Number of quantities.
             pub const COUNT: usize = [$($unit,)* $($optional_unit,)*].len();
 
             /// The numbers in the order of declaration, 0 for a missing one.
@@ -47,12 +46,12 @@ macro_rules! named_numbers {
                 Self { $($field: next(),)* $($optional: Some(next()),)* }
             }
 
-            /// Each number by itself to another.
+            /// Applies a function to each quantity.
             pub fn map<U>(self, mut change: impl FnMut(T) -> U) -> $name<U> {
                 $name { $($field: change(self.$field),)* $($optional: self.$optional.map(&mut change),)* }
             }
 
-            /// Each number beside that of the same name; missing where either is.
+            /// Pairs the quantities by name; missing where either is.
             pub fn zip<U>(self, others: $name<U>) -> $name<(T, U)> {
                 $name {
                     $($field: (self.$field, others.$field),)*
@@ -67,18 +66,18 @@ pub(super) use named_numbers;
 /// A quantity as a report lists it.
 #[derive(Debug, Clone, Copy)]
 pub struct QuantityRow {
-    /// Its name.
+    /// Name of the quantity.
     pub name: &'static str,
-    /// What it counts from, or which sign is which.
+    /// Origin or sign convention of the quantity.
     pub remark: &'static str,
-    /// Its value.
+    /// Value of the quantity.
     pub value: Option<Estimate>,
 }
 
-/// Declares the quantities once, each with its unit, its name and remark in a report (none where the name is
-/// empty), and how it follows from the motion: those of the first impact, those of the slap-down, which are
-/// missing where there is none, and those that the result states beside both. The first two are parts of the
-/// result too, there with the time of the event.
+/// Declares the quantities once, each with its unit, its name and remark in a report (none if the name is
+/// empty), and its formula from the motion: those of the first impact, those of the slap-down, which are
+/// missing if there is none, and those that the result states beside both. The first two are also parts of
+/// the result, together with the time of the event.
 macro_rules! quantities {
     (
         $(#[$first_about:meta])*
@@ -101,7 +100,7 @@ macro_rules! quantities {
         }
     ) => {
         named_numbers! {
-            /// Everything that is read off the reconstructed motion.
+            /// All quantities that follow from the reconstructed motion.
             pub struct Quantities<T = Estimate> {
                 $($(#[$first_field])* $first: $first_unit,)*
                 $($(#[$beside_about])* $beside: $beside_unit,)*
@@ -110,8 +109,8 @@ macro_rules! quantities {
         }
 
         impl Quantities<f64> {
-            /// The quantities of a motion.
-            pub fn of(motion: &Motion) -> Self {
+            /// Computes the quantities of a motion.
+            pub fn from_motion(motion: &Motion) -> Self {
                 $(let $first = { let $first_m = motion; $first_by };)*
                 $(let $beside = { let $m = motion; $beside_of };)*
                 $(let $second = { let $second_m = motion; $second_by };)*
@@ -136,18 +135,19 @@ macro_rules! quantities {
         }
 
         impl $name {
-            /// At a time, with its quantities where they are measured.
+            /// Combines a time with the quantities, if they are measured.
             pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
                 Self { time, $($field: measured.and_then(|$all| $of),)* $($beside: None,)? }
             }
 
-            /// Those of the prototype, of a model of this scale; the time of the recording is none of it.
-            pub fn of_prototype(&self, scale: f64) -> Self {
-                let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.of_prototype(scale));
+            /// Scales the quantities of a model of this scale to the prototype; the time of the recording
+            /// does not scale.
+            pub fn to_prototype(&self, scale: f64) -> Self {
+                let scaled = |estimate: Option<Estimate>| estimate.map(|model| model.to_prototype(scale));
                 Self { time: None, $($field: scaled(self.$field),)* $($beside: scaled(self.$beside),)? }
             }
 
-            /// Its quantities, but for the time.
+            /// The quantities except the time.
             pub fn rows(&self) -> Vec<QuantityRow> {
                 let row = |(name, remark), value| QuantityRow { name, remark, value };
                 let all = [$(row($words, self.$field),)* $(row($beside_words, self.$beside),)?];
@@ -162,7 +162,7 @@ quantities! {
     FirstImpact {
         /// Speed at first contact, m/s.
         impact_velocity: "m/s", ("impact velocity", "by the cask file") => |m| m.impact_m_s;
-        /// From first contact to separation, s.
+        /// Time from first contact to separation, s.
         duration: "s", ("contact lasts", "") => |m| m.separation.time_s - m.contact.time_s;
         /// Vertical velocity of L as it leaves the target, positive up, m/s   (22)
         rebound_velocity: "m/s", ("rebound velocity", "vertical, up positive") => |m| m.rebound_m_s;
@@ -171,69 +171,69 @@ quantities! {
     }
     /// The slap-down of R.
     SlapDown {
-        /// Magnitude of the velocity of R's corner as it strikes, its ringing and swinging included, m/s
-        /// (44)
+        /// Magnitude of the velocity of R's corner when it strikes, including ringing and rigid movement on
+        /// mounts, m/s (44)
         local_speed: ("speed (corner)", "with ringing and swinging"),
         /// Magnitude of R's velocity just before it strikes, m/s   (24)
         speed: "m/s", ("speed (rigid cask)", "just before the second end strikes") =>
             |m| m.second_end_m_s.map(|(x, z)| x.hypot(z));
-        /// Its vertical part, negative down, m/s.
+        /// Vertical component, negative down, m/s.
         vertical_velocity: "m/s", ("vertical velocity", "up positive") =>
             |m| m.second_end_m_s.map(|(_, z)| z);
-        /// Its horizontal part, m/s.
+        /// Horizontal component, m/s.
         horizontal_velocity: "m/s", ("horizontal velocity", "") => |m| m.second_end_m_s.map(|(x, _)| x);
         /// Inclination of the axis at slap-down, degrees.
         angle: "deg", ("angle", "of the axis above the horizontal") =>
             |m| m.slap_down.map(|s| s.angle_rad.to_degrees());
-        /// From separation of L to slap-down, s.
+        /// Time from separation of L to slap-down, s.
         flight_time: "s", ("flight time", "from separation") =>
             |m| m.slap_down.map(|s| s.time_s - m.separation.time_s);
-        /// Height of R's corner above the target then, m: 0 within its interval where angle, height and
-        /// scales fit the recording.
+        /// Height of R's corner above the target then, m: 0 within its interval if angle, height and scales
+        /// fit the recording.
         second_end_height: "m", ("", "") => |m| m.second_end_height_m;
     }
     beside {
         /// Restitution: −ż_L after the first impact over ż_L before   (23)
         k: "1" => |m| m.rebound_m_s / m.impact_m_s;
-        /// Horizontal velocity of L's corner as it leaves, m/s: 0 within its interval where it sticks.
+        /// Horizontal velocity of L's corner when it leaves, m/s: 0 within its interval if it sticks.
         slip_velocity: "m/s" => |m| m.slip_m_s;
         /// I_x / I_z of the first contact: the friction that acted.
         friction: "1" => |m| m.impulse_ratio;
     }
 }
 
-/// What one input contributes to the uncertainty of the two headline quantities.
+/// Contribution of one input to the uncertainty of the two headline quantities.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contribution {
-    /// The input, as a person says it: "calibration of A1".
+    /// Name of the input for a reader: "calibration of A1".
     pub input: String,
-    /// Its standard uncertainty, with its unit.
+    /// Standard uncertainty of the input, with its unit.
     pub standard_uncertainty: String,
-    /// The key of `[tolerance]` that it is from; `None` where the recording gives it.
+    /// Its key of `[tolerance]`; `None` if the recording determines it.
     #[serde(skip)]
     pub tolerance: Option<&'static str>,
-    /// Change of the slap-down speed by it, m/s.
+    /// Change of the slap-down speed due to it, m/s.
     pub speed_m_s: Option<f64>,
-    /// Change of k by it.
+    /// Change of k due to it.
     pub k: Option<f64>,
 }
 
-/// A stated input in which nothing in the recording tests a mistake.
+/// A stated input that this recording cannot check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Untested {
-    /// The input, as a person says it: "drop height".
+    /// Name of the input for a reader: "drop height".
     pub what: String,
-    /// Its key among the settings: "drop.height_m", "channel.A1.position_m".
+    /// Key in the cask file: "drop.height_m", "channel.A1.position_m".
     pub key: String,
     /// A mistake in it: "1 %".
     pub by: &'static str,
-    /// By how much that mistake moves the result.
+    /// Change of the result that such a mistake causes.
     pub moves: UntestedMoves,
-    /// What would test it.
+    /// Measure that would check the input.
     pub remedy: &'static str,
 }
 
-/// By how much a mistake moves the two numbers that a drop is made for; `None` where one is not stated.
+/// Change of the slap-down speed and k that a mistake causes; `None` for a number that is not stated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct UntestedMoves {
     /// k.
@@ -243,7 +243,7 @@ pub struct UntestedMoves {
 }
 
 impl UntestedMoves {
-    /// The larger of both, in half-widths of what it moves.
+    /// The larger effect, in half-widths of the quantity.
     pub fn in_half_widths(&self, quantities: &Quantities) -> f64 {
         let share =
             |by: Option<f64>, moved: Option<Estimate>| by.zip(moved).map_or(0.0, |(by, of)| by / of.u95);

@@ -1,59 +1,60 @@
-//! How the motion was had: the rungs of the reconstruction, the one taken, and what the others say.
+//! Choice of the reconstruction method: all methods, the selected one, and their results.
 
 use super::cask::Axis;
 use super::estimate::Estimate;
 use serde::{Deserialize, Serialize};
 
-/// A rung of the reconstruction, simplest first   (29)
+/// A method of the reconstruction, simplest first   (29)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ReconstructionRung {
-    /// Planar motion, the flight fitted with the bending modes and drift that it shows, none included.
+pub enum Method {
+    /// Planar motion, with the flight fitted by the bending modes and drift that it shows, if any.
     Flight,
-    /// Planar motion, all inputs fitted to all observables within their tolerances.
+    /// Planar motion, with all inputs fitted to all observables within their tolerances.
     Joint,
 }
 
-impl ReconstructionRung {
-    /// All, simplest first.
+impl Method {
+    /// All methods, simplest first.
     pub const ALL: [Self; 2] = [Self::Flight, Self::Joint];
 }
 
-/// What one rung says.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReconstructionCandidate {
-    /// Which.
-    pub rung: ReconstructionRung,
-    /// Slap-down speed by it.
+pub struct MethodCandidate {
+    /// Method.
+    pub rung: Method,
+    /// Slap-down speed by this method.
     pub speed: Option<Estimate>,
-    /// k by it.
+    /// k by this method.
     pub k: Option<Estimate>,
-    /// Whether its residuals are within what noise and tolerances explain.
+    /// True if noise and tolerances explain its residuals.
     pub consistent: bool,
-    /// What is left, in one phrase.
+    /// Residual, in one phrase.
     pub residual: String,
 }
 
-/// What a closure tests.
+/// Observable of a consistency check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ClosureKind {
-    /// R's corner is on the target when it strikes: angle, velocities, times.
+pub enum CheckKind {
+    /// Height of R's corner at the slap-down, which is zero: checks angle, velocities and times.
     Height,
-    /// L's corner is on the target as it touches again.
+    /// Height of L's corner when it touches again, which is zero.
     Touch,
-    /// The impulse of the first impact turns the cask: the channels against each other and against the mass
-    /// properties.
+    /// Rotation from the impulse of the first impact: checks the channels against each other and against the
+    /// mass properties.
     Turning,
-    /// The impulse of the second impact turns the cask.
+    /// Rotation from the impulse of the second impact.
     SecondTurning,
     /// A channel at rest reads gravity: its scale.
     Rest,
-    /// The fall lasts as long as the impact velocity needs: height and clock.
+    /// Duration of the fall against the impact velocity: checks height and clock.
     Fall,
-    /// The cask turns before the first contact as an angular-rate sensor says.
+    /// Rotation before the first contact by an angular-rate sensor.
     RateBefore,
-    /// The first impact turns the cask as an angular-rate sensor says: that sensor's scale, and the others'.
+    /// The angular-rate sensor confirms the rotation that the first impact gives: the check depends on that
+    /// sensor's scale and those of the others.
     RateGained,
 }
 
@@ -64,80 +65,81 @@ pub struct RestLevel {
     pub channel: String,
     /// Along which body axis it reads.
     pub axis: Axis,
-    /// Rest level less free-fall level, m/s²: g cos φ of a sound transverse channel, g sin φ of an axial one.
+    /// Rest level less free-fall level, m/s²: g cos φ for a sound transverse channel, g sin φ for an axial
+    /// one.
     pub rest_m_s2: f64,
-    /// Standard uncertainty of it, from the levels' own scatter, m/s².
+    /// Standard uncertainty of that level, from the scatter of the levels, m/s².
     pub u_m_s2: f64,
 }
 
-/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure. At
-/// 3.7 one sound drop in 2000 more passed, and of 2000 damaged ones four more with a wrong number.
+/// A check that fails by this many standard uncertainties does not fail by chance: one sound drop in 2000 per
+/// check. At 3.7 one sound drop in 2000 more passed, and four of 2000 damaged ones more with a wrong number.
 pub const MISSED_U: f64 = 3.5;
 
-/// Standard uncertainty of the time of a release: a hook lets go within some milliseconds, s.
+/// Standard uncertainty of the time of a release: a hook opens within some milliseconds, s.
 pub const U_RELEASE_S: f64 = 0.005;
 
-/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone
-/// (95 %).
+/// Above this many standard uncertainties noise and tolerances alone do not explain the miss of a check (95
+/// %).
 pub const MET_U: f64 = 2.0;
 
-/// One observable that the motion must meet beside the velocity steps, and how far it is off.
+/// One observable that the motion must reproduce beside the velocity steps, and its miss.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Closure {
-    /// What it is, as a person says it: "height of the second end at slap-down".
+pub struct Consistency {
+    /// Name for a reader: "height of the second end at slap-down".
     pub name: String,
-    /// Which one.
-    pub kind: ClosureKind,
+    /// Kind of the check.
+    pub kind: CheckKind,
     /// The channel, where it is one channel's.
     pub channel: Option<String>,
-    /// By how much the stated inputs miss it, with unit.
+    /// Miss of the stated inputs, with its unit.
     pub miss: String,
-    /// That, over its standard uncertainty from all inputs.
+    /// That miss over its standard uncertainty from all inputs.
     pub miss_in_u: f64,
-    /// The same with all other closures met: what two of them contradict each other by, though an uncertain
+    /// The miss with all other checks satisfied: two of them may contradict each other although an uncertain
     /// input hides it from each.
     pub beside_others_in_u: f64,
 }
 
-impl Closure {
+impl Consistency {
     /// The larger of both misses.
-    pub fn most_in_u(&self) -> f64 {
+    pub fn largest_residual(&self) -> f64 {
         self.miss_in_u.abs().max(self.beside_others_in_u.abs())
     }
 }
 
-/// One input as the joint fit moved it.
+/// Correction of one input by the joint fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Adjustment {
     /// The input, as the budget calls it.
     pub input: String,
-    /// Its tolerance as a standard uncertainty, with unit.
+    /// Tolerance as a standard uncertainty, with its unit.
     pub standard_uncertainty: String,
-    /// By how many of those it was moved.
+    /// Correction, in standard uncertainties.
     pub moved_in_u: f64,
-    /// Its standard uncertainty after the fit, as a share of the one before.
+    /// Standard uncertainty after the fit, as a share of that before.
     pub left_share: f64,
 }
 
-/// The rung taken and the others.
+/// The selected method and the others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReconstructionChoice {
-    /// The rung taken.
-    pub rung: ReconstructionRung,
-    /// Why, and what the next rung would have changed.
+pub struct MethodChoice {
+    /// The selected method.
+    pub rung: Method,
+    /// The reason, and what the next method would change.
     pub reason: String,
-    /// Every rung that could be had, simplest first.
-    pub candidates: Vec<ReconstructionCandidate>,
-    /// What the motion must meet beside the velocity steps.
-    pub closures: Vec<Closure>,
+    /// All methods that gave a result, simplest first.
+    pub candidates: Vec<MethodCandidate>,
+    /// Consistency checks beside the velocity steps.
+    pub closures: Vec<Consistency>,
     /// χ² of the joint fit and its degrees of freedom.
     pub chi_square: Option<(f64, usize)>,
-    /// What the joint fit moved, largest first.
+    /// Corrections by the joint fit, largest first.
     pub adjustments: Vec<Adjustment>,
 }
 
-impl ReconstructionChoice {
-    /// The choice without the speed and the k of its rungs, where they are not to be stated.
+impl MethodChoice {
+    /// The choice without speed and k of the methods, if they must not be stated.
     pub fn without_numbers(mut self) -> Self {
         for candidate in &mut self.candidates {
             (candidate.speed, candidate.k) = (None, None);

@@ -1,4 +1,4 @@
-//! A recording, read: its channels and what was wrong with the file; and samples held in memory.
+//! A recording as read: its channels and the problems of its file; and samples in memory.
 
 use super::channel::Channel;
 use super::finding::Finding;
@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A container format, told by content.
+/// Container format, recognised by content.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum RecordingFormat {
     /// MCAP, version 0.
@@ -33,49 +33,50 @@ pub enum RecordingFormat {
 pub struct Recording {
     /// The file.
     pub path: PathBuf,
-    /// Its SHA-256, lower-case hexadecimal.
+    /// SHA-256 of the recording, lower-case hexadecimal.
     pub sha256: String,
-    /// Its format.
+    /// Format of the recording.
     pub format: RecordingFormat,
-    /// What read it and handed it on in that format, with its version; `None` where dropcheck itself did.
+    /// Converter that read the recording and passed it on in that format, with its version; `None` if
+    /// dropcheck read it itself.
     pub reader: Option<String>,
     /// The channels, in the order of the cask file.
     pub channels: Vec<Channel>,
-    /// The channels that take no part in the motion: no number of it rests on them.
+    /// Channels that take no part in the motion: no number of the motion depends on them.
     pub others: Arc<OtherChannels>,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
-    /// Time of its first sample by its own times, s; of the one since 1970 where it knows that.
+    /// Time of its first sample by its own times, s; since 1970 if they are absolute.
     pub first_s: f64,
-    /// How long before zero the recording's own times begin, s, where they count from a trigger.
+    /// Time from the beginning of the recording to its trigger at zero, s, if its times count from a trigger.
     pub before_trigger_s: Option<f64>,
-    /// The rest before the drop, where it is a file of its own.
+    /// Rest before the drop, if it is in a separate file.
     pub rest: Option<RestFile>,
-    /// The calculation beside the test, where the cask file names one.
+    /// The calculation beside the test, if the cask file names one.
     pub calculation: Option<Box<Recording>>,
     /// The recordings of other recorders whose channels are among these.
     pub joined: Vec<JoinedRecording>,
-    /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
+    /// Problems found when reading: truncation, gaps, doubled blocks, jitter.
     pub issues: Vec<Finding>,
 }
 
-/// A recording of another recorder, with a clock of its own.
+/// Recording of another recorder, with a separate clock.
 #[derive(Debug, Clone)]
 pub struct JoinedRecording {
     /// The file, as the cask file names it.
     pub file: String,
-    /// Its SHA-256, lower-case hexadecimal.
+    /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
-    /// What was added to its times so that both show the first contact at one time, s.
+    /// Shift added to its times so that both recordings show the first contact at one time, s.
     pub shift_s: f64,
-    /// Standard uncertainty of that, s.
+    /// Standard uncertainty of the shift, s.
     pub u_s: f64,
-    /// Its accelerometers.
+    /// Accelerometers of the recording.
     pub channels: Vec<String>,
 }
 
 impl Recording {
-    /// When the first of its channels ends, one sample behind its last, s.
+    /// End of the channel that ends first, one sample after its last, s.
     pub fn end_s(&self) -> f64 {
         self.channels.iter().map(|c| c.time_s(c.samples.len())).fold(f64::INFINITY, f64::min)
     }
@@ -86,23 +87,23 @@ impl Recording {
 pub struct RestFile {
     /// The file.
     pub path: PathBuf,
-    /// Its SHA-256, lower-case hexadecimal.
+    /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
 }
 
-/// One source of samples, as a reader of another format hands it over.
+/// One source of samples as the reader of another format supplies it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HeldSamples {
-    /// What the cask file names as `source`, or as the channel's `name`.
+    /// Name that the cask file uses as `source`, or as the channel's `name`.
     pub name: String,
-    /// The samples, in `unit`; what is not finite is missing.
+    /// The samples, in `unit`; a value that is not finite is missing.
     pub values: Vec<f64>,
-    /// Sample rate, Hz; `None` where `times_s` tells it, or the cask file.
+    /// Sample rate, Hz; `None` if `times_s` or the cask file determines it.
     pub sample_rate_hz: Option<f64>,
-    /// Unit; `None` where the cask file tells it.
+    /// Unit; `None` if the cask file states it.
     pub unit: Option<String>,
     /// A time a sample, s.
     pub times_s: Option<Vec<f64>>,
-    /// Time of the first sample where there are no times, s.
+    /// Time of the first sample if there are no times, s.
     pub start_s: f64,
 }

@@ -1,20 +1,20 @@
-//! One channel over the event window, conditioned: what the analysis integrates.
+//! One conditioned channel over the event window: the input of the analysis.
 
 use super::cask::{Axis, End};
 use super::channel::Span;
 
-/// Velocity that clipping may cut off before the slap-down and leave a step to measure, m/s: 2 % of a 9 m
-/// fall's.
+/// Velocity that clipping may remove before the slap-down without making the step useless, m/s: 2 % of that
+/// of a 9 m fall.
 pub const MOST_LOST_M_S: f64 = 0.27;
 
-/// Standard deviations of the noise by which the flank of a limited pulse stands out of it: its slope is
-/// known to a sixth then.
+/// The flank of a clipped pulse must exceed the noise by this many standard deviations: then its slope is
+/// known to a sixth.
 const CLEAR_OF_NOISE: f64 = 6.0;
 
 /// Fewest samples of a flank that the chain limits.
 pub const LEAST_FLANK: usize = 12;
-/// A limited level changes by less than this share of it, a limited flank by more; noise lets a flank exceed
-/// its first sample by less than this factor.
+/// A limited level changes by less than this share, a limited flank by more; noise lets a flank exceed its
+/// first sample by less than this factor.
 const LEVEL_SHARE: f64 = 0.2;
 const FIRST_SHARE: f64 = 1.05;
 
@@ -25,7 +25,7 @@ const FIRST_SHARE: f64 = 1.05;
 pub struct Signal {
     /// The channel's name.
     pub name: String,
-    /// Which end it sits on.
+    /// End of the cask at which the sensor sits.
     pub end: End,
     /// Along which axis it reads.
     pub axis: Axis,
@@ -45,14 +45,14 @@ pub struct Signal {
     pub u_offset_m_s2: f64,
     /// RMS of the noise before first contact, m/s².
     pub noise_m_s2: f64,
-    /// One-sided spectral density of that noise: bins of frequency, Hz, and (m/s²)²/Hz; empty where too
-    /// little was recorded.
+    /// One-sided spectral density of that noise: bins of frequency, Hz, and (m/s²)²/Hz; empty if too little
+    /// was recorded.
     pub noise_spectrum: Vec<(f64, f64)>,
-    /// Length of the free fall that offset and noise were taken from, s; 0 where there was too little.
+    /// Length of the free fall from which offset and noise were determined, s; 0 if it was too short.
     pub free_fall_s: f64,
-    /// Standard uncertainty of its scale by the angle at which a sensor alone on the skin sits, as a share.
+    /// Standard uncertainty of its scale from the angle of a sensor alone on the skin, as a share.
     pub u_around: f64,
-    /// Samples that stand at a limit, of their size or of their slope.
+    /// Samples at a limit of size or of slope.
     pub clipped: Vec<Span>,
     /// Stretches without samples.
     pub gaps: Vec<Span>,
@@ -70,7 +70,7 @@ impl Signal {
         (time_s - self.start_s) * self.sample_rate_hz
     }
 
-    /// Index of the first sample at or after `time_s`, cut to what there is.
+    /// Index of the first sample at or after `time_s`, limited to the available samples.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -86,14 +86,14 @@ impl Signal {
         self.time_s(self.force_m_s2.len().saturating_sub(1))
     }
 
-    /// The samples `from..to` alone, the range cut to what there is.
+    /// The samples `from..to` alone; the range is limited to the available samples.
     pub fn cut(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.force_m_s2.len());
         let from = from.min(to);
         self.cut_with(from, self.force_m_s2[from..to].to_vec())
     }
 
-    /// The samples from `from` on alone, as many as there are in `force_m_s2`, which stands for them.
+    /// The signal from `from` on, with its samples replaced by `force_m_s2`.
     pub fn cut_with(&self, from: usize, force_m_s2: Vec<f64>) -> Self {
         let to = from + force_m_s2.len();
         let shifted = |spans: &[Span]| {
@@ -111,7 +111,7 @@ impl Signal {
         }
     }
 
-    /// True if the chain limits the slope of the signal over a stretch, not its size: it falls from its first
+    /// True if the chain limits the slope of the signal over a span, not its size: it falls from its first
     /// sample on.
     pub fn is_flank(&self, span: &Span) -> bool {
         let within = self.force_m_s2.get(span.from..span.to).unwrap_or_default();
@@ -122,7 +122,7 @@ impl Signal {
     }
 
     /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top:
-    /// (ṡ_in + ṡ_out) T² / 12. A limited flank adds up to all that lies under it: half is taken.
+    /// (ṡ_in + ṡ_out) T² / 12. A limited flank would count all that lies under it, so half is used.
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn lost_to_clipping_m_s(&self, from_s: f64, to_s: f64) -> f64 {
         let force = |i: usize| self.force_m_s2.get(i).copied();
@@ -136,7 +136,7 @@ impl Signal {
                 }
                 let length_s = (span.to - span.from) as f64 / self.sample_rate_hz;
                 let level = force(span.from).unwrap_or(0.0);
-                // The slope over as many samples beyond as it takes to stand out of the noise.
+                // The slope uses enough samples beyond the span to exceed the noise.
                 let slope = |beyond: &dyn Fn(usize) -> Option<usize>| {
                     let falls = (1..=(span.to - span.from).div_ceil(4)).map_while(|n| {
                         let fallen = (level - force(beyond(n)?)?).abs();
@@ -152,19 +152,19 @@ impl Signal {
             .sum()
     }
 
-    /// How much of the time between two times was not recorded, s.
+    /// Duration of the missing samples between two times, s.
     pub fn missing_s(&self, from_s: f64, to_s: f64) -> f64 {
         let inside_s = |gap: &Span| self.time_s(gap.to).min(to_s) - self.time_s(gap.from).max(from_s);
         self.gaps.iter().map(|gap| inside_s(gap).max(0.0)).sum()
     }
 
-    /// Whether any of `spans` lies in `from_s..to_s`.
-    pub fn touches(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {
+    /// True if any of `spans` lies in `from_s..to_s`.
+    pub fn overlaps(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {
         spans.iter().any(|s| self.time_s(s.from) < to_s && self.time_s(s.to) > from_s)
     }
 }
 
-/// The transverse signal nearest to an end: what happens there shows on it first.
+/// The transverse signal nearest to an end, which shows events there first.
 pub(crate) fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {
     let from_middle = |s: &Signal| if end == End::First { s.position_m } else { -s.position_m };
     signals
@@ -173,12 +173,13 @@ pub(crate) fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {
         .min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)))
 }
 
-/// Where the event lies, found on a coarse pass: enough to cut the window that the fine work needs.
+/// Approximate time of the event from a coarse search: good enough to cut out the window for the detailed
+/// analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseEvent {
     /// Start of the steepest velocity change of L, s; first contact lies at most `spread_s` before.
     pub near_s: f64,
-    /// How coarse that is, s.
+    /// Uncertainty of that time, s.
     pub spread_s: f64,
     /// Largest velocity change of L within the sliding window, m/s, signed.
     pub velocity_step_m_s: f64,

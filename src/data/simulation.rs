@@ -1,4 +1,4 @@
-//! A calculated curve beside the measured one: where it lies, and how both compare.
+//! A calculated curve beside the measured one: its source, and the comparison.
 
 use super::cask::ChannelSpec;
 use serde::Serialize;
@@ -9,40 +9,41 @@ use std::path::PathBuf;
 pub struct SimulationSpec {
     /// The file, from where the program runs.
     pub path: PathBuf,
-    /// Its column of times.
+    /// Column of times.
     pub time: Option<String>,
-    /// The channels of the cask file that it has a column for, each with that column as its source.
+    /// Channels of the cask file that have a column, with that column as source.
     pub channels: Vec<ChannelSpec>,
 }
 
-/// What of a channel is rated.
+/// Quantity of a channel that is rated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RatedQuantity {
-    /// Its specific force.
+    /// Specific force of the channel.
     Acceleration,
-    /// The integral of that from first contact on.
+    /// The integral of the force from first contact on.
     Velocity,
 }
 
-/// How a calculated curve agrees with the measured one, by ISO/TS 18571: 1 equal, 0 beyond every limit.
+/// Agreement of a calculated curve with the measured one by ISO/TS 18571: 1 is equal, 0 is beyond every
+/// limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SimulationRow {
     /// The channel.
     pub channel: String,
-    /// What is rated.
+    /// Rated quantity.
     pub quantity: RatedQuantity,
-    /// By the corridors around the measured curve.
+    /// Rating by the corridors around the measured curve.
     pub corridor: f64,
-    /// By the shift with which both curves correlate best.
+    /// Rating by the shift with which both curves correlate best.
     pub phase: f64,
-    /// By the difference that a shift and a warping of time leave.
+    /// Rating by the difference that remains after shifting and warping time.
     pub magnitude: f64,
-    /// By the slopes.
+    /// Rating by the slopes.
     pub slope: f64,
     /// The weighted sum of the four.
     pub rating: f64,
-    /// What is added to the times of the calculation so that its first contact is the measured one, s.
+    /// Shift added to the times of the calculation so that its first contact is the measured one, s.
     pub shift_s: f64,
     /// Largest magnitude of the calculated curve less that of the measured one, over the latter.
     pub peak_difference: f64,
@@ -55,10 +56,10 @@ pub struct CalculatedNumber {
     pub what: String,
     /// Unit of all three.
     pub unit: &'static str,
-    /// As measured.
+    /// Measured value.
     pub measured: f64,
     /// Half-width of its 95 % interval, where it is known.
     pub u95: Option<f64>,
-    /// As calculated.
+    /// Calculated value.
     pub calculated: f64,
 }

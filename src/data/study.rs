@@ -7,7 +7,7 @@ use super::plan::MeasuringPlan;
 use super::prediction::{Body, BodyModel, Prediction};
 use serde::Serialize;
 
-/// What a sweep varies.
+/// Variable of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepVariable {
@@ -26,9 +26,9 @@ pub enum SweepVariable {
 /// The values that a sweep takes, in the unit of its variable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sweep {
-    /// What varies.
+    /// Variable.
     pub variable: SweepVariable,
-    /// Its values, ascending.
+    /// Values, ascending.
     pub values: Vec<f64>,
 }
 
@@ -41,21 +41,21 @@ pub struct PredictionRow {
     pub length_m: f64,
     /// Height of the drop, m.
     pub drop_height_m: f64,
-    /// Whether the cask turns over before R strikes, [`Prediction::turns_over`].
+    /// True if the cask turns over before R strikes, [`Prediction::turns_over`].
     pub turns_over: bool,
-    /// What the model says.
+    /// Prediction of the model.
     #[serde(flatten)]
     pub prediction: Prediction,
 }
 
-/// What is asked of a study besides the rows.
+/// Request of a study besides its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRequest {
     /// Contact laws, one or several.
     pub contacts: Vec<Contact>,
     /// Coefficients of restitution, one or several.
     pub ks: Vec<f64>,
-    /// Inclination for what is stated at one angle, degrees.
+    /// Inclination of results at a single angle, degrees.
     pub angle_deg: f64,
     /// Sweeps; the rows are their product.
     pub sweeps: Vec<Sweep>,
@@ -63,11 +63,12 @@ pub struct StudyRequest {
     pub angles_deg: Vec<f64>,
     /// Width of the critical bands, percent of the largest value.
     pub band_percent: f64,
-    /// What Monte Carlo draws from.
+    /// Uncertain inputs of the Monte Carlo draws.
     pub uncertain: Uncertain,
 }
 
-/// What is not known before a test. Half-widths hold 95 % of a normal distribution, ranges are uniform.
+/// Inputs that are not known before a test. Half-widths hold 95 % of a normal distribution, ranges are
+/// uniform.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Uncertain {
     /// Range of k.
@@ -113,19 +114,19 @@ pub struct AngleCurve {
     pub angle_deg: Vec<f64>,
     /// Magnitude of R's velocity, m/s.
     pub speed_m_s: Vec<f64>,
-    /// Its vertical part, negative down, m/s.
+    /// Vertical component, negative down, m/s.
     pub vertical_velocity_m_s: Vec<f64>,
-    /// Its horizontal part, m/s.
+    /// Horizontal component, m/s.
     pub horizontal_velocity_m_s: Vec<f64>,
     /// Kinetic energy before slap-down over that before the first impact.
     pub energy_ratio: Vec<f64>,
-    /// For k = 0 the speed by the closed form of \[P\] Table 2, m/s; NaN for k > 0.
+    /// Speed for k = 0 by the closed form of \[P\] Table 2, m/s; NaN for k > 0.
     pub closed_form_speed_m_s: Vec<f64>,
-    /// Whether the cask turns over before R strikes, [`Prediction::turns_over`].
+    /// True if the cask turns over before R strikes, [`Prediction::turns_over`].
     pub turns_over: Vec<bool>,
 }
 
-/// Where a body is at a time after first contact.
+/// Position of a body at a time after first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Time since first contact, s.
@@ -138,10 +139,10 @@ pub struct Pose {
     pub angle_rad: f64,
 }
 
-/// Where a body is from first contact to the slap-down (\[P\] Figs. 2 and 3).
+/// Positions of a body from first contact to the slap-down (\[P\] Figs. 2 and 3).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPath {
-    /// What moves.
+    /// Body that moves.
     pub body: Body,
     /// The contact law.
     pub contact: Contact,
@@ -151,25 +152,25 @@ pub struct BodyPath {
     pub poses: Vec<Pose>,
 }
 
-/// What is largest at a critical angle.
+/// Quantity that is largest at a critical angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Criterion {
     /// Slap-down speed, m/s.
     Speed,
-    /// Its vertical part, m/s, positive down.
+    /// Vertical component of the speed, m/s, positive down.
     VerticalSpeed,
-    /// Kinetic energy left for the second impact, over that before the first.
+    /// Kinetic energy that remains for the second impact, over that before the first.
     EnergyRatio,
 }
 
 impl Criterion {
-    /// All.
+    /// All criteria.
     pub const ALL: [Self; 3] = [Self::Speed, Self::VerticalSpeed, Self::EnergyRatio];
 }
 
-/// Where a criterion is largest for one body, contact law and k among
-/// [single slap-downs](Prediction::is_single_slap_down); NaN if there is none.
+/// Angle at which a criterion is largest for one body, contact law and k among [single
+/// slap-downs](Prediction::is_single_slap_down); NaN if there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CriticalAngle {
     /// Rod or body.
@@ -178,17 +179,16 @@ pub struct CriticalAngle {
     pub contact: Contact,
     /// Coefficient of restitution.
     pub k: f64,
-    /// What is largest.
+    /// Criterion that is largest.
     pub criterion: Criterion,
-    /// Where, degrees.
+    /// Angle, degrees.
     pub angle_deg: f64,
-    /// How large, in the criterion's unit.
+    /// Largest value, in the criterion's unit.
     pub largest: f64,
-    /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has
-    /// several humps.
+    /// Angles at which the criterion is within the chosen percentage of the largest value, degrees; more than
+    /// one band if the curve has several humps.
     pub bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again
-    /// before R.
+    /// Angle, degrees, and value of a larger result among the angles at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
@@ -196,7 +196,7 @@ pub struct CriticalAngle {
 /// [single slap-down](Prediction::is_single_slap_down).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct QuantileCurves {
-    /// What.
+    /// Criterion.
     pub criterion: Criterion,
     /// 2.5 %.
     pub q025: Vec<f64>,
@@ -212,22 +212,22 @@ pub struct QuantileCurves {
     pub in_band: Vec<f64>,
     /// 2.5, 25, 50, 75 and 97.5 % quantile of the critical angle over the draws, degrees.
     pub critical_angle_deg: [f64; 5],
-    /// The same of the largest value.
+    /// Quantiles of the largest value.
     pub largest: [f64; 5],
-    /// How many draws have their critical angle nearest to each of the angles.
+    /// Number of draws whose critical angle is nearest to each of the angles.
     pub critical_counts: Vec<u32>,
     /// Angles at which at least 95 % of the draws lie within their band, degrees.
     pub robust_bands_deg: Vec<(f64, f64)>,
 }
 
-/// What the uncertain inputs make of the critical angles.
+/// Critical angles that follow from the uncertain inputs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MonteCarlo {
     /// Rod or body: the richest that the cask file describes.
     pub model: BodyModel,
     /// The contact law where it is known.
     pub contact: Contact,
-    /// What was drawn from.
+    /// Uncertain inputs of the draws.
     pub uncertain: Uncertain,
     /// Width of the bands, percent of the largest value.
     pub band_percent: f64,
@@ -235,21 +235,21 @@ pub struct MonteCarlo {
     pub angle_deg: Vec<f64>,
     /// Share of the draws without a single slap-down at each angle.
     pub no_slap_down: Vec<f64>,
-    /// One entry a criterion.
+    /// Quantiles of each criterion.
     pub quantiles: Vec<QuantileCurves>,
 }
 
-/// Where to drop, and how fast the slap-down is, by the richest body that the cask file describes: of all
-/// draws, and of the cases asked for.
+/// Recommended drop angle and expected slap-down speed by the richest body that the cask file describes, over
+/// all draws and requested cases.
 ///
 /// Only a [single slap-down](Prediction::is_single_slap_down) counts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    /// The widest of the robust bands of the speed, without what may be flat, degrees.
+    /// The widest of the robust bands of the speed, without angles that may be flat, degrees.
     pub band_deg: Option<(f64, f64)>,
     /// The largest slap-down speed, m/s: no draw, case or row exceeds it. NaN if there is none.
     pub largest_m_s: f64,
-    /// Where it is, degrees.
+    /// Angle of that speed, degrees.
     pub at_deg: f64,
     /// The angle of the request, degrees.
     pub own_deg: f64,
@@ -259,7 +259,7 @@ pub struct Advice {
     pub own_range_m_s: (f64, f64),
     /// Share of the draws that slap down there.
     pub own_share: f64,
-    /// What was drawn from.
+    /// Uncertain inputs of the draws.
     pub drawn: Uncertain,
 }
 
@@ -268,26 +268,26 @@ pub struct Advice {
 pub struct Study {
     /// The cask.
     pub cask_file: CaskFile,
-    /// What was asked.
+    /// Request of the study.
     pub request: StudyRequest,
     /// The predictions asked for.
     pub rows: Vec<PredictionRow>,
-    /// The richest body's way at the angle of the request, for two contact laws and k each where it is one
-    /// flight or L is held.
+    /// Paths of the richest body at the angle of the request, for two contact laws and k each, if it makes
+    /// one flight or L is held.
     pub paths: Vec<BodyPath>,
-    /// The ladder for every contact law and k, at the angle of the request.
+    /// All models for every contact law and k, at the angle of the request.
     pub ladders: Vec<Ladder>,
-    /// Over the angle: every body, contact law and k of the request.
+    /// Results over the angle: every body, contact law and k of the request.
     pub curves: Vec<AngleCurve>,
-    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its
-    /// own (\[P\] Fig. 9).
+    /// Results over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm
+    /// and its own (\[P\] Fig. 9).
     pub sections: Vec<AngleCurve>,
-    /// For every curve and criterion.
+    /// Critical angle of every curve and criterion.
     pub critical: Vec<CriticalAngle>,
-    /// What the uncertain inputs make of it.
+    /// Distribution that follows from the uncertain inputs.
     pub monte_carlo: MonteCarlo,
-    /// Where to drop.
+    /// Recommended drop angle.
     pub advice: Advice,
-    /// How to measure the drop at the angle of the request; of the prediction alone `None`.
+    /// Plan for measuring the drop at the requested angle; `None` for the prediction alone.
     pub plan: Option<MeasuringPlan>,
 }

@@ -1,23 +1,23 @@
-//! What a cask file says of the test itself: who, what, where, when, and what was seen otherwise.
+//! Test record in a cask file: persons, specimen, place, date, and independent observations.
 
 use super::estimate::Estimate;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// `[test]`: what stands at the head of a test report and changes no number.
+/// `[test]`: the head of a test report, which changes no number.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TestRecord {
     /// The test's number.
     pub id: Option<String>,
-    /// What the test is called.
+    /// Title of the test.
     pub title: Option<String>,
-    /// Where.
+    /// Place of the test.
     pub place: Option<String>,
-    /// By whom.
+    /// Operator.
     pub operator: Option<String>,
-    /// For whom.
+    /// Customer.
     pub customer: Option<String>,
-    /// What was dropped.
+    /// Specimen.
     pub specimen: Option<String>,
     /// Onto what.
     pub target: Option<String>,
@@ -25,7 +25,7 @@ pub struct TestRecord {
     pub remarks: Option<String>,
     /// A date, or date and time, as RFC 3339 writes it.
     pub date: Option<String>,
-    /// Of the specimen, °C.
+    /// Temperature of the specimen, °C.
     pub temperature_c: Option<f64>,
     /// Photographs, by the names of their files.
     pub photos: Vec<Photo>,
@@ -34,7 +34,7 @@ pub struct TestRecord {
     /// Revisions of its report: date, version of the program and what changed, apart by commas.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub revisions: Vec<String>,
-    /// `[test.more]`: names and words of the user's own.
+    /// `[test.more]`: additional names and words.
     #[serde(serialize_with = "as_object")]
     pub more: Vec<(String, String)>,
 }
@@ -46,11 +46,11 @@ fn as_object<S: Serializer>(pairs: &[(String, String)], serializer: S) -> Result
 /// A sensor, as its papers name it.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct SensorRecord {
-    /// Its serial number.
+    /// Serial number.
     pub serial: Option<String>,
     /// The certificate of its calibration.
     pub certificate: Option<String>,
-    /// When it was calibrated.
+    /// Date of calibration.
     pub calibrated: Option<String>,
 }
 
@@ -71,35 +71,35 @@ impl Serialize for Photo {
     }
 }
 
-/// A quantity of `[observed]`, such as a video gives it.
+/// A quantity of `[observed]`, for example from a video.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
-    /// Its key.
+    /// Key of the observation.
     pub name: &'static str,
-    /// Its value.
+    /// Observed value.
     pub value: f64,
     /// Half-width of its 95 % interval.
     pub u95: f64,
-    /// By what it was seen.
+    /// Instrument or person that made the observation.
     pub by: Option<String>,
 }
 
-/// A limit of `[limits]`, in the unit of its key, beside what was measured.
+/// A limit of `[limits]`, in the unit of its key, and the measured value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limit {
-    /// Its key.
+    /// Key of the limit.
     pub name: &'static str,
     /// The least that is allowed.
     pub least: Option<f64>,
     /// The most.
     pub most: Option<f64>,
-    /// What was measured; `None` in a cask file.
+    /// Measured value; `None` in a cask file.
     pub measured: Option<Estimate>,
-    /// Whether it is kept.
+    /// State of the limit.
     pub state: LimitState,
 }
 
-/// How what was measured stands against a limit.
+/// Comparison of a measured value with a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitState {
@@ -107,11 +107,11 @@ pub enum LimitState {
     Kept,
     /// The whole interval lies beyond.
     Exceeded,
-    /// The interval holds the limit, or the quantity is not determined.
+    /// The interval includes the limit, or the quantity is not determined.
     Undecided,
 }
 
-/// `[report]`: what a site puts around its reports.
+/// `[report]`: letterhead of a site.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Letterhead {
     /// Above the title.
@@ -122,16 +122,16 @@ pub struct Letterhead {
     pub logo: Option<Photo>,
 }
 
-/// An observed quantity beside the same of the result.
+/// An observed quantity and the corresponding result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ObservedBeside {
     /// The key in `[observed]`.
     pub name: &'static str,
-    /// What was seen.
+    /// Observed value.
     pub observed: Estimate,
-    /// By what.
+    /// Instrument or person that made the observation.
     pub by: Option<String>,
-    /// The result; `None` where it has none.
+    /// The result; `None` if it has none.
     pub result: Option<Estimate>,
     /// E_n = (result − observed) / √(U² + U²) of both half-widths (ISO 13528); within ±1 they agree.
     pub e_n: Option<f64>,

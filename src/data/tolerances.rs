@@ -1,11 +1,11 @@
-//! How well the stated things are known, and which corrections may be made: `[tolerance]` and `[corrections]`
-//! of a cask file, one row a key.
+//! Uncertainty of the stated values and permitted corrections: `[tolerance]` and `[corrections]` of a cask
+//! file, one row per key.
 
 use super::cask::Cask;
-use super::key::{Key, Takes, within};
+use super::key::{Key, Takes, range};
 use ToleranceUnit::{Degrees, Metres, MetresOf, MetresPerSecond, Percent};
 
-/// The unit of a tolerance in the cask file; it is held in SI units or as a share.
+/// Unit of a tolerance in the cask file; the program holds it in SI units or as a share.
 #[derive(Debug, Clone, Copy)]
 enum ToleranceUnit {
     /// Percent of the thing itself, held as a share of it.
@@ -21,7 +21,7 @@ enum ToleranceUnit {
 }
 
 impl ToleranceUnit {
-    /// The default of a row to what is held.
+    /// Converts the default of a row to the internal unit.
     fn default_held(self, default: f64) -> f64 {
         match self {
             Self::Percent | Self::MetresOf(_) => default / 100.0,
@@ -34,16 +34,16 @@ impl ToleranceUnit {
 /// A key of `[tolerance]`.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
-    /// Its key.
+    /// Key in the cask file.
     pub key: &'static str,
-    /// What the report and the budget of uncertainty call it.
+    /// Name in the report and in the budget of uncertainty.
     pub name: &'static str,
     unit: ToleranceUnit,
     held: fn(&mut Tolerances) -> &mut f64,
 }
 
 impl Tolerance {
-    /// Takes a value in the unit of the file into `all`; a size of 0 has nothing to be off by.
+    /// Stores a value in the unit of the file in `all`; a size of 0 has no tolerance.
     pub(crate) fn set(&self, all: &mut Tolerances, value: f64, cask: &Cask) {
         *(self.held)(all) = match self.unit {
             MetresOf(size_m) if size_m(cask) > 0.0 => value / size_m(cask),
@@ -52,8 +52,8 @@ impl Tolerance {
         };
     }
 
-    /// Its value in the unit of the file.
-    pub(crate) fn in_file(&self, mut all: Tolerances, cask: &Cask) -> f64 {
+    /// Value in the unit of the file.
+    pub(crate) fn value_in_file(&self, mut all: Tolerances, cask: &Cask) -> f64 {
         let held = *(self.held)(&mut all);
         match self.unit {
             Percent => 100.0 * held,
@@ -63,8 +63,8 @@ impl Tolerance {
         }
     }
 
-    /// Its value as the report shows it, and the unit behind it.
-    pub(crate) fn shown(&self, mut all: Tolerances) -> (f64, &'static str) {
+    /// Value as the report shows it, and its unit.
+    pub(crate) fn displayed_value(&self, mut all: Tolerances) -> (f64, &'static str) {
         let held = *(self.held)(&mut all);
         match self.unit {
             Percent | MetresOf(_) => (100.0 * held, " %"),
@@ -75,19 +75,19 @@ impl Tolerance {
     }
 }
 
-/// Ten times a percentage, and the longest cask: beyond, an analysis draws without end.
+/// Ten times a percentage, and the longest cask: larger tolerances would never end an analysis.
 const WIDEST: f64 = 1000.0;
 
-/// Declares the tolerances. A row has the field and what it holds, the key with its unit and its default, the
-/// name in the report, and the remark in the form that `init` writes; where the default depends on the cask,
-/// the words for it and an example.
+/// Declares the tolerances. A row has the field and its unit, the key with its unit and its default, the name
+/// in the report, and the remark in the form that `init` writes; if the default depends on the cask, also the
+/// words for it and an example.
 macro_rules! tolerances {
     ($(
         $(#[$holds:meta])*
         $field:ident: $key:literal in $unit:expr, $default:literal
         $(($default_words:literal, $example:literal))?, $name:literal, $remark:literal;
     )*) => {
-        /// 95 % half-widths of what the cask file states and the sensors' certificates promise.
+        /// 95 % half-widths of the values in the cask file and in the sensors' certificates.
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Tolerances {
             $($(#[$holds])* pub $field: f64,)*
@@ -104,7 +104,7 @@ macro_rules! tolerances {
         pub const TOLERANCE: [Key; TOLERANCES.len()] = [$(
             Key {
                 name: $key,
-                takes: within(0.0, WIDEST, "half-width of the 95 % interval, in the unit that ends the key"),
+                takes: range(0.0, WIDEST, "half-width of the 95 % interval, in the unit that ends the key"),
                 default: [$($default_words,)? stringify!($default)][0],
                 example: [$($example,)? stringify!($default)][0],
                 remark: $remark,
@@ -112,7 +112,7 @@ macro_rules! tolerances {
             },
         )*];
 
-        /// What the keys of `[tolerance]` hold, in their order.
+        /// Keys of `[tolerance]`, in their order.
         pub static TOLERANCES: [Tolerance; [$($key),*].len()] = [$(
             Tolerance { key: $key, name: $name, unit: $unit, held: |all| &mut all.$field },
         )*];
@@ -126,10 +126,10 @@ tolerances! {
     impact_velocity: "impact_velocity_percent" in Percent, 0.3, "impact velocity", "";
     /// Scale of a channel, as a share of it.
     calibration: "calibration_percent" in Percent, 1.0, "calibration of a channel", "scale of a channel";
-    /// What a sensor reads of the other body axis, as a share: cross-axis sensitivity and tilt.
+    /// Share of the other body axis that a sensor reads: cross-axis sensitivity and tilt.
     cross_axis: "cross_axis_percent" in Percent, 2.0,
         "cross axis of a channel", "what a sensor reads of the other body axis, tilt included";
-    /// What strain of its base, heat and its cable add to a sensor's reading in a contact, as a share of its
+    /// Error that base strain, heat and the cable add to a sensor's reading in a contact, as a share of its
     /// peak.
     base_strain: "base_strain_percent" in Percent, 0.5,
         "base strain of a sensor", "of its peak in a contact, heat and cable included";
@@ -167,8 +167,8 @@ const UNSTATED_COG: f64 = 0.08;
 pub const UNSTATED_INERTIA: f64 = 0.15;
 
 impl Tolerances {
-    /// The defaults for a cask of this length, where its file leaves these keys out, as "table.key".
-    pub fn of(left_out: &[String], length_m: f64) -> Self {
+    /// Defaults for a cask of this length, if its file omits these keys, as "table.key".
+    pub fn with_defaults(left_out: &[String], length_m: f64) -> Self {
         let usual = Self::default();
         let is_left_out = |key: &str| left_out.iter().any(|left_out| left_out == key);
         Self {
@@ -182,7 +182,7 @@ impl Tolerances {
 /// Declares the corrections, each with its remark in the form that `init` writes and in the command's help.
 macro_rules! corrections {
     ($($(#[$done:meta])* $key:ident: $remark:literal;)*) => {
-        /// Which corrections of the samples may be made; what is made is reported with its size.
+        /// Permitted corrections of the samples; each correction is reported with its size.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
         pub struct Corrections {
@@ -196,8 +196,8 @@ macro_rules! corrections {
         }
 
         impl Corrections {
-            /// Each with its key.
-            pub fn by_key(&mut self) -> [(&'static str, &mut bool); CORRECTIONS.len()] {
+            /// Switches with their keys.
+            pub fn switches(&mut self) -> [(&'static str, &mut bool); CORRECTIONS.len()] {
                 [$((stringify!($key), &mut self.$key),)*]
             }
         }
@@ -217,12 +217,12 @@ macro_rules! corrections {
 }
 
 corrections! {
-    /// The mean of the free fall is taken off.
+    /// The mean of the free fall is subtracted.
     offset: "mean of the free fall";
-    /// A change of the offset at the first impact is fitted and taken off.
+    /// A change of the offset at the first impact is fitted and subtracted.
     zero_shift: "change of the offset at the first impact";
     /// A channel that is stamped late or early is shifted.
     skew: "a channel stamped late or early";
-    /// Mains hum seen in the free fall is taken off.
+    /// Mains hum seen in the free fall is subtracted.
     hum: "mains hum";
 }

@@ -1,6 +1,6 @@
-//! What a unit is called to what it is.
+//! Units by their names.
 
-/// Standard gravity, m/s²: what "g" means in a data sheet (3rd CGPM, 1901); not the site's gravity.
+/// Standard gravity, m/s²: the meaning of "g" in a data sheet (3rd CGPM, 1901); not the site's gravity.
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// The ways in which units of acceleration are written, in lower case without blanks and powers, with m/s²
@@ -15,17 +15,17 @@ const ACCELERATIONS: [(&str, f64); 7] = [
     ("ft/s2", 0.3048),
 ];
 
-/// m/s² per unit, for the ways in which an acceleration's unit is written; `None` where it is none of them.
+/// Factor to m/s² for the ways in which an acceleration's unit is written; `None` for any other text.
 ///
 /// Case matters only where it could mislead: "Mg" would be a megagram.
 pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
-    let plain = plain(text);
+    let plain = simplify(text);
     match plain.as_str() {
         "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
         "Mg" | "MG" => return None,
         _ => {}
     }
-    named(&ACCELERATIONS, &plain)
+    look_up(&ACCELERATIONS, &plain)
 }
 
 /// The ways in which units of a rate of turn are written, likewise, with rad/s per unit.
@@ -38,26 +38,26 @@ const RATES_OF_TURN: [(&str, f64); 5] = [
 ];
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// rad/s per unit, for the ways in which a unit of a rate of turn is written; `None` where it is none of
-/// them.
+/// Factor to rad/s for the ways in which a unit of angular rate is written; `None` for any other text.
 pub fn rate_unit_rad_s(text: &str) -> Option<f64> {
-    named(&RATES_OF_TURN, &plain(text))
+    look_up(&RATES_OF_TURN, &simplify(text))
 }
 
 /// Without blanks, brackets and powers.
-fn plain(text: &str) -> String {
+fn simplify(text: &str) -> String {
     let text = text.trim().trim_matches(['[', ']']).replace('²', "2").replace(['⁻', '−'], "-");
     text.replace(|c: char| c.is_whitespace() || "^*·{}()".contains(c), "")
 }
 
-/// What a table has for a plain name, in whatever case.
-fn named(table: &[(&str, f64)], plain: &str) -> Option<f64> {
+/// Looks up a simplified name in a table, ignoring case.
+fn look_up(table: &[(&str, f64)], plain: &str) -> Option<f64> {
     let plain = plain.to_lowercase().replace('¹', "1");
     let is_it = |(names, _): &&(&str, f64)| names.split(' ').any(|name| name == plain);
     table.iter().find(is_it).map(|(_, size)| *size)
 }
 
-/// Whether a unit is one of a rate of turn, such as "deg/s" or "rad/s", or of its change: no acceleration.
+/// True if a unit is one of angular rate, such as "deg/s" or "rad/s", or of its change, rather than of
+/// acceleration.
 pub fn is_rate_of_turn(text: &str) -> bool {
     let plain = text.trim_matches(['[', '(', ' ']).to_lowercase();
     RATES_OF_TURN.iter().flat_map(|(names, _)| names.split(' ')).any(|unit| plain.starts_with(unit))

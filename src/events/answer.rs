@@ -1,4 +1,4 @@
-//! The first impact on two channels to the delay between their answers.
+//! Measures the delay between the responses of two channels to the first impact.
 
 use crate::data::{Axis, End, Onset, Signal, transverse};
 use crate::numerics::projection::residual_square;
@@ -18,46 +18,45 @@ const SEEN_NOISE: f64 = 6.0;
 /// Responses are sought this long before first contact and after the contact, s: clocks and bending waves.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 6e-3;
-/// What the expansion in integrals leaves of a response, as a share of its RMS: modes up to 450 Hz over a
+/// Residual of the expansion in integrals, as a share of the RMS of a response: modes up to 450 Hz over a
 /// millisecond.
 const MODEL_SHARE: f64 = 0.005;
-/// Lengths after the response is seen that are fitted, s: short ones hold few modes, long ones stand out of
+/// Lengths of the stretches fitted after the response is seen, s: short ones hold few modes, long ones exceed
 /// the noise.
 const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
-/// Longest first contact whose peak is looked at, s.
+/// Longest first contact whose peak is used, s.
 const CONTACT_S: f64 = 0.02;
-/// A stretch is fitted in so many means of neighbouring samples at the most: over the longest 50 to a period
-/// of 450 Hz.
+/// Most block means to which a stretch is fitted: over the longest stretch 50 per period of 450 Hz.
 const POINTS: usize = 80;
-/// Steps that differ by less than this share are the same: over a fit of [`POINTS`] it stays below a
-/// millionth of one.
+/// Steps that differ by less than this share are equal: over a fit of [`POINTS`] the error stays below a
+/// millionth of a step.
 const SAME_STEP: f64 = 1e-9;
-/// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are
-/// fitted from there on, s.
+/// Starts after the answer is seen, s, up to which the force may still turn its direction, and lengths of the
+/// stretches fitted from there on, s.
 const LATER_S: [f64; 3] = [0.4e-3, 0.8e-3, 1.6e-3];
 const LATER_LENGTHS_S: [f64; 3] = [1e-3, 2e-3, 4e-3];
-/// A delay explains those stretches better than none where it leaves less by so many variances of the noise:
-/// three standard deviations.
-const BETTER: f64 = 10.0;
-/// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a
+/// A delay must explain those stretches better than no delay by this many variances of the noise: three
+/// standard deviations.
+const BETTER_VARIANCES: f64 = 10.0;
+/// Longest time in which a force turns its direction, s: L that slides back at 0.5 m/s is held within a
 /// millisecond, at 0.1 m/s within 0.4 ms.
 const TURNS_S: f64 = 7e-4;
 /// Delays tried in a fit, and between the best two of them.
-const TRIED: u32 = 80;
-const REFINED: u32 = 20;
+const TRIED_DELAYS: u32 = 80;
+const REFINED_DELAYS: u32 = 20;
 
-/// The delay of every transverse channel's answer against the struck end's channel.
+/// Delays of the answers of all transverse channels relative to the struck end's channel.
 ///
-/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The
-/// struck end's channel stands for F; the delay is the one at which its integrals explain the other channel
-/// best. Channels that hardly answer are left out.
+/// Rigid body and bending respond to a force F with a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1).
+/// The struck end's channel represents F; the delay is the one at which its integrals explain the other
+/// channel best. Channels that hardly respond are omitted.
 pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
     let Some(struck) = transverse(signals, End::First) else { return Vec::new() };
     let Some(cause) = Cause::new(struck, contact_s) else { return Vec::new() };
     signals
         .iter()
         .filter(|s| s.axis == Axis::Transverse && s.name != struck.name)
-        .filter_map(|signal| Answering::new(signal, &cause)?.delay())
+        .filter_map(|signal| AnswerFit::new(signal, &cause)?.delay())
         .collect()
 }
 
@@ -81,7 +80,8 @@ impl Cause {
         force.get_mut(..struck)?.fill(0.0);
         let mut integrals = vec![force];
         for _ in 0..4 {
-            // In milliseconds the integrals stay of the size of the force.
+            // With milliseconds as the unit of time the integrals have the same order of magnitude as the
+            // force.
             let next = running_integral(integrals.last()?, 1e3 / rate_hz);
             integrals.push(next);
         }
@@ -96,8 +96,8 @@ impl Cause {
         })
     }
 
-    /// The integrals of these orders as means of `block` samples each; the others are left empty.
-    fn in_blocks(&self, block: usize, orders: &[usize]) -> Self {
+    /// Averages the integrals of these orders over blocks of `block` samples; the others are left empty.
+    fn average_blocks(&self, block: usize, orders: &[usize]) -> Self {
         let of_order = |order| match self.integrals.get(order) {
             Some(values) if orders.contains(&order) => block_means(values, block),
             _ => Vec::new(),
@@ -119,7 +119,8 @@ impl Cause {
         values
             .filter(|values| values.len() >= 2)
             .map(|values| {
-                // Of the same times but for a part of a step, as where both channels have one rate.
+                // Both series have the same times except for a fraction of a step, if both channels have the
+                // same rate.
                 let (index, share) = (as_count(first), first.fract());
                 let same = if first >= 0.0 && (step - 1.0).abs() < SAME_STEP {
                     values.get(index..index + count + 1)
@@ -143,16 +144,16 @@ impl Cause {
 }
 
 /// A channel around its answer.
-struct Answering<'a> {
+struct AnswerFit<'a> {
     signal: &'a Signal,
     cause: &'a Cause,
-    /// First sample that stands out of the noise.
+    /// First sample that exceeds the noise.
     seen: usize,
     /// Noise of the channel and, through its share of the cause, of the cause, m/s².
     noise: f64,
 }
 
-impl<'a> Answering<'a> {
+impl<'a> AnswerFit<'a> {
     fn new(signal: &'a Signal, cause: &'a Cause) -> Option<Self> {
         let from = signal.index_from(cause.contact_s - BEFORE_S);
         let to = signal.index_from(cause.contact_s + CONTACT_S);
@@ -163,13 +164,13 @@ impl<'a> Answering<'a> {
         }
         let foot = (SEEN_NOISE * signal.noise_m_s2).max(LEAST_SHARE * largest);
         let seen = from + force.iter().position(|f| f.abs() > foot)?;
-        let is_whole = !signal.touches(&signal.gaps, cause.contact_s - BEFORE_S, cause.contact_s + AFTER_S);
+        let is_whole = !signal.overlaps(&signal.gaps, cause.contact_s - BEFORE_S, cause.contact_s + AFTER_S);
         let noise = signal.noise_m_s2.hypot(cause.noise * largest / cause.peak);
         (is_whole && seen > from).then_some(Self { signal, cause, seen, noise })
     }
 
-    /// The delay by the shortest stretch that tells it well; by how much longer stretches say otherwise is in
-    /// its uncertainty.
+    /// The delay from the shortest stretch that determines it well; its uncertainty includes the differences
+    /// of the longer stretches.
     fn delay(&self) -> Option<Onset> {
         let fits: Vec<Onset> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
         let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
@@ -180,20 +181,20 @@ impl<'a> Answering<'a> {
         let comparable = fits.iter().filter(|fit| fit.u_s < 4.0 * taken.u_s + fine_s);
         let apart_s = comparable.map(|fit| (fit.delay_s - taken.delay_s).abs()).fold(0.0, f64::max);
         let mut u_s = taken.u_s.max(apart_s / 2.0);
-        // An answer that begins below the noise looks late: where none does as well, the delay is not told
-        // from it.
+        // An answer that begins below the noise looks late: if no delay explains it as well, the delay is not
+        // determined.
         if self.needs_no_delay(taken.delay_s) {
             u_s = u_s.max(taken.delay_s.abs() / 2.0);
         }
         // A clock is apart all along.
-        if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && !self.goes_on(taken.delay_s) {
+        if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && !self.confirms_delay(taken.delay_s) {
             u_s = taken.delay_s.abs() / 2.0;
         }
         Some(Onset { u_s, ..taken.clone() })
     }
 
-    /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` where nothing fits
-    /// it.
+    /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` if no fit is
+    /// possible.
     fn fit(&self, length_s: f64) -> Option<Onset> {
         const ORDERS: [usize; 3] = [0, 2, 4];
         let rate_hz = self.signal.sample_rate_hz;
@@ -207,20 +208,21 @@ impl<'a> Answering<'a> {
         }
         let block = (to - from).div_ceil(POINTS);
         let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
-        // As long in time where the other channel has another rate.
+        // The block lasts as long if the other channel has another rate.
         let of_cause = as_count(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
-        let cause = self.cause.in_blocks(of_cause, &ORDERS);
-        let noise = self.noise_of_means(block);
+        let cause = self.cause.average_blocks(of_cause, &ORDERS);
+        let noise = self.block_noise(block);
         let begin_s = self.signal.time_s(from) + as_f64(block - 1) / 2.0 / rate_hz;
-        let left = |delay_s: f64| left(&values, begin_s - delay_s, as_f64(block) / rate_hz, &cause, &ORDERS);
+        let left =
+            |delay_s: f64| residual(&values, begin_s - delay_s, as_f64(block) / rate_hz, &cause, &ORDERS);
         let seen_s = self.signal.time_s(self.seen) - self.cause.contact_s;
         let (low_s, high_s) = (seen_s - back_s - 3.0 / rate_hz, seen_s + length_s / 2.0);
-        let (step_s, coarse) = scan(low_s..high_s, TRIED, &left);
+        let (step_s, coarse) = scan(low_s..high_s, TRIED_DELAYS, &left);
         let best = (0..coarse.len()).min_by(|&a, &b| coarse[a].1.total_cmp(&coarse[b].1))?;
         if best == 0 || best + 1 == coarse.len() {
             return None;
         }
-        let (_, fine) = scan(coarse[best - 1].0..coarse[best + 1].0, REFINED, &left);
+        let (_, fine) = scan(coarse[best - 1].0..coarse[best + 1].0, REFINED_DELAYS, &left);
         let &(delay_s, least) = fine.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let freedom = as_f64(values.len() - ORDERS.len() - 1);
         let answered = as_f64(to - self.seen) / as_f64(block);
@@ -228,8 +230,8 @@ impl<'a> Answering<'a> {
         if (least / freedom).sqrt() > (2.0 * noise).hypot(model) {
             return None;
         }
-        // Twice the standard uncertainty where the sum of squares has grown by four variances, or what the
-        // model may leave.
+        // Twice the standard uncertainty is the point at which the sum of squares has grown by four
+        // variances, or by the error of the model.
         let variance = (least / freedom).max(noise.powi(2));
         let limit = least + 4.0 * variance + model.powi(2) * answered / 4.0;
         let mut as_good = coarse.iter().filter(|c| c.1 <= limit).map(|c| c.0);
@@ -239,7 +241,7 @@ impl<'a> Answering<'a> {
         Some(Onset { channel: self.signal.name.clone(), delay_s, u_s })
     }
 
-    /// Whether rigid body, bending and its damping explain some stretch from first contact on without any
+    /// True if rigid body, bending and its damping explain some stretch from first contact on without any
     /// delay.
     fn needs_no_delay(&self, delay_s: f64) -> bool {
         const ORDERS: [usize; 5] = [0, 1, 2, 3, 4];
@@ -256,17 +258,17 @@ impl<'a> Answering<'a> {
                 return false;
             }
             let step_s = 1.0 / signal.sample_rate_hz;
-            let left = left(values, signal.time_s(from), step_s, self.cause, &ORDERS);
+            let left = residual(values, signal.time_s(from), step_s, self.cause, &ORDERS);
             let rms = (left / as_f64(values.len() - 6)).sqrt();
             rms < (1.5 * self.noise).hypot(MODEL_SHARE * size(values, as_f64((to - self.seen).max(1))))
         })
     }
 
-    /// Whether what follows the beginning of the answer has this delay rather than none: else the force may
-    /// have turned its direction in the beginning, as where L slides back until it holds.
+    /// True if the later part of the answer supports this delay rather than none: otherwise the force may
+    /// have turned its direction in the beginning, for example if L slides back until it sticks.
     ///
-    /// What the body does by then goes on as a line.
-    fn goes_on(&self, delay_s: f64) -> bool {
+    /// The motion up to then continues as a straight line.
+    fn confirms_delay(&self, delay_s: f64) -> bool {
         const ORDERS: [usize; 3] = [0, 2, 4];
         let (signal, rate_hz) = (self.signal, self.signal.sample_rate_hz);
         let mut in_favour = 0.0;
@@ -278,7 +280,7 @@ impl<'a> Answering<'a> {
             let Some(force) = signal.force_m_s2.get(from..to) else { continue };
             let values = block_means(force, block);
             let of_cause = as_count(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
-            let cause = self.cause.in_blocks(of_cause, &ORDERS);
+            let cause = self.cause.average_blocks(of_cause, &ORDERS);
             let begin_s = signal.time_s(from) + as_f64(block - 1) / 2.0 / rate_hz;
             let count = values.len();
             if count < ORDERS.len() + 8 {
@@ -292,7 +294,7 @@ impl<'a> Answering<'a> {
             };
             let (without, with) = (left(0.0), left(delay_s));
             let freedom = as_f64(count - ORDERS.len() - 2);
-            let noise = self.noise_of_means(block);
+            let noise = self.block_noise(block);
             let variance = noise.powi(2).max(without.min(with) / freedom);
             let explained = (1.5 * noise).hypot(MODEL_SHARE * size(&values, as_f64(count)));
             if (without.min(with) / freedom).sqrt() > explained {
@@ -300,11 +302,11 @@ impl<'a> Answering<'a> {
             }
             in_favour += (without - with) / variance;
         }
-        in_favour > BETTER
+        in_favour > BETTER_VARIANCES
     }
 
-    /// Noise of the means of `block` samples: by those before first contact, for noise need not be white.
-    fn noise_of_means(&self, block: usize) -> f64 {
+    /// Noise of the means of `block` samples, from those before first contact, since noise need not be white.
+    fn block_noise(&self, block: usize) -> f64 {
         let to = self.signal.index_from(self.cause.contact_s - BEFORE_S);
         let before = self.signal.force_m_s2.get(to.saturating_sub(POINTS * block)..to).unwrap_or_default();
         let means = block_means(before, block);
@@ -313,17 +315,18 @@ impl<'a> Answering<'a> {
     }
 }
 
-/// Sum of squares that the cause's integrals leave of `values`, taken from `from_s` on, `step_s` apart.
-fn left(values: &[f64], from_s: f64, step_s: f64, cause: &Cause, orders: &[usize]) -> f64 {
+/// Sum of squares of `values` that the cause's integrals do not explain; `values` begin at `from_s`, `step_s`
+/// apart.
+fn residual(values: &[f64], from_s: f64, step_s: f64, cause: &Cause, orders: &[usize]) -> f64 {
     residual_square(values, cause.regressors(orders, from_s, step_s, values.len()))
 }
 
-/// Root mean square over `count` of the values, the others being next to zero.
+/// Root mean square of the values over `count`, if the values outside are close to zero.
 fn size(values: &[f64], count: f64) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt()
 }
 
-/// `steps` + 1 places over a range with what `function` is there, and how far apart they lie.
+/// Evaluates `function` at `steps` + 1 places over a range, and returns their distance too.
 fn scan(over: Range<f64>, steps: u32, function: &impl Fn(f64) -> f64) -> (f64, Vec<(f64, f64)>) {
     let step = (over.end - over.start) / f64::from(steps);
     let places = (0..=steps).map(|i| over.start + f64::from(i) * step);

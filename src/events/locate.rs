@@ -1,4 +1,4 @@
-//! Whole channels to the stretch in which the first impact lies, in one pass.
+//! Finds the stretch with the first impact on whole channels, in one pass.
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, End, Onset};
@@ -11,178 +11,178 @@ use std::ops::RangeInclusive;
 /// flight.
 const WIDTH_S: f64 = 0.025;
 
-/// Blocks a width, so that its place is known to a fortieth; a slow record has fewer …
+/// Blocks per width, so that its position is known to a fortieth; a slow record has fewer.
 const BLOCKS: usize = 40;
-/// … but not as few as these: a width of three samples holds a fall as well as an impact.
+/// Fewest blocks per width: a width of three samples holds a fall as well as an impact.
 const LEAST_BLOCKS: usize = 4;
 
-/// The first impact is where L's velocity change over the width first reaches this share of its largest.
+/// The first impact is the first change of L's velocity over the width to reach this share of its largest.
 ///
 /// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far
 /// less.
 const SHARE: f64 = 0.4;
 
-/// A change of this share of the least that the first impact can make is the first impact too, however large
-/// a later one is.
+/// A change of this share of the least possible first impact counts as the first impact, however large a
+/// later one is.
 const SHARE_OF_LEAST: f64 = 0.5;
 
-/// Noise that walks this many times as far within the width passes for an impact in some width of a record.
-const WALKS: f64 = 4.0;
+/// If noise walks this many times as far within the width, it looks like an impact in some width of a record.
+const WALK_FACTOR: f64 = 4.0;
 
-/// Parts of a record of which the calmest shows the noise, and the fewest blocks of one.
+/// A record is divided into this many parts, and the calmest shows the noise; a part has at least this many
+/// blocks.
 const PARTS: usize = 8;
 const LEAST_PART: usize = 20;
 
 /// Noise is as large in all of them within this factor.
 const STEADY: f64 = 2.0;
 
-/// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half
-/// of it …
+/// A change of this share of the largest may be the slap-down, which is the first to reach half of it.
 const LAST_SHARE: f64 = 0.3;
-/// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
+/// A change of this share of v0 may also be the slap-down: no slap-down is below 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
 /// The foot of a change lies at this share of it.
 const FOOT: f64 = 0.1;
-/// An end first stirs with this share of its largest change …
+/// An end begins to move when its change reaches this share of its largest change.
 const FIRST_SHARE: f64 = 0.15;
-/// … and what stays below this share of the first impact's change falls still.
-const STILL: f64 = 0.1;
+/// Below this share of the first impact's change an end is still falling.
+const FALLING_SHARE: f64 = 0.1;
 
 /// A change like the first impact's this long after it is another drop, in falls of v0/g: by then a body that
 /// left the target with 0.7 v0 has come down twice, and strikes a third time with half of v0 at most.
 const APART_FALLS: f64 = 2.5;
 /// A change is like the first impact's within these factors: drops of one height at any of the usual angles
 /// and k. A pulled cable makes a larger change, lifting or setting down the cask a smaller one.
-const ALIKE: RangeInclusive<f64> = 0.6..=1.7;
+const ALIKE_FACTORS: RangeInclusive<f64> = 0.6..=1.7;
 
-/// How the velocity of each transverse channel changes over the whole record: first impact and further drops
-/// are found on it.
-pub struct Changes<'a>(Vec<Changing<'a>>);
+/// Velocity changes of each transverse channel over the whole record, on which the first impact and further
+/// drops are found.
+pub struct Changes<'a>(Vec<ChannelChanges<'a>>);
 
-/// One channel's changes of velocity.
-struct Changing<'a> {
+/// Velocity changes of one channel.
+struct ChannelChanges<'a> {
     channel: &'a Channel,
     /// Length of a block, s.
     block_s: f64,
     /// Blocks a width.
     blocks: usize,
-    /// By how much the velocity changes over the width that ends with each block, m/s.
+    /// Change of the velocity over the width that ends with each block, m/s.
     changes_m_s: Vec<f64>,
-    /// What white noise alone changes it by over a width, m/s; whether that is as much at all times.
+    /// Standard deviation of that change from white noise alone, m/s; whether it is the same at all times.
     noise_m_s: f64,
     is_steady: bool,
 }
 
 /// Noise in which an impact is not found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hiding {
+pub struct HidingNoise {
     pub channel: String,
     /// Standard deviation of what it changes the velocity by within 25 ms, m/s.
     pub noise_m_s: f64,
 }
 
 impl<'a> Changes<'a> {
-    /// Looks at every sample of the transverse channels once.
-    pub fn of(channels: &'a [Channel]) -> Self {
-        Self::along(channels, Axis::Transverse)
+    /// Scans all samples of the transverse channels once.
+    pub fn new(channels: &'a [Channel]) -> Self {
+        Self::along_axis(channels, Axis::Transverse)
     }
 
-    /// The same of the channels along an axis.
-    pub fn along(channels: &'a [Channel], axis: Axis) -> Self {
+    /// Scans the channels along an axis.
+    pub fn along_axis(channels: &'a [Channel], axis: Axis) -> Self {
         let along = channels.par_iter().filter(|c| c.axis == axis);
-        Self(along.filter_map(Changing::of).collect())
+        Self(along.filter_map(ChannelChanges::new).collect())
     }
 
-    /// The transverse channel of the first end; any other where that end has none.
-    fn struck(&self) -> Option<&Changing<'a>> {
+    /// The transverse channel of the first end; any other if that end has none.
+    fn struck_channel(&self) -> Option<&ChannelChanges<'a>> {
         self.0.iter().find(|c| c.channel.end == End::First).or_else(|| self.0.first())
     }
 
-    /// Sample rate of the channel that the first impact is sought on, Hz.
+    /// Sample rate of the channel that shows the first impact, Hz.
     pub fn rate_hz(&self) -> Option<f64> {
-        self.struck().map(|changing| changing.channel.sample_rate_hz)
+        self.struck_channel().map(|changing| changing.channel.sample_rate_hz)
     }
 
-    /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse
-    /// channel), whose velocity it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
+    /// Finds the first impact on the transverse channel of the first end, or, without one, on any transverse
+    /// channel. The impact changes the velocity by at least `least_step_m_s`: v0 cos φ if L is struck.
     ///
-    /// `None` where no channel moves at all, or the samples are too few to tell.
+    /// `None` if no channel moves at all, or if there are too few samples.
     pub fn locate(&self, least_step_m_s: f64) -> Option<CoarseEvent> {
-        let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
+        let struck = self.struck_channel().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
         let least_m_s = struck.least_m_s(least_step_m_s);
         let crossing = struck.changes_m_s.iter().position(|c| c.abs() >= least_m_s && least_m_s > 0.0)?;
         Some(struck.event_at(crossing))
     }
 
-    /// The noise that would pass for the impact which [`Changes::locate`] seeks; ringing of a body that a
+    /// Noise that could be mistaken for the impact which [`Changes::locate`] seeks; ringing of a body that a
     /// record begins with is none.
-    pub fn hiding(&self, least_step_m_s: f64) -> Option<Hiding> {
-        let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
+    pub fn find_hiding_noise(&self, least_step_m_s: f64) -> Option<HidingNoise> {
+        let struck = self.struck_channel().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
         let noise_m_s = struck.noise_m_s;
         let begins = self.locate(least_step_m_s).is_some_and(|e| e.near_s < struck.channel.start_s);
         let is_noise = struck.is_steady || !begins;
-        let hiding = || Hiding { channel: struck.channel.name.clone(), noise_m_s };
-        (is_noise && WALKS * noise_m_s > struck.least_m_s(least_step_m_s)).then(hiding)
+        let hiding = || HidingNoise { channel: struck.channel.name.clone(), noise_m_s };
+        (is_noise && WALK_FACTOR * noise_m_s > struck.least_m_s(least_step_m_s)).then(hiding)
     }
 
-    /// The channel of the second end that is struck while the first end still falls, and by how much sooner,
-    /// s: what its clock is ahead.
-    pub fn ahead(&self, event: &CoarseEvent, v0_m_s: f64) -> Option<Onset> {
-        let struck = self.struck()?;
+    /// A channel of the second end that is struck while the first end is still falling, and the lead of its
+    /// clock, s.
+    pub fn find_leading_clock(&self, event: &CoarseEvent, v0_m_s: f64) -> Option<Onset> {
+        let struck = self.struck_channel()?;
         let is_still = |at_s: f64| {
-            let least_m_s = STILL * event.velocity_step_m_s.abs();
+            let least_m_s = FALLING_SHARE * event.velocity_step_m_s.abs();
             let until_s = at_s + 2.0 * WIDTH_S;
             let is_then = |i: &usize| struck.end_s(*i) < until_s;
             (0..struck.changes_m_s.len()).take_while(is_then).all(|i| struck.changes_m_s[i].abs() < least_m_s)
         };
-        let first = |changing: &Changing| {
+        let first = |changing: &ChannelChanges| {
             let least_m_s = (FIRST_SHARE * changing.largest_m_s()).max(LAST_SHARE_OF_FALL * v0_m_s);
-            // What its first width shows is no strike, but hum, or a level that moves later.
-            let at = changing.stirs(least_m_s).filter(|at| *at >= 2 * changing.blocks)?;
+            // A change within the first width is not an impact, but hum or a level that moves later.
+            let at = changing.find_motion(least_m_s).filter(|at| *at >= 2 * changing.blocks)?;
             let at_s = changing.end_s(at) - WIDTH_S;
             let delay_s = at_s - event.near_s;
             let found = Onset { channel: changing.channel.name.clone(), delay_s, u_s: WIDTH_S / 4.0 };
             (delay_s < -2.0 * WIDTH_S && is_still(at_s)).then_some(found)
         };
-        self.of_second_end().find_map(first)
+        self.second_end_channels().find_map(first)
     }
 
-    /// How much later the channels of the second end show the drop than the struck one, s: roughly, by the
-    /// first impact, whose answer may seem later by milliseconds, and by the slap-down.
-    pub fn behind_s(&self, v0_m_s: f64) -> Vec<f64> {
-        let Some(struck) = self.struck() else { return Vec::new() };
+    /// Approximate delays with which the channels of the second end show the drop after the struck one, s:
+    /// from the first impact, whose answer may seem late by milliseconds, and from the slap-down.
+    pub fn delays_s(&self, v0_m_s: f64) -> Vec<f64> {
+        let Some(struck) = self.struck_channel() else { return Vec::new() };
         let least_m_s = LAST_SHARE_OF_FALL * v0_m_s;
-        // One clock has all channels of an end: the one that answers first tells it.
-        let earliest_s = |of_far: &dyn Fn(&Changing<'_>) -> Option<f64>| {
-            self.of_second_end().filter_map(of_far).min_by(f64::total_cmp)
+        // All channels of an end have one clock: the channel that answers first determines it.
+        let earliest_s = |of_far: &dyn Fn(&ChannelChanges<'_>) -> Option<f64>| {
+            self.second_end_channels().filter_map(of_far).min_by(f64::total_cmp)
         };
         let stirs_s = struck.foot_s(least_m_s).zip(earliest_s(&|far| far.foot_s(least_m_s)));
-        let again_s = struck.struck_again_s().zip(earliest_s(&|far| far.stirs_s(far.largest_m_s() / 2.0)));
+        let again_s = struck.second_strike_s().zip(earliest_s(&|far| far.start_s(far.largest_m_s() / 2.0)));
         stirs_s.into_iter().chain(again_s).map(|(struck_s, far_s)| far_s - struck_s).collect()
     }
 
-    fn of_second_end(&self) -> impl Iterator<Item = &Changing<'a>> {
+    fn second_end_channels(&self) -> impl Iterator<Item = &ChannelChanges<'a>> {
         self.0.iter().filter(|changing| changing.channel.end == End::Second)
     }
 
-    /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how
-    /// long a drop falls, s.
-    pub fn another_drop(&self, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
-        let struck = self.struck()?;
+    /// First impact of another drop in the same recording, long after the one at `event`; `fall_s` is the
+    /// duration of a fall, s.
+    pub fn find_another_drop(&self, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
+        let struck = self.struck_channel()?;
         let changes = &struck.changes_m_s;
         let from_s = event.near_s + APART_FALLS * fall_s;
         let from = as_count((from_s - struck.channel.start_s) / struck.block_s).min(changes.len());
         let share = |change: &f64| change / event.velocity_step_m_s;
-        let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE.start())?;
+        let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE_FACTORS.start())?;
         let found = struck.event_at(crossing);
-        ALIKE.contains(&share(&found.velocity_step_m_s)).then_some(found)
+        ALIKE_FACTORS.contains(&share(&found.velocity_step_m_s)).then_some(found)
     }
 
-    /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a
-    /// notable share of its largest change there, s: what lies far beyond it needs no fine work.
+    /// The last time within `after_s` of the event at which a transverse channel changes its velocity by a
+    /// notable share of its largest change there, s: later parts need no detailed analysis.
     pub fn last_s(&self, event: &CoarseEvent, v0_m_s: f64, after_s: f64) -> Option<f64> {
-        let of_channel = |changing: &Changing| {
+        let of_channel = |changing: &ChannelChanges| {
             let changes = &changing.changes_m_s;
             let from = (0..changes.len()).find(|&i| changing.end_s(i) > event.near_s)?;
             let beyond_s = event.near_s + event.spread_s + after_s;
@@ -195,8 +195,8 @@ impl<'a> Changes<'a> {
     }
 }
 
-impl<'a> Changing<'a> {
-    fn of(channel: &'a Channel) -> Option<Self> {
+impl<'a> ChannelChanges<'a> {
+    fn new(channel: &'a Channel) -> Option<Self> {
         let (block_s, means) = block_means(channel)?;
         let offset = robust::median(&mut means.clone());
         let blocks = as_count((WIDTH_S / block_s).round()).clamp(1, BLOCKS);
@@ -220,7 +220,7 @@ impl<'a> Changing<'a> {
         Some(Self { channel, block_s, blocks, changes_m_s, noise_m_s, is_steady })
     }
 
-    /// From which change on it is the first impact's, m/s.
+    /// Smallest change that belongs to the first impact, m/s.
     fn least_m_s(&self, least_step_m_s: f64) -> f64 {
         (SHARE * self.largest_m_s()).min(SHARE_OF_LEAST * least_step_m_s)
     }
@@ -230,20 +230,20 @@ impl<'a> Changing<'a> {
     }
 
     /// The first block that ends a width over which the velocity changes by `least_m_s`, and by more than
-    /// noise has it.
-    fn stirs(&self, least_m_s: f64) -> Option<usize> {
-        let least_m_s = least_m_s.max(WALKS * self.noise_m_s);
+    /// noise does.
+    fn find_motion(&self, least_m_s: f64) -> Option<usize> {
+        let least_m_s = least_m_s.max(WALK_FACTOR * self.noise_m_s);
         self.changes_m_s.iter().position(|c| c.abs() >= least_m_s)
     }
 
-    /// Where the width begins that [`Changing::stirs`] finds, s.
-    fn stirs_s(&self, least_m_s: f64) -> Option<f64> {
-        Some(self.end_s(self.stirs(least_m_s)?) - WIDTH_S)
+    /// Where the width begins that [`ChannelChanges::stirs`] finds, s.
+    fn start_s(&self, least_m_s: f64) -> Option<f64> {
+        Some(self.end_s(self.find_motion(least_m_s)?) - WIDTH_S)
     }
 
-    /// As [`Changing::stirs_s`], led back to where a tenth of that change was reached.
+    /// As [`ChannelChanges::stirs_s`], led back to where a tenth of that change was reached.
     fn foot_s(&self, least_m_s: f64) -> Option<f64> {
-        let (stirs, changes) = (self.stirs(least_m_s)?, &self.changes_m_s);
+        let (stirs, changes) = (self.find_motion(least_m_s)?, &self.changes_m_s);
         let still = stirs.saturating_sub(3 * self.blocks)..stirs.saturating_sub(self.blocks);
         let before_m_s = if still.is_empty() { 0.0 } else { robust::median(&mut changes[still].to_vec()) };
         let is_foot = |c: &f64| (c - before_m_s).abs() < FOOT * (changes[stirs] - before_m_s).abs();
@@ -251,8 +251,8 @@ impl<'a> Changing<'a> {
         Some(self.end_s(foot) - WIDTH_S)
     }
 
-    /// Where the width begins over which the velocity changes notably once more after the first time, s.
-    fn struck_again_s(&self) -> Option<f64> {
+    /// Beginning of the width over which the velocity changes notably once more after the first time, s.
+    fn second_strike_s(&self) -> Option<f64> {
         let least_m_s = LAST_SHARE * self.largest_m_s();
         let is_notable = |c: &f64| c.abs() >= least_m_s;
         let first = self.changes_m_s.iter().position(is_notable)?;
@@ -261,7 +261,7 @@ impl<'a> Changing<'a> {
         Some(self.end_s(again) - WIDTH_S)
     }
 
-    /// When a block ends, s.
+    /// End of a block, s.
     fn end_s(&self, block: usize) -> f64 {
         self.channel.start_s + (as_f64(block) + 1.0) * self.block_s
     }
@@ -275,8 +275,8 @@ impl<'a> Changing<'a> {
     }
 }
 
-/// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a
-/// missing block as the last.
+/// Length of a block, s, and the mean force of each, m/s²; a missing sample counts as the mean of its block,
+/// a missing block as the previous one.
 fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
     let size = as_count((WIDTH_S * channel.sample_rate_hz / as_f64(BLOCKS)).round()).max(1);
     let mut blocks = block_means_m_s2(channel, 0..channel.samples.len(), size);
@@ -322,7 +322,7 @@ mod tests {
     fn the_width_of_a_slow_record_holds_no_fall() {
         let located = |rate_hz: f64, impact_m_s: f64| {
             let channels = [slow(rate_hz, impact_m_s)];
-            Changes::of(&channels).locate(6.0)
+            Changes::new(&channels).locate(6.0)
         };
         for rate_hz in [198.0, 400.0] {
             let found = located(rate_hz, 9.0).expect("an impact");
@@ -339,8 +339,8 @@ mod tests {
         let ahead = |first: &[(f64, f64)], second: &[(f64, f64)]| {
             let second = Channel { name: "A2".into(), ..channel(End::Second, second) };
             let channels = [channel(End::First, first), second];
-            let changes = Changes::of(&channels);
-            changes.ahead(&changes.locate(12.0).expect("an impact"), 13.3)
+            let changes = Changes::new(&channels);
+            changes.find_leading_clock(&changes.locate(12.0).expect("an impact"), 13.3)
         };
         let found = ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(0.863, -4.0), (0.923, 20.0)]).expect("ahead");
         assert!(found.channel == "A2" && (found.delay_s + 0.137).abs() < 0.005, "{found:?}");
@@ -358,7 +358,7 @@ mod tests {
             let second = channel(End::Second, &[(1.0 + by_s, -2.0), (1.06 + by_s, 20.0)]);
             let near = Channel { name: "A4".into(), ..channel(End::Second, &[(1.06 + by_s, 9.0)]) };
             let channels = [channel(End::First, &[(1.0, 18.0), (1.06, -12.0)]), near, second];
-            Changes::of(&channels).behind_s(13.3).iter().map(|s| 1e3 * s).collect::<Vec<f64>>()
+            Changes::new(&channels).delays_s(13.3).iter().map(|s| 1e3 * s).collect::<Vec<f64>>()
         };
         for by_ms in [-140.0, -30.0, 0.0, 10.0, 70.0] {
             let found = behind_ms(by_ms / 1e3);
@@ -375,7 +375,7 @@ mod tests {
             let Channel { samples, .. } = channel(End::First, &[(2.5, 20.0)]);
             let noisy = |i: usize| samples.get(i) + noise_m_s2 * example::noise(u32::try_from(i).unwrap(), 1);
             let channels = [example::channel((0..samples.len()).map(noisy).collect())];
-            Changes::of(&channels).hiding(13.0)
+            Changes::new(&channels).find_hiding_noise(13.0)
         };
         // White noise of 10 kHz walks by its size times 0.1 ms times √250 within 25 ms: 6.5 m/s over four.
         assert_eq!(hiding(800.0), None);
@@ -387,8 +387,8 @@ mod tests {
     fn another_drop_is_an_impact_alike_that_no_rebound_can_be() {
         let another = |struck: &[(f64, f64)]| {
             let channels = [channel(End::First, struck)];
-            let changes = Changes::of(&channels);
-            changes.another_drop(&changes.locate(13.29).expect("an impact"), 1.355)
+            let changes = Changes::new(&channels);
+            changes.find_another_drop(&changes.locate(13.29).expect("an impact"), 1.355)
         };
         let found = another(&[(0.5, 20.0), (0.9, -12.0), (5.0, 16.0)]).expect("another drop");
         assert!((found.velocity_step_m_s - 16.0).abs() < 0.2, "{found:?}");
@@ -406,7 +406,7 @@ mod tests {
             channel(End::Second, &[(0.5, -10.0), (1.0, 1.1), (1.3, 0.4)]),
         ];
         let v0_m_s = 13.29;
-        let changes = Changes::of(&channels);
+        let changes = Changes::new(&channels);
         let event = changes.locate(v0_m_s).expect("an impact");
         let last_s = changes.last_s(&event, v0_m_s, 1.0).expect("a change");
         // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies

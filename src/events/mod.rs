@@ -1,4 +1,4 @@
-//! Conditioned channels to the times that matter: release, first contact, separation, slap-down.
+//! Times of the events on conditioned channels: release, first contact, separation, slap-down.
 
 mod answer;
 mod locate;
@@ -8,11 +8,11 @@ mod separation;
 mod taps;
 
 pub use answer::answers;
-pub use locate::{Changes, Hiding};
+pub use locate::{Changes, HidingNoise};
 pub use onset::{cut_short, departure, first_contact, slap_down};
-pub use release::{FreeFall, at_rest, feels_gravity, free_fall, rest_over_fall};
-pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
-pub use taps::blow_answers;
+pub use release::{FreeFall, at_rest, feels_gravity, free_fall, rest_level};
+pub use separation::{first_separation, impulse_end, refine_end, seat_delay_s, separation};
+pub use taps::tap_answers;
 
 use crate::data::{Channel, End, Signal, of_either, transverse};
 use crate::numerics::reduce;
@@ -21,16 +21,16 @@ use std::ops::Range;
 /// Slope of the first bending mode of a free uniform beam at its end over its value there, times the length
 /// (Blevins 1979).
 const END_SLOPE: f64 = 4.65;
-/// A sensor so far in that the mode reads less than this share of its end's is near a node: it cancels
-/// nothing.
+/// If the mode at a sensor is below this share of that at its end, the sensor is near a node and cannot
+/// cancel the mode.
 const LEAST_SHAPE: f64 = 0.2;
 
 /// The transverse signal nearest to an end from a time on, without the first bending mode, which both ends of
-/// a beam ring with alike: the other end's signal taken off it in the ratio of the mode's shape at both.
-/// Impacts stay, and those of the other end turn their sign.
+/// a beam show alike: the other end's signal is subtracted in the ratio of the mode's shape at both. Impacts
+/// remain, and those of the other end change their sign.
 ///
-/// The signal as it is where the other end has none of the same times, or where one of both sits near a node.
-/// Returned with what it is the sum of: signals by name, each with its weight.
+/// The signal is unchanged if the other end has none of the same times, or if either sensor is near a node.
+/// Returned with its composition: signals by name, each with its weight.
 pub fn without_first_mode(
     signals: &[Signal],
     end: End,
@@ -47,7 +47,7 @@ pub fn without_first_mode(
             && (o.start_s - own.start_s).abs() * own.sample_rate_hz < 1.0
             && shape(o).min(shape(own)) > LEAST_SHAPE
     });
-    // Where the other end's signal ends, the mode would come back as a jump.
+    // At the end of the other end's signal the mode would return as a jump.
     let mut free = own.cut(from, of_same_times.map_or(usize::MAX, |other| other.force_m_s2.len()));
     if let Some(other) = of_same_times {
         let ratio = shape(own) / shape(other);
@@ -61,7 +61,8 @@ pub fn without_first_mode(
     Some((free, parts))
 }
 
-/// Means of the finite samples of blocks of `size` over a range of a channel, m/s²; NaN where there is none.
+/// Means of the finite samples of blocks of `size` over a range of a channel, m/s²; NaN for a block without
+/// any.
 fn block_means_m_s2(channel: &Channel, range: Range<usize>, size: usize) -> Vec<f64> {
     let mut means = of_either!(&channel.samples, v => reduce::finite_block_means(&v[range], size));
     for mean in &mut means {

@@ -1,40 +1,43 @@
-//! A pulse to its beginning, finer than a sample.
+//! Finds the beginning of a pulse, more finely than the sampling.
 
 use crate::data::{At, CoarseEvent, End, Signal, transverse};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::borrow::Cow;
 
-/// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
+/// The foot of a pulse is this share of its peak, or the noise if that is higher.
 const FOOT: f64 = 0.02;
-/// The foot stands this many times above what rings on in the flight, but at most at this share of the peak.
+/// The foot stands this many times above the ringing in the flight, but at most at this share of the peak.
 const ABOVE_RINGING: f64 = 1.2;
 const HIGHEST_FOOT: f64 = 0.3;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
-/// Where noise lifts the foot above this share of the peak, it is sought on means: converters with a range
+/// If noise lifts the foot above this share of the peak, the foot is sought on means: converters with a range
 /// for a slap-down of hundreds of g show a first impact of 20 g in their noise.
 const HIGHEST_NOISE: f64 = 0.1;
-/// Noise is passed by this many of its standard deviations.
+/// A signal exceeds the noise if it is this many standard deviations above zero.
 pub(super) const NOISE_FACTOR: f64 = 6.0;
-/// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
+/// If the velocity changed by this share of the pulse's step before its rise, an earlier stage of the pulse
+/// did so.
 const EARLIER_STAGE: f64 = 0.02;
-/// Of the second impact, before which a flight rings and drifts, so much does.
+/// The same share for the second impact, before which a flight rings and drifts.
 const SECOND_STAGE: f64 = 0.2;
-/// The velocity tells a rise from this share of what it has given to its middle on, up to that one …
-const GIVEN: f64 = 0.04;
+/// The velocity shows a rise between these shares of its change up to the middle of the pulse.
+const LEAST_GIVEN: f64 = 0.04;
 const MOST_GIVEN: f64 = 0.4;
-/// … which ringing shifts by so many times what it takes to give as much: in 600 drawn pulses u so holds.
-const SHIFTED: f64 = 3.0;
-/// So many samples before the rise show what rings.
+/// Ringing shifts a rise by this many times the time that it needs to give as much velocity: in 600 drawn
+/// pulses u then holds.
+const SHIFT_FACTOR: f64 = 3.0;
+/// Fewest samples before the rise that show the ringing.
 const FEWEST_CALM: usize = 16;
-/// An offset that no free fall has shown is the level of the record's first millisecond, s …
+/// If no free fall shows the offset, it is the level of the record's first millisecond, s.
 const LEVEL_S: f64 = 1e-3;
-/// … where that is no more of its peak than accelerometers have, known to so many standard uncertainties.
+/// That level is used only up to this share of the peak, the largest offset of accelerometers; the second
+/// number is its coverage in standard uncertainties.
 const MOST_LEVEL: f64 = 0.05;
-const SURE_LEVEL: f64 = 4.0;
-/// What a calm signal does is the slap-down's from so many times what the flight shows on …
-const DEPARTS: f64 = 2.0;
-/// … and back to a pause of this length, s.
+const LEVEL_COVERAGE: f64 = 4.0;
+/// A calm signal departs from the flight if it exceeds the flight's largest value by this factor.
+const DEPARTURE_FACTOR: f64 = 2.0;
+/// The departure begins after the last pause of this length, s.
 const PAUSE_S: f64 = 1e-3;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight
 /// from 5°. A cask shorter than 4 m, a model perhaps, rings and turns faster in proportion.
@@ -45,26 +48,26 @@ const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
 
-/// Width of the means by which R's velocity in a cask of `length_m` is compared, s.
+/// Width of the means that compare R's velocity in a cask of `length_m`, s.
 fn width_s(length_m: f64) -> f64 {
     WIDTH_S.min(WIDTH_S_PER_M * length_m)
 }
 
-/// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
+/// First contact of L and its standard uncertainty, s; from R alone if L has no channel.
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let stretch = from..signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     match signal.end {
-        End::First => first_rise(levelled(signal), stretch, coarse.velocity_step_m_s),
-        End::Second => first_stir(signal, stretch),
+        End::First => first_rise(remove_level(signal), stretch, coarse.velocity_step_m_s),
+        End::Second => first_deviation(signal, stretch),
     }
 }
 
-/// The signal without its offset, where the record begins too shortly before the contact for its free fall to
-/// show one, and the standard uncertainty of that, m/s²: what adds up before the rise would pass for a stage
-/// of the contact.
-fn levelled(signal: &Signal) -> (Cow<'_, Signal>, f64) {
+/// The signal without its offset, if the record begins too shortly before the contact for its free fall to
+/// show one, and the standard uncertainty of that offset, m/s²: an offset that accumulates before the rise
+/// would look like a stage of the contact.
+fn remove_level(signal: &Signal) -> (Cow<'_, Signal>, f64) {
     let first = &signal.force_m_s2[..signal.index_from(signal.start_s + LEVEL_S)];
     if signal.free_fall_s > 0.0 || first.is_empty() {
         return (Cow::Borrowed(signal), 0.0);
@@ -77,9 +80,8 @@ fn levelled(signal: &Signal) -> (Cow<'_, Signal>, f64) {
     (Cow::Owned(Signal { force_m_s2, ..signal.clone() }), spread_m_s2 / as_f64(first.len()).sqrt())
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign: before it nothing
-/// rings. A layer that yields far below the peak and lets go again has struck before the rise that leads to
-/// it.
+/// The first rise of a pulse that changes the velocity by `step_m_s`, of either sign, without ringing before
+/// it. A layer that yields far below the peak and recovers has struck before the rise to the peak.
 fn first_rise(
     (signal, u_level_m_s2): (Cow<'_, Signal>, f64),
     stretch: std::ops::Range<usize>,
@@ -87,14 +89,14 @@ fn first_rise(
 ) -> Option<At> {
     let (signal, sign) = (&*signal, step_m_s.signum());
     let found = onset(signal, stretch.clone(), sign, Rise::First, 0.0)?.at;
-    // What is left of an offset that noise hid adds up too.
-    let open_m_s = SURE_LEVEL * u_level_m_s2 * (found.time_s - signal.time_s(stretch.start));
+    // The remainder of an offset that noise hid accumulates too.
+    let open_m_s = LEVEL_COVERAGE * u_level_m_s2 * (found.time_s - signal.time_s(stretch.start));
     let least_m_s = sign * (EARLIER_STAGE * step_m_s.abs()).max(open_m_s);
     Some(first_stage(signal, stretch.start, found, least_m_s, 0.0))
 }
 
 /// The rise that was found, or the earliest one from `from` on before which the velocity has not changed by
-/// `least_m_s`, in its direction. Before it no more rings than `ringing_m_s2`.
+/// `least_m_s`, in its direction. Before it the ringing is at most `ringing_m_s2`.
 fn first_stage(signal: &Signal, from: usize, mut found: At, least_m_s: f64, ringing_m_s2: f64) -> At {
     let sign = least_m_s.signum();
     loop {
@@ -120,9 +122,9 @@ fn first_stage(signal: &Signal, from: usize, mut found: At, least_m_s: f64, ring
     }
 }
 
-/// When a signal first leaves its noise, to either side, and its standard uncertainty, s: the far end answers
-/// by bending first, which may go against the rigid body's turning.
-fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
+/// Time at which a signal first leaves its noise, to either side, and its standard uncertainty, s: the far
+/// end responds by bending first, which may be opposite to the rigid body's rotation.
+fn first_deviation(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
     let foot = (FOOT * reduce::peak(force)).max(NOISE_FACTOR * signal.noise_m_s2);
@@ -130,13 +132,13 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     Some(At { time_s: signal.time_s(from + first), u_s: 0.5 / signal.sample_rate_hz })
 }
 
-/// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the
-/// record holds none.
+/// First contact of R on its signal between two times and its standard uncertainty, s; `None` if the record
+/// holds none.
 ///
-/// Ringing of a cask of `length_m` has no mean over 25 ms, R striking the target has: the means before and
-/// after each time are compared, and the largest difference, if above `least_change_m_s`, is the slap-down.
-/// On signals that still ring the rise is sought backwards from the pulse's peak; free of ringing, but for
-/// `calm_m_s2` that the flight shows, the first rise beyond that is taken.
+/// Ringing of a cask of `length_m` has no mean over 25 ms, but an impact of R has: the means before and after
+/// each time are compared, and the largest difference, if above `least_change_m_s`, is the slap-down. On
+/// signals that still ring the rise is sought backwards from the pulse's peak; on signals without ringing,
+/// except for `calm_m_s2` that the flight shows, the first rise beyond that is used.
 pub fn slap_down(
     signal: &Signal,
     length_m: f64,
@@ -155,7 +157,7 @@ pub fn slap_down(
     let mean = |a: usize, b: usize| (sums[b] - sums[a]) / as_f64((b - a).max(1) * block);
     let change = |i: usize| mean(i, (i + blocks).min(last_sum)) - mean(i.saturating_sub(blocks), i);
     let first = (signal.index_from(between_s.start).saturating_sub(start) / block).max(1);
-    // A mean over less than a third of the width says nothing: R's pulse must be in the record.
+    // A mean over less than a third of the width is meaningless: R's pulse must be in the record.
     let last = (signal.index_from(between_s.end).saturating_sub(start) / block)
         .min(last_sum.saturating_sub(blocks / 3));
     let largest = (first..last).map(change).fold(0.0, f64::max);
@@ -177,9 +179,9 @@ pub fn slap_down(
             // A sensor may ring higher behind the pulse than in it.
             let from = from.saturating_sub(reach).max(earliest);
             let found = first_stage(signal, from, at, SECOND_STAGE * largest, left_m_s2);
-            return Some(by_velocity(signal, earliest, found, middle));
+            return Some(refine_by_velocity(signal, earliest, found, middle));
         }
-        // Ringing that is still there has a foot anywhere.
+        // Persistent ringing has a foot anywhere.
         if calm_m_s2.is_none() && border != Border::Shoulder {
             return Some(at);
         }
@@ -190,12 +192,12 @@ pub fn slap_down(
     }
 }
 
-/// What `by_force` says of the onset on the same signal, held against the velocity that the pulse has given
-/// up to its `middle`: ringing hides the foot of a slow rise, but gives no velocity.
+/// Compares the onset `by_force` with the velocity that the pulse has given up to its `middle` on the same
+/// signal: ringing hides the foot of a slow rise, but gives no velocity.
 ///
-/// Behind a force that goes with the n-th power of the time, a share of the velocity, twice and four times it
-/// are reached after times in the ratio of q = 2^(1/(n + 1)): between a step, n = 0, and a line, n = 1.
-fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At {
+/// If the force grows with the n-th power of the time, a share of the velocity, twice and four times that
+/// share are reached after times in the ratio of q = 2^(1/(n + 1)): between a step, n = 0, and a line, n = 1.
+fn refine_by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At {
     let Some(force) = signal.force_m_s2.get(from..middle) else { return by_force };
     let calm = signal.index_from(by_force.time_s).saturating_sub(from) * 2 / 3;
     if calm < FEWEST_CALM || calm > force.len() {
@@ -209,7 +211,7 @@ fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At 
     let velocities: Vec<f64> = force.iter().scan(0.0, add).collect();
     let gained = velocities[velocities.len() - 1];
     let rings = reduce::peak(&velocities[..calm]);
-    let least = (GIVEN * gained).max(ABOVE_RINGING * rings);
+    let least = (LEAST_GIVEN * gained).max(ABOVE_RINGING * rings);
     if least > MOST_GIVEN * gained {
         return by_force;
     }
@@ -220,7 +222,7 @@ fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At 
     let (earliest_s, latest_s) = (begun(std::f64::consts::SQRT_2), begun(2.0));
     if by_force.time_s - by_force.u_s < latest_s {
         // Ringing may look like a foot.
-        let may_ring = least > GIVEN * gained;
+        let may_ring = least > LEAST_GIVEN * gained;
         let early_s = if may_ring { (earliest_s - by_force.time_s).max(0.0) } else { 0.0 };
         return At { u_s: by_force.u_s.hypot(early_s / 3.0_f64.sqrt()), ..by_force };
     }
@@ -229,16 +231,17 @@ fn by_velocity(signal: &Signal, from: usize, by_force: At, middle: usize) -> At 
     } else {
         earliest_s.midpoint(latest_s)
     };
-    let shifted_s = SHIFTED * rise * rings / least / signal.sample_rate_hz;
+    let shifted_s = SHIFT_FACTOR * rise * rings / least / signal.sample_rate_hz;
     let u_s = ((latest_s - earliest_s) / 12.0_f64.sqrt()).hypot(shifted_s);
     At { time_s, u_s: u_s.max(by_force.u_s) }
 }
 
-/// The slap-down as the beginning of what a calm signal does without a pause until the rise that was found: a
-/// body of `length_m` that bends takes the sensors of a corner that is held the other way first.
+/// Slap-down as the beginning of the movement that a calm signal shows without a pause up to the rise that
+/// was found: when a body of `length_m` bends, the sensors near a corner on the target first move in the
+/// opposite direction.
 ///
-/// From `from_s` on the signal is known to be calm, but for `calm_m_s2`. What has no pause for longer than
-/// the means are wide rings.
+/// From `from_s` on the signal is known to be calm, except for `calm_m_s2`. Movement without a pause for
+/// longer than the width of the means is ringing.
 pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m_s2: f64) -> At {
     let rate_hz = signal.sample_rate_hz;
     let width_s = width_s(length_m);
@@ -249,7 +252,7 @@ pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m
     let is_flight = earliest_s - quarter_s > from_s;
     let shown_m_s2 = signal.force_m_s2.get(before..after).filter(|_| is_flight).map(reduce::peak);
     let calm_m_s2 = shown_m_s2.map_or(calm_m_s2, |shown_m_s2| shown_m_s2.min(calm_m_s2));
-    let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTS * calm_m_s2);
+    let level = (NOISE_FACTOR * signal.noise_m_s2).max(DEPARTURE_FACTOR * calm_m_s2);
     let [from, to] = [from_s, struck.time_s].map(|time_s| signal.index_from(time_s));
     let Some(force) = signal.force_m_s2.get(from..to) else { return struck };
     let pause = as_count(PAUSE_S * rate_hz).max(2);
@@ -268,8 +271,8 @@ pub fn departure(signal: &Signal, length_m: f64, struck: At, from_s: f64, calm_m
     if is_earlier && time_s > earliest_s { At { time_s, u_s: rise_s / 2.0 } } else { struck }
 }
 
-/// The slap-down whose pulse the record ends in: what a calm signal does without a pause until then, if that
-/// changes the velocity by `least_change_m_s`.
+/// Slap-down whose pulse continues to the end of the record: the movement of a calm signal without a pause
+/// until then, if it changes the velocity by `least_change_m_s`.
 pub fn cut_short(
     signal: &Signal,
     length_m: f64,
@@ -284,7 +287,7 @@ pub fn cut_short(
     (found != end && change_m_s > least_change_m_s).then_some(found)
 }
 
-/// Which rise of a stretch begins the pulse.
+/// Rise of a stretch that begins the pulse.
 #[derive(Clone, Copy, PartialEq)]
 enum Rise {
     /// The first one past the shoulder.
@@ -293,10 +296,10 @@ enum Rise {
     BeforePeak,
 }
 
-/// What the force has reached where the stretch begins.
+/// Level of the force at the beginning of the stretch.
 #[derive(Clone, Copy, PartialEq)]
 enum Border {
-    /// Nothing: the rise lies within the stretch.
+    /// The force is still low: the rise lies within the stretch.
     Clear,
     /// More than the foot of the pulse, so that it may have begun before.
     Foot,
@@ -304,14 +307,14 @@ enum Border {
     Shoulder,
 }
 
-/// The beginning of a pulse in a stretch, and what the stretch begins with.
+/// Beginning of a pulse in a stretch, and the level at the beginning of the stretch.
 struct OnsetFound {
     at: At,
     border: Border,
 }
 
-/// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut
-/// with zero. Its foot stands above what rings on, of so many m/s² at the most.
+/// Time at which the pulse in a stretch of samples leaves zero: the zero of a line through its rise from foot
+/// to shoulder. The foot stands above the ringing of at most `ringing_m_s2`.
 fn onset(
     signal: &Signal,
     stretch: std::ops::Range<usize>,
@@ -323,7 +326,7 @@ fn onset(
     let sampled = signal.force_m_s2.get(stretch)?;
     let peak_of = |force: &[f64]| force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
     let (noise, largest) = (NOISE_FACTOR * signal.noise_m_s2, peak_of(sampled));
-    let calm = reduce::calmed(sampled, noise, HIGHEST_NOISE * largest, largest);
+    let calm = reduce::average_noise(sampled, noise, HIGHEST_NOISE * largest, largest);
     let width = calm.as_ref().map_or(1, |(_, width)| *width);
     let force = calm.as_ref().map_or(sampled, |(means, _)| &means[..]);
     let peak = peak_of(force);
@@ -333,7 +336,7 @@ fn onset(
     }
     let foot = foot.max((ABOVE_RINGING * ringing_m_s2).min(HIGHEST_FOOT * peak));
     let shoulder = (SHOULDER * peak).max(2.0 * foot);
-    // To the first sample past the shoulder, then backwards to the last below the foot.
+    // The rise reaches from the last sample below the foot to the first one past the shoulder.
     let high = match rise {
         Rise::First => force.iter().position(|f| sign * f >= shoulder)?,
         Rise::BeforePeak => {
@@ -345,10 +348,9 @@ fn onset(
     let crossing = interpolated(force, low, sign * foot);
     let points: Vec<(f64, f64)> = (low..=high).map(|i| (as_f64(i), sign * force[i])).collect();
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
-    // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or
-    // far before it.
-    // Where the first stage yields, a line through all of the rise meets zero far too soon: a straight rise
-    // takes as long to the foot as from there to twice the foot.
+    // If a rise is steeper than the sampling, or bends, the zero of the line lies past the crossing or far
+    // before it. If the first stage yields, a line through the whole rise meets zero far too early: a
+    // straight rise takes as long to the foot as from there to twice the foot.
     let doubled = (low..=high).find(|&i| sign * force[i] >= 2.0 * foot).map_or(crossing, as_f64);
     let reach = 2.0 * (doubled - crossing).max(1.0);
     let position = extrapolated.clamp((crossing - reach).max(0.0), crossing);
@@ -369,13 +371,14 @@ fn onset(
     })
 }
 
-/// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
+/// Sums of the velocity's samples before each whole block; one more than the number of whole blocks.
 fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
     let (mut velocity_m_s, mut sum) = (0.0, 0.0);
     let weights: Vec<f64> = (1..=block).rev().map(as_f64).collect();
     let mut sums = vec![0.0];
     sums.extend(force.chunks_exact(block).map(|chunk| {
-        // Σ over the block of v + f_0 h + … + f_i h, without following v from sample to sample.
+        // The sum over the block of v + f_0 h + … + f_i h follows from the weights, without the velocity of
+        // each sample.
         sum += velocity_m_s * as_f64(block) + reduce::dot(chunk, &weights) * step_s;
         velocity_m_s += reduce::sum(chunk) * step_s;
         sum
@@ -383,7 +386,7 @@ fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
     sums
 }
 
-/// Where the force crosses `level` between sample `index − 1` and `index`, in samples.
+/// Position between sample `index − 1` and `index` at which the force crosses `level`, in samples.
 fn interpolated(force: &[f64], index: usize, level: f64) -> f64 {
     if index == 0 {
         return 0.0;

@@ -1,5 +1,5 @@
-//! The record before the first impact to the free fall: the moment of release and the first touch that ends
-//! it.
+//! Finds the free fall in the record before the first impact: the moment of release and the first touch that
+//! ends it.
 
 use super::block_means_m_s2;
 use crate::data::{AtRest, Channel, Drop, RestLevel, RestReading, of_either};
@@ -8,37 +8,37 @@ use std::cell::OnceCell;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a
-/// hook that gives way.
+/// Least and largest step from rest to free fall, as a share of g cos φ: sensors on a tilted cask, a hook
+/// that gives way.
 const STEP: std::ops::Range<f64> = 0.5..1.5;
 /// Length of a block, s: short against a fall, long against noise and spikes.
 const BLOCK_S: f64 = 0.005;
 /// Blocks of a level, 40 ms: as long as a crane's hook rings.
 const LEVEL: usize = 8;
-/// Blocks on either side of a step that are in no level, 20 ms: hum of the mains moves a step by 13 ms.
-const BESIDE: usize = 4;
-/// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean
+/// Blocks on either side of a step that belong to no level, 20 ms: mains hum moves a step by 13 ms.
+const STEP_BLOCKS: usize = 4;
+/// Blocks over which a departure from the free-fall level is averaged, 20 ms: ringing above 50 Hz has no mean
 /// over them.
-const SUSTAINED: usize = 4;
-/// A step is one where it is this many of its standard uncertainties: noise of 1/f makes steps by itself.
-const CLEAR: f64 = 6.0;
+const DEPARTURE_BLOCKS: usize = 4;
+/// A step must exceed this many of its standard uncertainties: noise of 1/f makes steps too.
+const STEP_IN_U: f64 = 6.0;
 /// Departure that ends a fall, as a share of g cos φ: far above the drag of a cask, below any touch that
 /// carries its weight.
 const TOUCH: f64 = 0.25;
-/// Noise is passed by this many of its standard deviations.
+/// A signal exceeds the noise if it is this many standard deviations above zero.
 const NOISE_FACTOR: f64 = 6.0;
-/// A level this share of g cos φ off the one before the release, or so many of the levels' own scatters, is
-/// not yet the rest: the cask is still hoisted or swings.
+/// A level is not yet at rest if it differs by this share of g cos φ from the level before the release, or by
+/// this many of the levels' scatters: the cask is still hoisted or swings.
 const UNREST: f64 = 0.02;
 const UNREST_SCATTERS: f64 = 5.0;
-/// This share of the levels of a recording at rest tells the rest: a blow on each end moves two or three.
-const STILL: f64 = 0.7;
-/// An axis on which gravity reads no more does not feel the rest, m/s².
+/// Share of the levels of a recording at rest that must agree: a tap on each end moves two or three.
+const LEAST_SHARE_AT_REST: f64 = 0.7;
+/// If gravity acts on an axis with less than this, m/s², the channel does not show the rest.
 const FLAT_M_S2: f64 = 0.5;
 /// The release is sought this many of the cask file's fall times back, so that a wrong height is seen as
 /// such.
 const REACH: f64 = 3.0;
-/// A shorter stretch than this share of the cask file's fall time is no fall: it would mean a hundredth of
+/// A stretch shorter than this share of the cask file's fall time is no fall: it would mean a hundredth of
 /// its height.
 const SHORTEST: f64 = 0.1;
 
@@ -52,15 +52,15 @@ pub struct FreeFall {
     pub end_s: f64,
     /// Rest level less free-fall level, m/s².
     pub rest_m_s2: f64,
-    /// Standard uncertainty of it, from the scatter of the levels of rest and fall, m/s².
+    /// Standard uncertainty of the rest level, from the scatter of the levels of rest and fall, m/s².
     pub u_rest_m_s2: f64,
 }
 
 /// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then
 /// stays.
 ///
-/// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None`
-/// where the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
+/// It may end before `contact_s`, if water, a guide or a soft layer is touched before the impact. `None` if
+/// the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
 pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
     let weight_m_s2 = drop.weight_m_s2(channel.axis);
     if !feels_gravity(channel, drop) {
@@ -73,26 +73,21 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
     record
         .steps(from)
         .into_iter()
-        .filter_map(|block| record.fall_from(block, contact))
+        .filter_map(|block| record.find_fall(block, contact))
         .filter(|(_, length)| *length > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(fall, _)| fall)
 }
 
-/// What a channel reads in a file of the rest, less the level of the whole free fall before `contact_s`, as
-/// [`free_fall`] has it of a recording with both; `None` where the fall is shorter than two levels.
-pub fn rest_over_fall(
-    channel: &Channel,
-    rest: RestReading,
-    drop: &Drop,
-    contact_s: f64,
-) -> Option<RestLevel> {
+/// Level of a channel in a file of the rest, less the level of the whole free fall before `contact_s`, as
+/// [`free_fall`] gives it for a recording with both; `None` if the fall is shorter than two levels.
+pub fn rest_level(channel: &Channel, rest: RestReading, drop: &Drop, contact_s: f64) -> Option<RestLevel> {
     let weight_m_s2 = drop.weight_m_s2(channel.axis);
     let from = channel.index_at(contact_s - drop.impact_velocity_m_s / drop.gravity_m_s2);
     let record = Record::new(channel, from..channel.index_at(contact_s), weight_m_s2)?;
     let (end, most_m_s2) = (record.blocks.len() - 1, TOUCH * weight_m_s2);
     let mut of_fall = record.levels(0..end);
-    // What lies before the fall is not of it.
+    // Levels before the fall do not belong to it.
     let last = *of_fall.first()?;
     of_fall.truncate(of_fall.iter().take_while(|level| (*level - last).abs() <= most_m_s2).count());
     Some(RestLevel {
@@ -103,14 +98,14 @@ pub fn rest_over_fall(
     })
 }
 
-/// Whether gravity reads on a channel's axis at rest.
+/// True if gravity acts on a channel's axis at rest.
 pub fn feels_gravity(channel: &Channel, drop: &Drop) -> bool {
     drop.weight_m_s2(channel.axis) > FLAT_M_S2
 }
 
-/// The level of a recording that is all rest; `None` where it is shorter than two levels.
+/// Level of a recording that is entirely at rest; `None` if it is shorter than two levels.
 ///
-/// Levels that a blow moves are left out.
+/// Levels that a tap moves are left out.
 pub fn at_rest(channel: &Channel, gravity_m_s2: f64) -> Option<AtRest> {
     let record = Record::new(channel, 0..channel.samples.len(), gravity_m_s2)?;
     let levels = record.levels(0..record.blocks.len());
@@ -125,26 +120,26 @@ pub fn at_rest(channel: &Channel, gravity_m_s2: f64) -> Option<AtRest> {
     Some(AtRest {
         level_m_s2: robust::mean_and_rms(&still).0,
         u_m_s2: record.u_mean(&still, scatter_m_s2),
-        is_still: as_f64(still.len()) >= STILL * as_f64(levels.len()),
+        is_still: as_f64(still.len()) >= LEAST_SHARE_AT_REST * as_f64(levels.len()),
         least_step_m_s2: record.converter_step_m_s2(),
     })
 }
 
-/// The samples before first contact and the means of their blocks: a median would stand on a coarse
-/// converter's steps.
+/// The samples before first contact and the means of their blocks: a median would follow the steps of a
+/// coarse converter.
 struct Record<'a> {
     channel: &'a Channel,
     samples: Range<usize>,
     size: usize,
     blocks: Vec<f64>,
     weight_m_s2: f64,
-    /// As the methods of their names find them, once.
+    /// Step of the converter, computed once when it is first needed.
     converter_step_m_s2: OnceCell<f64>,
     u_rounding_m_s2: OnceCell<f64>,
 }
 
 impl<'a> Record<'a> {
-    /// `None` where the record is shorter than two levels.
+    /// Makes the record; `None` if it is shorter than two levels.
     fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
         let size = as_count((BLOCK_S * channel.sample_rate_hz).round()).max(1);
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
@@ -161,7 +156,7 @@ impl<'a> Record<'a> {
         })
     }
 
-    /// The samples in a range counted from the record's first, cut to what there is, m/s².
+    /// The samples in a range counted from the record's first, limited to the available samples, m/s².
     fn force_m_s2(&self, range: Range<usize>) -> Vec<f64> {
         let at = |i: usize| (self.samples.start + i).min(self.samples.end);
         self.channel.force_m_s2(at(range.start), at(range.end))
@@ -173,7 +168,7 @@ impl<'a> Record<'a> {
         robust::median(&mut blocks.iter().copied().filter(|b| b.is_finite()).collect::<Vec<_>>())
     }
 
-    /// The blocks after `from` in which a level gives way to one lower by about the weight, each step once.
+    /// The blocks after `from` in which a level changes to one lower by about the weight, each step once.
     fn steps(&self, from: usize) -> Vec<usize> {
         let height = |i: usize| self.level(i - LEVEL, i) - self.level(i + 1, i + 1 + LEVEL);
         let heights: Vec<(usize, f64)> =
@@ -185,24 +180,25 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// The fall from a step, and its length in samples.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<(FreeFall, f64)> {
+    /// The fall after a step, and its length in samples.
+    fn find_fall(&self, step: usize, contact: f64) -> Option<(FreeFall, f64)> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
         let falling = self.level(step + 1, end.unwrap_or(self.blocks.len()));
         let departure = self.departure(step, falling);
         let end = departure.map_or(contact, |block| self.touch(step, block, falling));
-        let of_fall = self.levels(step + BESIDE..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
-        let at_rest = self.calm_before(step, &of_fall);
+        let of_fall =
+            self.levels(step + STEP_BLOCKS..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
+        let at_rest = self.rest_levels_before(step, &of_fall);
         let fall = robust::mean_and_rms(&of_fall).0;
         let rest = robust::mean_and_rms(&at_rest).0 - if fall.is_finite() { fall } else { falling };
         let u_falling = self.u_mean(&of_fall, TOUCH * self.weight_m_s2);
         let u_rest = u_falling.hypot(self.u_mean(&at_rest, robust::mean_and_rms(&of_fall).1));
         let u_step = u_rest.hypot(self.converter_step_m_s2() / 6.0_f64.sqrt());
-        // Where single levels scatter as far as the step it may stand anywhere.
+        // If single levels scatter as far as the step, the step may lie anywhere.
         let scatter_m_s2 = robust::mean_and_rms(&of_fall).1;
-        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_step.max(scatter_m_s2) {
+        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < STEP_IN_U * u_step.max(scatter_m_s2) {
             return None;
         }
         let start = self.crossing(step, falling + 0.5 * rest);
@@ -211,7 +207,7 @@ impl<'a> Record<'a> {
         Some((FreeFall { release_s, end_s, rest_m_s2: rest, u_rest_m_s2: u_rest }, end - start))
     }
 
-    /// Standard uncertainty of a level by the converter's rounding, m/s²: noise before it takes that off
+    /// Standard uncertainty of a level from the converter's rounding, m/s²: noise before it reduces that
     ///
     /// u = q/√12 e^(−2π²σ²/q²)
     fn u_rounding_m_s2(&self) -> f64 {
@@ -243,19 +239,19 @@ impl<'a> Record<'a> {
         blocks.rchunks_exact(LEVEL).map(|of| robust::mean_and_rms(of).0).filter(|l| l.is_finite()).collect()
     }
 
-    /// The levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` tell how
-    /// levels scatter.
-    fn calm_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
+    /// Levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` shows the
+    /// scatter of the levels.
+    fn rest_levels_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
         let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step_m_s2());
         let most_m_s2 = (UNREST * self.weight_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
-        let levels = self.levels(0..step.saturating_sub(BESIDE));
+        let levels = self.levels(0..step.saturating_sub(STEP_BLOCKS));
         let Some(&last) = levels.first() else { return vec![f64::NAN] };
         levels.into_iter().take_while(|level| (level - last).abs() <= most_m_s2).collect()
     }
 
-    /// Standard uncertainty of the mean of levels, m/s²: of their scatter as if each knew nothing of the
-    /// others, and of what their halves differ by, which holds noise of every colour; a single level has the
-    /// scatter given.
+    /// Standard uncertainty of the mean of levels, m/s²: from their scatter as if they were independent, and
+    /// from the difference of their halves, which covers noise of every colour; a single level has the given
+    /// scatter.
     fn u_mean(&self, levels: &[f64], of_one_m_s2: f64) -> f64 {
         let n = as_f64(levels.len().max(1));
         let (earlier, later) = levels.split_at(levels.len() / 2);
@@ -265,29 +261,29 @@ impl<'a> Record<'a> {
         } else {
             (of_one_m_s2, 0.0)
         };
-        // A scatter over n levels is known to 1/√(2n) of itself: few are given that margin twice.
+        // A scatter over n levels has a relative uncertainty of 1/√(2n): few levels get that margin twice.
         let margin = 1.0 + (2.0 / n).sqrt();
         margin * scatter_m_s2.max(drift_m_s2).hypot(self.u_rounding_m_s2())
     }
 
-    /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where
+    /// The block from which on the mean over [`DEPARTURE_BLOCKS`] blocks lies off the free-fall level; `None` where
     /// it holds to the end.
     fn departure(&self, step: usize, falling: f64) -> Option<usize> {
-        let after = self.blocks.get(step + SUSTAINED..)?;
+        let after = self.blocks.get(step + DEPARTURE_BLOCKS..)?;
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
-        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / as_f64(SUSTAINED);
-        let means: Vec<f64> = after.windows(SUSTAINED).map(mean).collect();
-        // The scatter of the fall's own means: noise of 1/f departs by itself.
+        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / as_f64(DEPARTURE_BLOCKS);
+        let means: Vec<f64> = after.windows(DEPARTURE_BLOCKS).map(mean).collect();
+        // The threshold includes the scatter of the fall's own means: noise of 1/f departs by itself.
         let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * robust::spread(&means));
         let window = means.iter().position(|m| m.abs() > level)?;
         let block = after[window..].iter().position(|b| off(b).abs() > TOUCH * self.weight_m_s2)?;
-        Some(step + SUSTAINED + window + block)
+        Some(step + DEPARTURE_BLOCKS + window + block)
     }
 
-    /// The sample in or just before `block` from which most of a block's length lies off the free-fall level.
+    /// The sample in or just before `block` from which most of a block's length is off the free-fall level.
     fn touch(&self, step: usize, block: usize, falling: f64) -> f64 {
         let calm = self.force_m_s2((step + 2) * self.size..(block - 1) * self.size);
-        let finite: Vec<f64> = robust::sampled(&calm).filter(|f| f.is_finite()).collect();
+        let finite: Vec<f64> = robust::thin(&calm).filter(|f| f.is_finite()).collect();
         let noise = if finite.is_empty() { 0.0 } else { robust::spread(&finite) };
         let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * noise);
         let start = (block - 1) * self.size;
@@ -302,7 +298,8 @@ impl<'a> Record<'a> {
         as_f64(found.unwrap_or(block * self.size))
     }
 
-    /// Where the samples about a step fall below `level`: those above it are counted, so that noise averages.
+    /// Time at which the samples about a step fall below `level`: the samples above it are counted, so that
+    /// noise averages.
     fn crossing(&self, step: usize, level: f64) -> f64 {
         let start = step.saturating_sub(LEVEL / 2) * self.size;
         let about = self.force_m_s2(start..(step + LEVEL / 2) * self.size);
@@ -319,7 +316,7 @@ mod tests {
 
     fn drop() -> Drop {
         // 4 m/s: a fall of 0.4077 s.
-        Drop { impact_velocity_m_s: 4.0, ..Drop::of_height(0.8155, 0.0) }
+        Drop { impact_velocity_m_s: 4.0, ..Drop::from_height(0.8155, 0.0) }
     }
 
     /// Noise of ±0.5 m/s² about what `force` says at each time, for 3 s.

@@ -1,14 +1,14 @@
-//! The uncertain inputs of the reconstruction, each with its standard uncertainty and what a move of it does
-//! to the reconstruction's inputs.
+//! The uncertain inputs of the reconstruction, each with its standard uncertainty and the effect of a shift
+//! on the reconstruction.
 
 use super::FitData;
 use super::steps::{u_base_strain_m_s, u_step_m_s};
 use crate::data::planar::first_arm_m;
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, Motion, MotionState, Setup, Signal, StoodIn,
+    AssumedFriction, At, AxialSource, Axis, Events, FlightFit, Motion, MotionState, ScaledCopy, Setup, Signal,
 };
 
-/// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
+/// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° give 20 to 180°/s.
 const ROLL_RAD_S: f64 = 1.0;
 
 /// Remedies that more than one input has.
@@ -18,29 +18,29 @@ pub(super) const SECOND_SENSOR: &str = "a second sensor at the same end";
 pub(super) const LARGER_RANGE: &str = "a second sensor of ten times the range at the same end";
 const MEASURE: &str = "measure between the edges that strike";
 
-/// What the name of an input begins with that strain of a channel's base is.
+/// Beginning of the name of an input for the base strain of a channel.
 pub(super) const BASE_STRAIN: &str = "base strain of ";
 
 /// The key of the tolerance of the friction.
 const FRICTION: &str = "friction_percent";
 /// A corner that crushes by less than the first share of the length is an edge, one that crushes by more than
-/// the second a limiter's: contacts of 10 and 17 ms after a fall of 9 m. With half of them lengths that are
-/// 3 % off stay untold.
+/// the second belongs to a limiter: contacts of 10 and 17 ms after a fall of 9 m. With half of them lengths
+/// that are 3 % off remain undetected.
 const EDGE: f64 = 0.012;
 const LIMITER: f64 = 0.02;
-/// The force on a limiter moves inward for each crush by so much of cot φ, as a standard uncertainty: half of
-/// what the target cuts off is 0.5, in the mean over a contact 0.4.
+/// Standard uncertainty of the inward movement of the force on a limiter per crush, as a share of cot φ: half
+/// of the section that the target cuts off is 0.5, the mean over a contact 0.4.
 const U_INWARD: f64 = 0.2;
-/// Outward it moves by no more than this share of it.
+/// Outward the force moves by at most this share of it.
 const LEAST_INWARD: f64 = 0.2;
-/// What moves inward turns the cask by no more than half less: by a fifth, where friction is not known.
+/// The inward movement reduces the rotation by at most half: by a fifth, if the friction is not known.
 const MOST_MISSED: f64 = 0.5;
-/// Share of cot φ that a friction reaches at most.
+/// Largest friction, as a share of cot φ.
 const MOST_FRICTION: f64 = 0.9;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// One set of inputs, as a reconstruction is followed with them.
+/// One set of inputs of a reconstruction.
 #[derive(Debug, Clone)]
 pub struct Inputs {
     /// Velocity steps of the channels.
@@ -49,42 +49,41 @@ pub struct Inputs {
     pub events: Events,
     /// Geometry, initial motion and friction.
     pub setup: Setup,
-    /// By which share each channel's reading is corrected.
+    /// Correction of each channel's reading, as a share.
     pub scales: Vec<f64>,
     /// Likewise of each angular-rate sensor.
     pub rate_scales: Vec<f64>,
-    /// What share of the other body axis is taken off each channel.
+    /// Share of the other body axis that is subtracted from each channel.
     pub crosses: Vec<f64>,
-    /// How much farther from L each channel is, m.
+    /// Shift of each channel away from L, m.
     pub places_m: Vec<f64>,
     /// Θ / m, m².
     pub inertia_m2: Option<f64>,
     /// Inputs of the second impact alone, in their standard uncertainties.
     pub second_u: Vec<f64>,
-    /// The channel that stands in for an end without one, and the channel it is derived from: their errors
-    /// are equal.
-    stood_in: Option<StoodIn>,
+    /// The reconstructed channel, and the channel from which it is derived: their errors are equal.
+    stood_in: Option<ScaledCopy>,
 }
 
 /// The time of an event.
 type EventTime = fn(&mut Events) -> &mut Option<At>;
 
-/// What so many standard uncertainties of an input do.
+/// Shifts an input by a number of standard uncertainties.
 type Shift = Box<dyn Fn(&mut Inputs, f64) + Send + Sync>;
 
-/// One input that is uncertain.
+/// One uncertain input.
 pub struct UncertainInput {
     pub(super) name: String,
-    /// Its standard uncertainty, as a person reads it.
+    /// Standard uncertainty for a reader.
     pub(super) size: String,
-    /// The key that states it; `None` where the recording itself gives it.
+    /// The key that states it; `None` if the recording determines it.
     pub(super) stated: Option<StatedKey>,
     /// More than one where channels share it.
     pub(super) shifts: Vec<Shift>,
 }
 
 impl UncertainInput {
-    /// Whether the motion is discontinuous in this input, so that it has no derivative at zero: any change of
+    /// True if the motion is discontinuous in this input, so that it has no derivative at zero: any change of
     /// the friction lets a cask that sticks slide.
     pub(super) fn jumps(&self) -> bool {
         self.stated.as_ref().is_some_and(|stated| stated.tolerance == FRICTION)
@@ -93,23 +92,23 @@ impl UncertainInput {
 
 /// The key of the cask file that states an input.
 pub(super) struct StatedKey {
-    /// The key of `[tolerance]` that says how well it is known.
+    /// The key of `[tolerance]` for its uncertainty.
     pub tolerance: &'static str,
-    /// The key itself; of a channel without its table.
+    /// The key itself; for a channel without its table.
     pub key: &'static str,
     /// The channel whose key it is.
     pub channel: Option<String>,
-    /// A mistake as a person makes it, and how many standard uncertainties of the input it is.
+    /// A typical mistake, and its size in standard uncertainties of the input.
     pub by: &'static str,
     pub by_u: f64,
-    /// What would test it.
+    /// Measure that would check the input.
     pub remedy: &'static str,
-    /// The number stated, of a scale 1, and what a standard uncertainty adds to it; none where another number
-    /// could not be told from other mistakes.
+    /// Stated number, for a scale 1, and the change of it by a standard uncertainty; none if another number
+    /// could not be separated from other mistakes.
     pub number: Option<[f64; 2]>,
 }
 
-fn stated(
+fn entry(
     tolerance: &'static str,
     key: &'static str,
     by: &'static str,
@@ -121,13 +120,13 @@ fn stated(
 
 /// The key of a channel's scale.
 fn calibration(channel: &str, share: f64, remedy: &'static str) -> StatedKey {
-    let key = stated("calibration_percent", "calibration_percent", "1 %", 0.01 / share, remedy);
-    key.of(channel).with_number(1.0, share)
+    let key = entry("calibration_percent", "calibration_percent", "1 %", 0.01 / share, remedy);
+    key.tag(channel).with_number(1.0, share)
 }
 
 impl StatedKey {
-    /// The same in the table of a channel.
-    fn of(self, channel: &str) -> Self {
+    /// Moves the key to the table of a channel.
+    fn tag(self, channel: &str) -> Self {
         Self { channel: Some(channel.to_owned()), ..self }
     }
 
@@ -153,13 +152,13 @@ impl Inputs {
         }
     }
 
-    /// The same inputs, the contact followed in so many steps.
-    pub(super) fn in_steps(&self, contact_steps: usize) -> Self {
+    /// Copies the inputs with another number of steps for the contact.
+    pub(super) fn with_contact_steps(&self, contact_steps: usize) -> Self {
         Self { setup: Setup { contact_steps, ..self.setup }, ..self.clone() }
     }
 
-    /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
-    pub(super) fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
+    /// Copies the inputs with each of `inputs` shifted by a number of its standard uncertainties.
+    pub(super) fn shift(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
         let mut moved = self.clone();
         for (input, by) in inputs.iter().zip(by_u).filter(|(_, by)| **by != 0.0) {
             input.shifts.iter().for_each(|shift| shift(&mut moved, *by));
@@ -167,7 +166,7 @@ impl Inputs {
         moved
     }
 
-    /// Adds to a channel's velocity step, and its share of that to the one which is made of it.
+    /// Adds to a channel's velocity step, and in proportion to the channel that is reconstructed from it.
     fn step(&mut self, channel: usize, add_m_s: f64) {
         let other = self.stood_in.filter(|s| s.by == channel).map(|s| (s.channel, s.share * add_m_s));
         for (channel, add_m_s) in [Some((channel, add_m_s)), other].into_iter().flatten() {
@@ -180,18 +179,18 @@ impl Inputs {
     fn turn_faster(&mut self, by_rad_s: f64) {
         self.setup.angular_velocity_rad_s += by_rad_s;
         if self.setup.is_of_fall {
-            // ż_S is that of the fall: L strikes ω a more slowly   (3)
+            // ż_S follows from the fall: L strikes slower by ω a   (3)
             let Setup { cog_m, height_m, angle_rad, .. } = self.setup;
             self.setup.impact_velocity_m_s -= by_rad_s * first_arm_m(cog_m, height_m, angle_rad);
         }
     }
 }
 
-/// Every input that is uncertain, with its size; `motion` is the one that the stated inputs give.
+/// Lists every uncertain input with its size; `motion` belongs to the stated inputs.
 pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput> {
     let mut all = InputList(Vec::new());
     for (channel, signal) in measured.signals.iter().enumerate().take(measured.flight.plateaus.len()) {
-        if signal.axis == Axis::Transverse || measured.setup.axial == AxialClosure::Measured {
+        if signal.axis == Axis::Transverse || measured.setup.axial == AxialSource::Measured {
             all.add_channel(measured, motion, channel);
         }
     }
@@ -236,16 +235,16 @@ impl InputList {
     fn add_fall(&mut self, measured: &FitData) {
         let by_rad = measured.tolerances.angle_rad / 2.0;
         let remedy = "an inclinometer on the rigged cask";
-        let key = stated("angle_deg", "drop.angle_deg", "1°", DEGREE / by_rad, remedy);
+        let key = entry("angle_deg", "drop.angle_deg", "1°", DEGREE / by_rad, remedy);
         let key = key.with_number(measured.setup.angle_rad, by_rad);
         let size = format!("{:.2}°", by_rad.to_degrees());
         self.add("drop angle", size, Some(key), move |inputs, by| inputs.setup.angle_rad += by * by_rad);
         let share = measured.tolerances.impact_velocity / 2.0;
         let key = if measured.setup.is_of_fall {
-            // v0 is that of the root of the height.
-            stated("impact_velocity_percent", "drop.height_m", "1 %", 0.005 / share, REST)
+            // v0 grows with the root of the height.
+            entry("impact_velocity_percent", "drop.height_m", "1 %", 0.005 / share, REST)
         } else {
-            stated("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01 / share, REST)
+            entry("impact_velocity_percent", "drop.impact_velocity_m_s", "1 %", 0.01 / share, REST)
         };
         let v0_m_s = measured.setup.impact_velocity_m_s;
         let key = key.with_number(v0_m_s, share * v0_m_s);
@@ -272,13 +271,13 @@ impl InputList {
     fn add_body(&mut self, measured: &FitData, motion: &Motion) {
         let (known, setup) = (&measured.tolerances, measured.setup);
         let by_m = known.cog_m / 2.0;
-        let key = stated("cog_m", "cask.cog_m", "10 mm", 0.01 / by_m, "weigh the cask on two supports");
+        let key = entry("cog_m", "cask.cog_m", "10 mm", 0.01 / by_m, "weigh the cask on two supports");
         let key = key.with_number(setup.cog_m, by_m);
         self.add("centre of gravity", mm(by_m), Some(key), move |inputs, by| inputs.setup.cog_m += by * by_m);
         if measured.inertia_m2.is_some() {
             let share = known.inertia / 2.0;
             let remedy = "high-speed video of both ends";
-            let key = stated("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1 / share, remedy);
+            let key = entry("inertia_percent", "cask.inertia_kg_m2", "10 %", 0.1 / share, remedy);
             let key = key.with_number(1.0, share);
             self.add("inertia", percent(share), Some(key), move |inputs, by| {
                 inputs.inertia_m2 = inputs.inertia_m2.map(|i| i * (1.0 + by * share));
@@ -286,31 +285,31 @@ impl InputList {
         }
         if let Some(AssumedFriction { ratio, u }) = measured.friction {
             let remedy = "an axial sensor at the first end";
-            let key = stated(FRICTION, "contact.friction", "0.1", 0.1 / u, remedy);
+            let key = entry(FRICTION, "contact.friction", "0.1", 0.1 / u, remedy);
             self.add("friction of the first contact", format!("{u:.3}"), Some(key), move |inputs, by| {
-                // A force along the axis' own slope and no other has none across it: f_η says nothing of it.
+                // A force along the slope of the axis has no component across it, so f_η does not show it.
                 let most = MOST_FRICTION / inputs.setup.angle_rad.tan();
-                inputs.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
+                inputs.setup.axial = AxialSource::Sliding { friction: (ratio + by * u).min(most) };
             });
         }
         self.add_footprint(measured, motion);
         let by_m = known.length * setup.length_m / 2.0;
-        let key = stated("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
+        let key = entry("length_m", "cask.length_m", "1 %", 0.01 * setup.length_m / by_m, MEASURE);
         let key = key.with_number(setup.length_m, by_m);
         self.add("length", mm(by_m), Some(key), move |inputs, by| inputs.setup.length_m += by * by_m);
         let by_m = known.height * setup.height_m / 2.0;
-        let key = stated("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
+        let key = entry("height_m", "cask.height_m", "1 %", 0.01 * setup.height_m / by_m, MEASURE);
         let key = key.with_number(setup.height_m, by_m);
         self.add("section", mm(by_m), Some(key), move |inputs, by| inputs.setup.height_m += by * by_m);
     }
 
-    /// How far the force moves inward from a corner that crushes   (32)
+    /// Adds the inward movement of the force from a corner that crushes   (32)
     fn add_footprint(&mut self, measured: &FitData, motion: &Motion) {
         let (setup, Some(inertia_m2)) = (measured.setup, measured.inertia_m2) else { return };
         let limited = ((motion.crush_m / setup.length_m - EDGE) / (LIMITER - EDGE)).clamp(0.0, 1.0);
         let turned_rad_s = motion.separation.angular_velocity_rad_s;
-        // Of an end that is another one, or of a wrong scale, no crush is known.
-        if limited > 0.0 && motion.turned_beyond_rad_s(inertia_m2).abs() < MOST_MISSED * turned_rad_s {
+        // If the rotation shows the wrong end or a wrong scale, the crush is unknown.
+        if limited > 0.0 && motion.excess_rotation_rad_s(inertia_m2).abs() < MOST_MISSED * turned_rad_s {
             let u = limited * U_INWARD / setup.angle_rad.tan();
             let size = format!("{u:.2} m per m of crush");
             // Twice as steep inward, and level outward.
@@ -321,26 +320,26 @@ impl InputList {
         }
     }
 
-    /// Rotation and sideways velocity, the recorder's clock, and what the second impact has of its own.
+    /// Adds rotation and sideways velocity, the recorder's clock, and the inputs of the second impact alone.
     fn add_further(&mut self, measured: &FitData) {
         let known = &measured.tolerances;
         let by_rad_s = known.angular_velocity_rad_s / 2.0;
         let remedy = "an angular-rate sensor and the rest before the release";
         let (tolerance, by_u) = ("angular_velocity_deg_s", DEGREE / by_rad_s);
-        let key = stated(tolerance, "drop.angular_velocity_deg_s", "1°/s", by_u, remedy);
+        let key = entry(tolerance, "drop.angular_velocity_deg_s", "1°/s", by_u, remedy);
         let key = key.with_number(measured.setup.angular_velocity_rad_s, by_rad_s);
         let size = format!("{:.2}°/s", by_rad_s.to_degrees());
         let shift = move |inputs: &mut Inputs, by: f64| inputs.turn_faster(by * by_rad_s);
         self.add("rotation at first contact", size, Some(key), shift);
         let by_m_s = known.horizontal_velocity_m_s / 2.0;
         let (tolerance, remedy) = ("horizontal_velocity_m_s", "high-speed video of the fall");
-        let key = stated(tolerance, "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1 / by_m_s, remedy);
+        let key = entry(tolerance, "drop.horizontal_velocity_m_s", "0.1 m/s", 0.1 / by_m_s, remedy);
         let size = format!("{by_m_s:.3} m/s");
         self.add("sideways velocity at first contact", size, Some(key), move |inputs, by| {
             inputs.setup.horizontal_velocity_m_s += by * by_m_s;
         });
         let share = known.clock / 2.0;
-        let key = stated("clock_percent", "tolerance.clock_percent", "1 %", 0.01 / share, REST);
+        let key = entry("clock_percent", "tolerance.clock_percent", "1 %", 0.01 / share, REST);
         let key = key.with_number(1.0, share);
         let size = format!("{:.3} %", 100.0 * share);
         self.add("recorder's clock", size, Some(key), move |inputs, by| inputs.setup.second_s += by * share);
@@ -349,8 +348,7 @@ impl InputList {
         }
     }
 
-    /// The scales of channels that were calibrated with the same thing: one input each, since they are off
-    /// together.
+    /// Adds the scales of channels that share a calibration: one input each, since their errors are equal.
     fn add_shared_calibrations(&mut self, measured: &FitData) {
         let first = self.0.len();
         for (channel, signal) in measured.signals.iter().enumerate().take(measured.flight.plateaus.len()) {
@@ -366,8 +364,8 @@ impl InputList {
         }
     }
 
-    /// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads
-    /// roll × place.
+    /// Adds the roll from a tilted edge, if channels sit off the plane of the drop: each reads roll ×
+    /// position.
     fn add_roll(&mut self, measured: &FitData) {
         let place = |(channel, signal): (usize, &Signal)| {
             let spec = measured.spec(channel).filter(|_| signal.axis == Axis::Transverse)?;
@@ -404,7 +402,7 @@ impl InputList {
             });
         }
         if is_stood_in {
-            // Its sensor's errors are those of the channel that it is made of.
+            // A reconstructed channel has the sensor errors of the channel from which it is made.
             return;
         }
         if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
@@ -418,7 +416,7 @@ impl InputList {
         }
         let (share, add_m_s) = (known.base_strain / 2.0, u_base_strain_m_s(signal, measured.events, known));
         let (tolerance, key) = ("base_strain_percent", "tolerance.base_strain_percent");
-        let strain = stated(tolerance, key, "1 %", 0.01 / share, SECOND_SENSOR);
+        let strain = entry(tolerance, key, "1 %", 0.01 / share, SECOND_SENSOR);
         let step = move |inputs: &mut Inputs, by: f64| inputs.step(channel, by * add_m_s);
         self.add(format!("{BASE_STRAIN}{}", signal.name), percent(share), Some(strain), step);
         let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
@@ -431,15 +429,15 @@ impl InputList {
             transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
         };
         let share = known.cross_axis / 2.0;
-        let cross = stated("cross_axis_percent", "axis", "1°", DEGREE / share, "check how the sensor sits");
-        self.add(name("cross axis"), percent(share), Some(cross.of(&signal.name)), move |inputs, by| {
+        let cross = entry("cross_axis_percent", "axis", "1°", DEGREE / share, "check how the sensor sits");
+        self.add(name("cross axis"), percent(share), Some(cross.tag(&signal.name)), move |inputs, by| {
             inputs.step(channel, -by * share * other_m_s);
             inputs.crosses[channel] += by * share;
         });
         let by_m = known.position_m / 2.0;
         let place = |key, number_m| {
-            let place = stated("position_m", key, "10 mm", 0.01 / by_m, SECOND_SENSOR);
-            Some(place.with_number(number_m, by_m).of(&signal.name))
+            let place = entry("position_m", key, "10 mm", 0.01 / by_m, SECOND_SENSOR);
+            Some(place.with_number(number_m, by_m).tag(&signal.name))
         };
         if is_transverse {
             let place = place("position_m", signal.position_m);
@@ -458,7 +456,7 @@ impl InputList {
     }
 }
 
-/// Standard uncertainty of a channel's scale, and what it does.
+/// Standard uncertainty of a channel's scale, and its effect.
 fn scale(measured: &FitData, channel: usize) -> (f64, Shift) {
     let own = measured.spec(channel).and_then(|spec| spec.calibration);
     let share = own.unwrap_or(measured.tolerances.calibration) / 2.0;

@@ -1,5 +1,5 @@
-//! A motion that depends on uncertain inputs to k and the other unknowns, each with its interval, on every
-//! rung of the reconstruction.
+//! Propagates uncertain inputs through the motion to k and the other unknowns, each with its interval, for
+//! every reconstruction method.
 
 mod closures;
 mod inputs;
@@ -9,12 +9,12 @@ mod steps;
 mod untested;
 
 use crate::data::{
-    AssumedFriction, ChannelSpec, Events, FlightFit, MeasuredRotation, Motion, RestLevel, Setup, Signal,
-    StoodIn, Tolerances,
+    AssumedFriction, ChannelSpec, Events, FlightFit, MeasuredRotation, Motion, RestLevel, ScaledCopy, Setup,
+    Signal, Tolerances,
 };
 
 pub use inputs::Inputs;
-pub use ladder::{RungTaken, ladder};
+pub use ladder::{SelectedMethod, ladder};
 pub use steps::{u_base_strain_m_s, u_step_m_s};
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).
@@ -23,20 +23,19 @@ pub const COVERAGE: f64 = 2.0;
 /// The measured motion as a function of its inputs, such as `motion::outcome` of the integrated channels.
 pub type Reconstruct<'a> = &'a (dyn Fn(&FlightFit, &Events, &Setup) -> Option<Motion> + Sync);
 
-/// The second impact, whose rotation must follow from its impulse as that of the first does   (32)
+/// The second impact, whose rotation must follow from its impulse, as for the first impact   (32)
 #[derive(Clone, Copy)]
-pub struct SecondContact<'a> {
-    /// The uncertain inputs of its own: what each is, and its standard uncertainty.
+pub struct SecondImpactData<'a> {
+    /// Uncertain inputs of the second impact alone: name and standard uncertainty of each.
     pub inputs: &'a [[String; 2]],
-    /// By how much the rotation is more than the impulse gives, rad/s, with these inputs and this motion
-    /// before it.
-    pub turned_beyond_rad_s: &'a (dyn Fn(&Inputs, &Motion) -> Option<f64> + Sync),
-    /// Rotation that it gives, rad/s; `None` where nobody knows its friction: the one that meets the closure
-    /// is then as good as any.
-    pub turned_rad_s: Option<f64>,
+    /// Excess of the rotation over that from the impulse, rad/s, with these inputs and this motion before it.
+    pub excess_rotation_rad_s: &'a (dyn Fn(&Inputs, &Motion) -> Option<f64> + Sync),
+    /// Rotation that the second impact gives, rad/s; `None` if the friction is unknown: any value that
+    /// satisfies the check is then possible.
+    pub rotation_rad_s: Option<f64>,
 }
 
-/// What the propagation starts from.
+/// Input of the propagation.
 #[derive(Clone, Copy)]
 pub struct FitData<'a> {
     /// The conditioned channels.
@@ -47,28 +46,28 @@ pub struct FitData<'a> {
     pub events: &'a Events,
     /// Geometry, initial motion and contact law.
     pub setup: &'a Setup,
-    /// The friction of the first contact, where no axial channel measures it.
+    /// Friction of the first contact, if no axial channel measures it.
     pub friction: Option<AssumedFriction>,
-    /// What the cask file says of the channels.
+    /// Specifications of the channels in the cask file.
     pub specs: &'a [ChannelSpec],
-    /// How well the stated things are known.
+    /// Uncertainty of the stated values.
     pub tolerances: Tolerances,
-    /// Θ / m, m²; `None` where the cask file describes a thin rod only, which no cask is.
+    /// Θ / m, m²; `None` if the cask file describes only a thin rod, which no cask is.
     pub inertia_m2: Option<f64>,
     /// Rest before the release, as the DC-coupled channels show it.
     pub rests: &'a [RestLevel],
-    /// Free fall from release to the first touch, s, where the record shows it.
+    /// Free fall from release to the first touch, s, if the record shows it.
     pub fall_s: Option<f64>,
     /// The rotation by angular-rate sensors.
     pub rotations: &'a [MeasuredRotation],
-    /// The channel that stands in for an end without one.
-    pub stood_in: Option<StoodIn>,
-    /// The second impact, where the record tells it.
-    pub second: Option<SecondContact<'a>>,
+    /// The reconstructed channel of an end without a sensor.
+    pub stood_in: Option<ScaledCopy>,
+    /// The second impact, if the record determines it.
+    pub second: Option<SecondImpactData<'a>>,
 }
 
 impl FitData<'_> {
-    /// What the cask file says of a channel.
+    /// Specification of a channel in the cask file.
     fn spec(&self, channel: usize) -> Option<&ChannelSpec> {
         let name = &self.signals.get(channel)?.name;
         self.specs.iter().find(|spec| spec.name == *name)

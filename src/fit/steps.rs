@@ -1,28 +1,28 @@
-//! What is known of a channel's velocity step to its standard uncertainty.
+//! Standard uncertainty of a channel's velocity step.
 
 use super::FitData;
 use crate::data::{Events, MOST_LOST_M_S, Signal, Tolerances};
 use crate::numerics::noise::integral_uncertainty_by;
 use std::f64::consts::FRAC_2_PI;
 
-/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
-/// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
-/// the middle of such a half sine takes 0.1 π v0, one at its end next to none.
+/// Standard uncertainty of the velocity that a gap in the contact removed, over v0 times the gap's share of
+/// the contact. A pulse that throws L back with its impact speed changes its velocity by 2 v0: a gap of a
+/// tenth in the middle of such a half sine removes 0.1 π v0, one at its end next to none.
 const GAP_SHARE: f64 = 3.0;
 
-/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form,
-/// the time in the contact at which a zero shift set in, the drift of the offset since the free fall,
-/// clipping, gaps.
+/// Standard uncertainty of a channel's velocity step, m/s, from six parts: the plateau's fit, the shape of
+/// the modes, the time in the contact at which a zero shift began, the drift of the offset since the free
+/// fall, clipping, gaps.
 pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
     let flight_s = measured.flight.to_s - measured.flight.from_s;
     let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
-    // A drift that was fitted leaves the noise of the contact alone.
+    // If a drift was fitted only the noise of the contact remains.
     let length_s = pulse_s + if measured.flight.drift { 0.0 } else { flight_s / 2.0 };
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
-    // Without a spectrum the offset's own uncertainty is all that is known.
+    // Without a spectrum only the uncertainty of the offset itself is known.
     let drift_m_s = noise_m_s.max(signal.u_offset_m_s2 * length_s);
     let ringing_m_s: f64 = measured
         .flight
@@ -31,8 +31,8 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
         .zip(&plateau.ringing_m_s)
         .enumerate()
         .map(|(i, (mode, (a, b)))| {
-            // What is no mode bends the plateau, which may lie anywhere along it.
-            if measured.flight.is_bend(i, measured.signals) {
+            // A fitted mode that is an artefact bends the plateau, which may lie anywhere along it.
+            if measured.flight.is_fit_artefact(i, measured.signals) {
                 return a.hypot(*b);
             }
             mode.u_plateau(a.hypot(*b), flight_s)
@@ -41,8 +41,8 @@ pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
 }
 
-/// Standard uncertainty of what strain of its base adds to a channel's velocity step, m/s: half a sine over
-/// the contact, of the stated share of the channel's peak there.
+/// Standard uncertainty of a channel's velocity step from base strain, m/s: half a sine over the contact, of
+/// the stated share of the channel's peak there.
 pub fn u_base_strain_m_s(signal: &Signal, events: &Events, tolerances: &Tolerances) -> f64 {
     let Some((contact_s, left_s)) = events.first_contact_s().zip(events.separation_s()) else { return 0.0 };
     let pulse = signal.force_m_s2.get(signal.index_from(contact_s)..signal.index_from(left_s));
@@ -50,7 +50,7 @@ pub fn u_base_strain_m_s(signal: &Signal, events: &Events, tolerances: &Toleranc
     tolerances.base_strain / 2.0 * peak_m_s2 * (left_s - contact_s) * FRAC_2_PI
 }
 
-/// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
+/// Velocity that clipping, or a gap in the contact, may have removed from a channel's step, m/s.
 fn lost_m_s(measured: &FitData, signal: &Signal) -> f64 {
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let left_s = measured.events.separation_s().unwrap_or(contact_s);
@@ -60,8 +60,8 @@ fn lost_m_s(measured: &FitData, signal: &Signal) -> f64 {
     clipped_m_s.hypot(gap_m_s)
 }
 
-/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and
-/// tests nothing.
+/// True if a channel has lost its velocity step to clipping or a gap: a check then determines the step, and
+/// confirms nothing.
 pub(super) fn has_lost_step(measured: &FitData) -> bool {
     measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }

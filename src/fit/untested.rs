@@ -1,38 +1,38 @@
-//! Stated inputs in which nothing in the recording tests a mistake: one that moves the speed or k by twice
-//! the half-width of its interval is found by no check.
+//! Stated inputs that this recording cannot check: no check finds a mistake that moves the speed or k by
+//! twice the half-width of its interval.
 
 use super::FitData;
 use super::inputs::{BASE_STRAIN, Inputs, LARGER_RANGE, RELEASE, REST, SECOND_SENSOR, UncertainInput};
 use crate::data::{FlightFit, MISSED_U, Quantities, Untested, UntestedMoves};
 
-/// A number so many half-widths off is wrong.
-const WRONG: f64 = 2.0;
+/// A number that is off by this many half-widths is wrong.
+const WRONG_HALF_WIDTHS: f64 = 2.0;
 
-/// A mistake of more than so many usual ones is not made: 20 % of a scale, 0.2 m of a place.
+/// Mistakes beyond this many usual ones are not expected: 20 % of a scale, 0.2 m of a position.
 const MOST_USUAL: f64 = 20.0;
 
-/// A pulse whose peak is read 1 % too low by an amplifier that compresses, by the cube of the reading, loses
-/// this many times 1 % of its area, where base strain of 1 % adds 1 %: ∫ sin³ over ∫ sin of half a sine.
-const COMPRESSED: f64 = 2.0 / 3.0;
+/// A pulse whose peak is read 1 % too low by an amplifier that compresses with the cube of the reading loses
+/// this many times 1 % of its area, whereas base strain of 1 % adds 1 %: ∫ sin³ over ∫ sin of half a sine.
+const COMPRESSION_LOSS: f64 = 2.0 / 3.0;
 
-/// What one standard uncertainty of an input does, where the file were off by it.
+/// Effect of one standard uncertainty of an input, if the cask file were wrong by it.
 pub(super) struct Influence {
     pub quantities: Quantities<f64>,
-    /// The largest miss that it gives a closure, over the closure's standard uncertainty by all inputs.
+    /// Largest miss that it causes in a check, over the check's standard uncertainty from all inputs.
     pub miss_in_u: f64,
 }
 
-/// A mistake that no closure finds.
+/// A mistake that no check finds.
 pub(super) struct SilentMistake {
     /// The input's place among all.
     input: usize,
-    /// How large it is, in standard uncertainties of the input, where it makes the speed or k wrong.
+    /// Smallest size that makes the speed or k wrong, in standard uncertainties of the input.
     wrong_u: f64,
     untested: Untested,
 }
 
-/// The mistakes that no closure would find.
-pub(super) fn silent(
+/// Lists the mistakes that no consistency check would find.
+pub(super) fn find_silent(
     measured: &FitData,
     inputs: &[UncertainInput],
     influences: &[Influence],
@@ -40,12 +40,12 @@ pub(super) fn silent(
 ) -> Vec<SilentMistake> {
     let mut silent = Vec::new();
     for (input, (own, influence)) in inputs.iter().zip(influences).enumerate() {
-        let Some((of_key, by_u)) = of_key(measured, own) else { continue };
+        let Some((of_key, by_u)) = mistake_in_key(measured, own) else { continue };
         let moved = &influence.quantities;
-        // How far beyond its interval one standard uncertainty moves either.
+        // One standard uncertainty moves speed and k beyond their intervals by this factor.
         let k = moved.k.abs() / stated.k.u95;
         let speed = moved.speed.zip(stated.speed).map_or(0.0, |(by, speed)| by.abs() / speed.u95);
-        let wrong_u = WRONG / k.max(speed);
+        let wrong_u = WRONG_HALF_WIDTHS / k.max(speed);
         // An input that is stated without a tolerance has no size.
         let is_made = by_u.is_finite() && wrong_u <= MOST_USUAL * by_u;
         if !is_made || wrong_u * influence.miss_in_u > MISSED_U {
@@ -66,12 +66,12 @@ pub(super) fn silent(
     silent
 }
 
-/// That a channel reads its peak as it does less, beside its base strain: either changes the velocity step
-/// alone, and what finds one finds the other.
+/// Nonlinearity of a channel at its peak, beside its base strain: both change only the velocity step, so a
+/// check finds both or neither.
 fn linearity(input: &UncertainInput, strain: &Untested) -> Option<Untested> {
     let channel = input.name.strip_prefix(BASE_STRAIN)?;
     let UntestedMoves { k, slap_down_speed_m_s } = strain.moves;
-    let scaled = |by: f64| COMPRESSED * by;
+    let scaled = |by: f64| COMPRESSION_LOSS * by;
     Some(Untested {
         what: format!("linearity at the peak of {channel}"),
         key: format!("channel.{channel}.full_scale"),
@@ -81,8 +81,8 @@ fn linearity(input: &UncertainInput, strain: &Untested) -> Option<Untested> {
     })
 }
 
-/// Those of them that no other check finds either; `finds` says whether one does in velocity steps.
-pub(super) fn untested(
+/// Selects the mistakes that no other check finds either; `finds` says if one does in velocity steps.
+pub(super) fn list_untested(
     silent: &[SilentMistake],
     base: &Inputs,
     inputs: &[UncertainInput],
@@ -90,16 +90,16 @@ pub(super) fn untested(
 ) -> Vec<Untested> {
     let is_found = |mistake: &&SilentMistake| {
         let input = std::slice::from_ref(&inputs[mistake.input]);
-        [-1.0, 1.0].iter().all(|sign| finds(&base.moved(input, &[sign * mistake.wrong_u]).flight))
+        [-1.0, 1.0].iter().all(|sign| finds(&base.shift(input, &[sign * mistake.wrong_u]).flight))
     };
     silent.iter().filter(|mistake| !is_found(mistake)).map(|mistake| mistake.untested.clone()).collect()
 }
 
-/// An input that a file states, what a mistake in it moves left open, and how many of its standard
-/// uncertainties a mistake is; `None` where the recording gives it.
-fn of_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)> {
+/// Describes a mistake in an input that a file states, its effect left open, and its size in standard
+/// uncertainties; `None` if the recording determines the input.
+fn mistake_in_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)> {
     let stated = input.stated.as_ref()?;
-    let what = match stated.key {
+    let name = match stated.key {
         "axis" => input.name.replace("cross axis", "tilt"),
         "drop.height_m" => "drop height".into(),
         "cask.inertia_kg_m2" => "inertia, with contents that move".into(),
@@ -114,6 +114,6 @@ fn of_key(measured: &FitData, input: &UncertainInput) -> Option<(Untested, f64)>
         let lacks_fall = by_rest && !rests.is_empty() && measured.fall_s.is_none();
         (stated.key.to_owned(), if lacks_fall { RELEASE } else { stated.remedy })
     };
-    let untested = Untested { what, key, by: stated.by, moves: UntestedMoves::default(), remedy };
+    let untested = Untested { what: name, key, by: stated.by, moves: UntestedMoves::default(), remedy };
     Some((untested, stated.by_u))
 }

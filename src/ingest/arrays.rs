@@ -21,9 +21,9 @@ const NAME: &str = "samples in memory";
 /// [`IngestError`] where a channel has no samples, or nothing says its rate or its unit.
 pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recording, IngestError> {
     let path = Path::new(NAME);
-    let cask_file = &*cask_file.of_recorder(None);
+    let cask_file = &*cask_file.for_recorder(None);
     cask_file::require_channels(cask_file, path)?;
-    let (stated_file, cask_file) = (cask_file, &*cask_file.to_be_read());
+    let (stated_file, cask_file) = (cask_file, &*cask_file.with_all_channels());
     let mut channels = Vec::with_capacity(cask_file.channels.len());
     for (stated, held) in cask_file.channels.iter().zip(chosen(held, cask_file)?) {
         let refused = |refusal| error::of_channel(path, &stated.name, refusal);

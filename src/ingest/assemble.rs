@@ -118,8 +118,8 @@ fn channel(
         ));
     }
     raw.uniform.samples.shrink();
-    issues.extend(scale.contradiction.clone().map(|found| found.on(&spec.name)));
-    issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
+    issues.extend(scale.contradiction.clone().map(|found| found.tag(&spec.name)));
+    issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).tag(&spec.name)));
     Ok(Channel {
         name: spec.name.clone(),
         end: spec.end,
@@ -242,7 +242,7 @@ mod tests {
     use crate::ingest::time_base::Uniform;
 
     pub(super) fn spec(unit: Option<Unit>) -> ChannelSpec {
-        ChannelSpec { unit, ..ChannelSpec::plain("A1", End::First, "/daq/a1", 0.0) }
+        ChannelSpec { unit, ..ChannelSpec::new("A1", End::First, "/daq/a1", 0.0) }
     }
 
     fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, Refusal> {
@@ -373,7 +373,7 @@ mod tests {
                 time_jitter_s: 0.0,
                 issues: vec![
                     Finding::from(crate::data::TimesFinding::NonFinite { samples: 1 })
-                        .between(start_s, start_s + 0.25),
+                        .span(start_s, start_s + 0.25),
                 ],
             },
             unit: Some("g".into()),

@@ -21,7 +21,7 @@ use super::error::{IngestError, of_file};
 use super::lines::in_utf8;
 use super::recording_file::bytes_of;
 use super::refusal::Refusal;
-use super::shown::bare;
+use super::shown::os_text;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
@@ -120,7 +120,7 @@ pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, IngestError> {
 
 fn bytes(path: &Path, most_mib: u64, name: &str) -> Result<Vec<u8>, IngestError> {
     bytes_of(path, most_mib).map_err(|refusal| {
-        let problem = format!("{name} cannot be read: {}", bare(&refusal));
+        let problem = format!("{name} cannot be read: {}", os_text(&refusal));
         no_cask_file(path, &problem, "check the name, and that you may read it")
     })
 }
@@ -202,7 +202,7 @@ pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<
         simulation,
         letterhead,
         defaults,
-        ..CaskFile::plain(cask, drop, contact)
+        ..CaskFile::new(cask, drop, contact)
     })
 }
 

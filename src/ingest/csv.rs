@@ -41,7 +41,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
     let (path, text) = (file.path, Text::open(file, limits)?);
     let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path))?;
     let plan = |spec: &ChannelSpec| {
-        let plan = ColumnPlan::of(path, spec, cask_file.time_of(spec), &layout);
+        let plan = ColumnPlan::of(path, spec, cask_file.time_source(spec), &layout);
         plan.map_err(|refusal| error::of_channel(path, &spec.name, refusal))
     };
     let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;

@@ -1,8 +1,8 @@
 //! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
 
 use super::refusal::Refusal;
-use super::shown::bare;
-use crate::data::shortened;
+use super::shown::os_text;
+use crate::data::shorten;
 use std::path::Path;
 
 /// Why a file could not be read.
@@ -39,7 +39,7 @@ impl IngestError {
 
 /// The operating system's refusal, with the file's name.
 pub(super) fn io(path: &Path, refusal: &std::io::Error) -> IngestError {
-    of_file(path, Refusal::new(bare(refusal), "check the name, and that you may read it"))
+    of_file(path, Refusal::new(os_text(refusal), "check the name, and that you may read it"))
 }
 
 /// A refusal of the file itself.
@@ -88,7 +88,7 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
     }
     let mut ranked: Vec<(f64, &String)> = there.iter().map(|name| (alike(wanted, name), name)).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let named = |name: &String| shortened(name).into_owned();
+    let named = |name: &String| shorten(name).into_owned();
     let near: Vec<String> =
         ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| named(name)).collect();
     let hint = if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
@@ -118,7 +118,7 @@ mod tests {
     fn a_refusal_carries_no_error_number() {
         let refusal = std::fs::File::open("none/at all").unwrap_err();
         assert!(refusal.to_string().contains("os error"), "{refusal}");
-        assert!(!bare(&refusal).is_empty() && !bare(&refusal).contains("os error"));
+        assert!(!os_text(&refusal).is_empty() && !os_text(&refusal).contains("os error"));
     }
 
     #[test]

@@ -60,12 +60,12 @@ fn read_together(
         rows: listed.rows.clone(),
         // Any unit has a reader take what is in none of acceleration; its scale is taken back below.
         unit: m_s2(listed).is_none().then_some(Unit::MetrePerSecondSquared),
-        ..ChannelSpec::plain(&listed.source, End::First, "", 0.0)
+        ..ChannelSpec::new(&listed.source, End::First, "", 0.0)
     };
     // Readers take of it nothing but the channels.
-    let (cask, drop) = (Cask::block("", 1.0, 1.0, 0.0), Drop::of_height(1.0, 0.0));
+    let (cask, drop) = (Cask::block("", 1.0, 1.0, 0.0), Drop::from_height(1.0, 0.0));
     let channels = group.iter().map(spec).collect();
-    let file = CaskFile { channels, ..CaskFile::plain(cask, drop, Contact::Unknown) };
+    let file = CaskFile { channels, ..CaskFile::new(cask, drop, Contact::Unknown) };
     let format = detect::format(recording)?;
     let raw = read_raw(ReadRequest { file: recording, limits, progress: &|_| () }, format, &file)?;
     let read = assemble::recording(recording.path, format, String::new(), raw, &file)?;
@@ -102,7 +102,7 @@ mod tests {
         let mut listing = list(&path, &|_| ()).unwrap();
         let together = read(&path, &listing);
         assert!(together.iter().all(|read| read.as_ref().is_ok_and(|read| read.unit == "g")));
-        listing.channels.insert(1, ListedChannel::named("/daq/none.samples", "array"));
+        listing.channels.insert(1, ListedChannel::new("/daq/none.samples", "array"));
         let beside_a_refusal = read(&path, &listing);
         listing.channels.iter_mut().for_each(|listed| listed.samples = Some(1 << 40));
         for apart in [beside_a_refusal, read(&path, &listing)] {

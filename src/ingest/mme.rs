@@ -72,7 +72,7 @@ pub(super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     let (bytes, listed) = (files.bytes(limits)?, index::channels(&files, limits)?);
     let (mut channels, mut issues) = (Vec::new(), Vec::new());
     for channel in &listed {
-        let named = ListedChannel::named(&channel.source, "channel");
+        let named = ListedChannel::new(&channel.source, "channel");
         channels.push(match ChannelFile::of(&files, channel, limits) {
             Ok(read) => one_listed(named, channel, read, &mut issues),
             Err(IngestError::Refused { refusal, .. }) => {
@@ -85,7 +85,7 @@ pub(super) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
         counts: BTreeMap::from([("channels".into(), channels.len() as u64)]),
         channels,
         issues,
-        ..Listing::of(path, bytes, RecordingFormat::Mme)
+        ..Listing::new(path, bytes, RecordingFormat::Mme)
     })
 }
 
@@ -102,7 +102,7 @@ fn one_listed(
     let mut listed = ListedChannel {
         samples: Some(read.values.len() as u64),
         unit: read.unit().map(|line| line.value.clone()),
-        range: ListedChannel::range_of(read.values.iter().copied()),
+        range: ListedChannel::value_range(read.values.iter().copied()),
         encoding: said.join("; "),
         ..named
     };
@@ -113,7 +113,7 @@ fn one_listed(
         }
         Err(refusal) => vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()],
     };
-    issues.extend(found.into_iter().map(|issue| issue.on(&channel.source)));
+    issues.extend(found.into_iter().map(|issue| issue.tag(&channel.source)));
     ListedChannel { start_s: read.start_s, ..listed }
 }
 

@@ -118,9 +118,9 @@ pub fn read_within<'a>(
 ) -> Result<Recording, IngestError> {
     let recording = recording.into();
     let path = recording.path;
-    let cask_file = &*cask_file.of_recorder(None);
+    let cask_file = &*cask_file.for_recorder(None);
     cask_file::require_channels(cask_file, path)?;
-    let (stated, cask_file) = (cask_file, &*cask_file.to_be_read());
+    let (stated, cask_file) = (cask_file, &*cask_file.with_all_channels());
     // The hash takes as long as the reading: it runs beside it.
     let (((raw, format), reader), sha256) = unchanged::hashed(recording, || {
         let converted = foreign::converted(recording)?;

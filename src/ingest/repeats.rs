@@ -129,7 +129,7 @@ fn factor_of(centred: &Centred, large: &[usize], turn: usize) -> Option<f64> {
 /// Says of a channel that its rows are of several sensors by turns, where its samples show it.
 pub(super) fn by_turns(channel: &Channel) -> Option<Finding> {
     let Turns { rows, factor } = turns(&channel.samples)?;
-    Some(ChannelFinding::ByTurns { rows, factor }.on(&channel.name))
+    Some(ChannelFinding::ByTurns { rows, factor }.tag(&channel.name))
 }
 
 /// Takes blocks that were written a second time for lost, with a finding for each: in all channels of one
@@ -157,9 +157,9 @@ fn lose_repeated(together: &mut [&mut Channel], issues: &mut Vec<Finding>) {
         for &RepeatedRun { from, copy, count } in &runs {
             let time_s = |row: usize| channel.start_s + as_f64(row) / channel.sample_rate_hz;
             let found = TimesFinding::Repeated { samples: count, of_s: time_s(from), from_s: time_s(copy) };
-            issues.push(Finding::from(found).between(time_s(copy), time_s(copy + count)).on(&channel.name));
+            issues.push(Finding::from(found).span(time_s(copy), time_s(copy + count)).tag(&channel.name));
             let span = Span { from: copy, to: copy + count };
-            channel.samples.lose(span);
+            channel.samples.erase(span);
             channel.gaps.push(span);
         }
         channel.gaps.sort_by_key(|span| span.from);

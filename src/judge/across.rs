@@ -13,7 +13,7 @@ const LEAST_U_AROUND: f64 = 5e-4;
 pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
     let (contact_s, left_s, struck_s) =
         (events.first_contact_s()?, events.separation_s()?, events.slap_down_s()?);
-    let is_lost = [&signal.clipped, &signal.gaps].iter().any(|s| signal.touches(s, contact_s, struck_s));
+    let is_lost = [&signal.clipped, &signal.gaps].iter().any(|s| signal.overlaps(s, contact_s, struck_s));
     let [from, left, to] = [contact_s, left_s, struck_s].map(|at_s| signal.index_from(at_s));
     let mut velocity_m_s = 0.0;
     let mut flight_m_s = Vec::new();
@@ -24,13 +24,13 @@ pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
     let mean_m_s = flight_m_s.iter().sum::<f64>() / as_f64(flight_m_s.len().max(1));
     let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
     let found = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
-    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.on(&signal.name))
+    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.tag(&signal.name))
 }
 
 /// A sensor alone, off the lines where it reads in the plane of the drop only.
 pub fn judge_alone(signal: &Signal) -> Option<Finding> {
     let found = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
-    (signal.u_around > LEAST_U_AROUND).then(|| found.on(&signal.name))
+    (signal.u_around > LEAST_U_AROUND).then(|| found.tag(&signal.name))
 }
 
 #[cfg(test)]
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn a_velocity_across_the_plane_through_the_flight_is_named_and_a_blow_that_ends_is_not() {
-        let events = Events { separation: Some(At::exactly(0.03)), ..example::events(0.02, 0.06) };
+        let events = Events { separation: Some(At::exact(0.03)), ..example::events(0.02, 0.06) };
         // 1 kHz; 10 ms of contact, in which the cask gains a velocity across the plane.
         let gaining = |contact: f64, flight: f64| {
             let force = |i: u32| if (20..30).contains(&i) { contact } else { flight };

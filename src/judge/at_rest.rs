@@ -44,7 +44,7 @@ pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
         } else {
             return None;
         };
-        Some(found.on(&channel.name))
+        Some(found.tag(&channel.name))
     };
     all.iter().filter_map(found).collect()
 }
@@ -118,14 +118,14 @@ pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) ->
     let too_small = |(i, peak): (usize, &ExpectedPeak)| {
         let (range_g, ExpectedPeak { lasts_s: pulse_s, peak_g }) = (range_g?, *peak);
         let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
-        (range_g < peak_g).then(|| found.on(&channel.name))
+        (range_g < peak_g).then(|| found.tag(&channel.name))
     };
     let range = peaks.iter().enumerate().find_map(too_small);
     let rate =
         peaks.last().and_then(|peak| low_rate(&channel.name, channel.sample_rate_hz, peak.lasts_s, 1.0));
     let u_offset_m_s2 = quiet.u_offset_m_s2;
     let offset = RestFinding::OpenOffset { u95_g: 2.0 * u_offset_m_s2 / G };
-    let offset = (u_offset_m_s2 > MOST_U_OFFSET_M_S2).then(|| offset.on(&channel.name));
+    let offset = (u_offset_m_s2 > MOST_U_OFFSET_M_S2).then(|| offset.tag(&channel.name));
     [range, rate, offset].into_iter().flatten().collect()
 }
 
@@ -146,7 +146,7 @@ mod tests {
 
     /// The cause for a transverse channel at 15° that reads this, beside an axial one that reads right.
     fn of(reads_g: f64) -> Option<RestCause> {
-        let drop = Drop::of_height(9.0, 15_f64.to_radians());
+        let drop = Drop::from_height(9.0, 15_f64.to_radians());
         let at_rest = |level_g: f64| AtRest {
             level_m_s2: level_g * G,
             u_m_s2: 0.0,

@@ -43,7 +43,7 @@ pub fn judge_bandwidth(
         let left = 1.0 / (1.0 + (0.5 / (contact_s * corner_hz)).powi(4)).sqrt();
         let rise_s = RISE / corner_hz;
         let said = ChannelFinding::Filtered { corner_hz, cutoff_hz, rise_s, contact_s, lost: 1.0 - left };
-        Some(said.on(&signal.name))
+        Some(said.tag(&signal.name))
     });
     filtered.collect()
 }
@@ -83,7 +83,7 @@ mod tests {
         let bins = std::iter::successors(Some(20.0), |hz| Some(hz * 1.25)).take_while(|hz| *hz < 4e3);
         let noise_spectrum = bins.map(|hz| (hz, density(hz))).collect();
         let signal = Signal { noise_spectrum, ..example::signal(1e4, vec![]) };
-        let events = Events { separation: Some(At::exactly(0.11)), ..example::events(0.1, 0.16) };
+        let events = Events { separation: Some(At::exact(0.11)), ..example::events(0.1, 0.16) };
         let found = judge_bandwidth(&[signal], &events, 400.0, &[]);
         found.first().map(|found| match found.what {
             crate::data::FindingKind::Channel(ChannelFinding::Filtered { corner_hz, .. }) => corner_hz,

@@ -4,7 +4,7 @@
 use super::turned::turned_m_s2;
 use crate::data::{Cask, ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
-use crate::numerics::reduce::{self, block_means, block_of, converter_step, peak};
+use crate::numerics::reduce::{self, block_means, block_size, converter_step, peak};
 use crate::numerics::{as_count, as_f64};
 use std::ops::Range;
 
@@ -83,7 +83,7 @@ pub fn judge_blows(
     } else {
         ChannelFinding::Struck { after_s, far }
     };
-    Some(found.on(&struck.signal.name).between(first_s, last_s))
+    Some(found.tag(&struck.signal.name).span(first_s, last_s))
 }
 
 /// Whether a shock of the flight is as sharp as what strikes a cask; true where no prediction covers it. A
@@ -138,7 +138,7 @@ fn together(looked: &[Looked<'_>]) -> Vec<Unforetold> {
 
 /// Whether samples are lost, clipped or spiked between two times.
 fn is_disturbed(signal: &Signal, span_s: &Range<f64>, found: &[Finding]) -> bool {
-    let touches = |spans: &[_]| signal.touches(spans, span_s.start, span_s.end);
+    let touches = |spans: &[_]| signal.overlaps(spans, span_s.start, span_s.end);
     let is_spiked = |f: &Finding| {
         f.code == IssueCode::Spikes
             && f.channel.as_ref() == Some(&signal.name)
@@ -159,7 +159,7 @@ struct Unforetold {
 fn unforetold(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetold> {
     let from = signal.index_from(span_s.start);
     let samples = signal.force_m_s2.get(from..signal.index_from(span_s.end)).unwrap_or_default();
-    let block = block_of(RATE_HZ, signal.sample_rate_hz);
+    let block = block_size(RATE_HZ, signal.sample_rate_hz);
     let means = block_means(samples, block);
     let rounding_m_s2 = rounding_of_means(samples, block);
     let least_m_s2 = (LEAST_SPREAD * peak(&means)).max(least_m_s2).max(f64::MIN_POSITIVE);

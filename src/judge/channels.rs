@@ -94,16 +94,16 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
             let limit_m_s2 = (level_m_s2 + signal.removed_offset_m_s2).abs();
             ChannelFinding::Clipped { limit_m_s2, samples, during, lost_m_s, takes_step }
         };
-        Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+        Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
     };
     let of_kind = |is_flank| parts.clone().into_iter().filter_map(move |part| of_part(part, is_flank));
     of_kind(false).chain(of_kind(true)).collect()
 }
 
 fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<f64>) -> Option<Finding> {
-    let inside = signal.touches(&signal.gaps, contact_s, separation_s);
+    let inside = signal.overlaps(&signal.gaps, contact_s, separation_s);
     let found = ChannelFinding::LostStep { shows_slap_down: slap_down_s.is_some() };
-    inside.then(|| found.on(&signal.name).between(contact_s, separation_s))
+    inside.then(|| found.tag(&signal.name).span(contact_s, separation_s))
 }
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
@@ -154,7 +154,7 @@ pub fn judge_noise(
     let u_m_s = walk_m_s(length_s).min(of_fit_m_s.unwrap_or(f64::INFINITY));
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
     let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
-    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.on(&signal.name))
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.tag(&signal.name))
 }
 
 /// What the first sample shows already is missing from the velocity step.
@@ -168,28 +168,28 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
     let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
     let found = ChannelFinding::BeginsInImpact { share: first / peak };
     (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak)
-        .then(|| found.on(&signal.name).between(signal.start_s, to_s))
+        .then(|| found.tag(&signal.name).span(signal.start_s, to_s))
 }
 
 /// Sensors beyond the ends of the cask, and ends that lie the other way round.
 pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     let length_m = cask_file.cask.length_m;
     let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
-    let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.on(&s.name);
+    let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.tag(&s.name);
     let mut findings: Vec<Finding> = signals.iter().filter(off).map(off_cask).collect();
     let transverse = |end| signals.iter().filter(move |s| s.end == end && s.axis == Axis::Transverse);
     for first in transverse(End::First) {
         for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
             let (position_m, second_m) = (first.position_m, second.position_m);
             let found = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
-            findings.push(found.on(&first.name));
+            findings.push(found.tag(&first.name));
         }
     }
     let middle_m = length_m / 2.0;
     let far =
         |s: &&Signal| if s.end == End::First { s.position_m > middle_m } else { s.position_m < middle_m };
     let nearer = |s: &Signal| {
-        ChannelFinding::NearerOtherEnd { end: s.end, position_m: s.position_m, length_m }.on(&s.name)
+        ChannelFinding::NearerOtherEnd { end: s.end, position_m: s.position_m, length_m }.tag(&s.name)
     };
     if findings.is_empty() {
         findings.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(nearer));
@@ -222,7 +222,7 @@ fn units(signals: &[Signal]) -> Vec<Finding> {
                 other: small.name.clone(),
                 units: names,
             };
-            findings.push(found.on(&large.name));
+            findings.push(found.tag(&large.name));
         }
     }
     findings

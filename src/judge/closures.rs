@@ -1,8 +1,8 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
 use crate::data::{
-    Closure, ClosureKind, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U,
-    ReconstructionChoice, ReconstructionRung, Signal,
+    CheckKind, Consistency, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U, Method,
+    MethodChoice, Signal,
 };
 use crate::numerics::pooled::chi_square_quantile;
 
@@ -31,7 +31,7 @@ pub const MOST_U95_K: f64 = 0.25;
 pub const MOST_U95_SPEED: f64 = 0.15;
 
 /// One finding a closure that is missed by more than noise and tolerances explain.
-pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
+pub fn judge_closures(choice: &MethodChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
     let mut findings: Vec<Finding> = missed.map(|closure| self::missed(closure, drop, events)).collect();
     if findings.is_empty() {
@@ -41,8 +41,8 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
 }
 
 /// A closure that is met only because k is open: no contradiction, but nothing that confirms it either.
-pub fn judge_strained(choice: &ReconstructionChoice, k: Estimate) -> Option<Finding> {
-    let strained = choice.closures.iter().find(|c| c.most_in_u() > STRAINED_U)?;
+pub fn judge_strained(choice: &MethodChoice, k: Estimate) -> Option<Finding> {
+    let strained = choice.closures.iter().find(|c| c.largest_residual() > STRAINED_U)?;
     let is_missed = choice.closures.iter().any(|c| c.miss_in_u.abs() > MISSED_U);
     let found = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
     (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| found.into())
@@ -54,38 +54,38 @@ pub fn judge_strained(choice: &ReconstructionChoice, k: Estimate) -> Option<Find
 /// A gap at the first contact hides the time that both closures count from. A closure that is missed though
 /// the lost steps are free to move says that more is wrong than the steps.
 pub fn tells_lost_steps(
-    choice: &ReconstructionChoice,
+    choice: &MethodChoice,
     (k, speed): (Estimate, Option<Estimate>),
     signals: &[Signal],
     contact_s: f64,
 ) -> bool {
     let has = |kind| choice.closures.iter().any(|c| c.kind == kind);
-    let all_met = choice.closures.iter().all(|c| c.most_in_u() < MET_U);
+    let all_met = choice.closures.iter().all(|c| c.largest_residual() < MET_U);
     let shows_contact =
-        signals.iter().all(|s| !s.touches(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
+        signals.iter().all(|s| !s.overlaps(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
     let says_something =
         k.u95 < MOST_U95_K && speed.is_some_and(|speed| speed.u95 < MOST_U95_SPEED * speed.value);
-    choice.rung == ReconstructionRung::Joint
-        && has(ClosureKind::Height)
-        && has(ClosureKind::Turning)
+    choice.rung == Method::Joint
+        && has(CheckKind::Height)
+        && has(CheckKind::Turning)
         && all_met
         && shows_contact
         && says_something
 }
 
 /// Three closures missed by 3 u each: chance allows one such miss, but not all three together.
-fn together(choice: &ReconstructionChoice) -> Option<Finding> {
+fn together(choice: &MethodChoice) -> Option<Finding> {
     let (chi_square, degrees) = choice.chi_square?;
-    let most_u = |c: &Closure| if c.kind == ClosureKind::SecondTurning { LENGTH_U } else { MISSED_U };
-    let apart = choice.closures.iter().any(|c| c.most_in_u() > most_u(c));
+    let most_u = |c: &Consistency| if c.kind == CheckKind::SecondTurning { LENGTH_U } else { MISSED_U };
+    let apart = choice.closures.iter().any(|c| c.largest_residual() > most_u(c));
     (apart || chi_square > chi_square_quantile(degrees, CHANCE)).then(|| {
-        let closures = choice.closures.iter().filter(|c| c.most_in_u() > 1.0).cloned().collect();
+        let closures = choice.closures.iter().filter(|c| c.largest_residual() > 1.0).cloned().collect();
         DropFinding::AllMissed { chi_square, degrees, closures }.into()
     })
 }
 
 /// A closure that is missed, as a finding.
-pub(super) fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
+pub(super) fn missed(closure: &Consistency, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
     let is_gross = closure.miss_in_u.abs() > GROSS_U;
     let found =
@@ -98,17 +98,17 @@ mod tests {
     use super::*;
     use crate::data::{IssueCode, Severity};
 
-    fn choice(kind: ClosureKind, miss_in_u: f64) -> ReconstructionChoice {
-        let closure = Closure {
+    fn choice(kind: CheckKind, miss_in_u: f64) -> MethodChoice {
+        let closure = Consistency {
             name: "a closure".into(),
             kind,
-            channel: (kind == ClosureKind::Rest).then(|| "A1".into()),
+            channel: (kind == CheckKind::Rest).then(|| "A1".into()),
             miss: "+30 mm".into(),
             miss_in_u,
             beside_others_in_u: 0.0,
         };
-        ReconstructionChoice {
-            rung: ReconstructionRung::Joint,
+        MethodChoice {
+            rung: Method::Joint,
             reason: String::new(),
             candidates: vec![],
             closures: vec![closure],
@@ -117,8 +117,8 @@ mod tests {
         }
     }
 
-    fn judged(choice: &ReconstructionChoice) -> Vec<Finding> {
-        let drop = Drop { impact_velocity_m_s: 13.288, ..Drop::of_height(9.0, 0.2) };
+    fn judged(choice: &MethodChoice) -> Vec<Finding> {
+        let drop = Drop { impact_velocity_m_s: 13.288, ..Drop::from_height(9.0, 0.2) };
         let events = Events { release_s: Some(0.5), fall_end_s: Some(1.0), ..Events::default() };
         judge_closures(choice, &drop, &events)
     }
@@ -127,42 +127,42 @@ mod tests {
     fn chance_is_not_mentioned_and_more_is_named_by_its_kind() {
         let severities =
             |kind| -> Vec<Severity> { judged(&choice(kind, -3.4)).iter().map(|i| i.severity).collect() };
-        assert!(severities(ClosureKind::Rest).is_empty());
-        assert!(severities(ClosureKind::Height).is_empty());
+        assert!(severities(CheckKind::Rest).is_empty());
+        assert!(severities(CheckKind::Height).is_empty());
         for (kind, code) in [
-            (ClosureKind::Height, IssueCode::Geometry),
-            (ClosureKind::Turning, IssueCode::NotRigid),
-            (ClosureKind::Rest, IssueCode::Scale),
-            (ClosureKind::Fall, IssueCode::Geometry),
+            (CheckKind::Height, IssueCode::Geometry),
+            (CheckKind::Turning, IssueCode::NotRigid),
+            (CheckKind::Rest, IssueCode::Scale),
+            (CheckKind::Fall, IssueCode::Geometry),
         ] {
             let findings = judged(&choice(kind, -4.0));
             assert_eq!((findings[0].code, findings[0].severity), (code, Severity::Warning));
             let said = &findings[0].message;
-            assert_eq!(said.contains("+30 mm (4.0 standard uncertainties)"), kind != ClosureKind::Fall);
-            assert_eq!(said.contains("0.500 s, which is 1.23 m"), kind == ClosureKind::Fall);
+            assert_eq!(said.contains("+30 mm (4.0 standard uncertainties)"), kind != CheckKind::Fall);
+            assert_eq!(said.contains("0.500 s, which is 1.23 m"), kind == CheckKind::Fall);
         }
-        assert_eq!(judged(&choice(ClosureKind::Rest, 4.0))[0].channel.as_deref(), Some("A1"));
+        assert_eq!(judged(&choice(CheckKind::Rest, 4.0))[0].channel.as_deref(), Some("A1"));
     }
 
     #[test]
     fn steps_are_told_by_both_closures_where_neither_is_missed_and_the_interval_says_something() {
         let told = |misses: [f64; 2], u95: f64| {
             let [height, turning] = misses;
-            let mut choice = choice(ClosureKind::Height, height);
-            choice.closures.extend(self::choice(ClosureKind::Turning, turning).closures);
+            let mut choice = choice(CheckKind::Height, height);
+            choice.closures.extend(self::choice(CheckKind::Turning, turning).closures);
             let speed = Estimate::new(20.0, 0.2, "m/s");
             tells_lost_steps(&choice, (Estimate::new(0.5, u95, "1"), Some(speed)), &[], 0.1)
         };
         assert!(told([0.5, -1.5], 0.1));
         assert!(!told([0.5, -2.5], 0.1), "missed though a step is free to move");
         assert!(!told([0.5, -1.5], 0.3), "k may be anything");
-        let alone = choice(ClosureKind::Height, 0.5);
+        let alone = choice(CheckKind::Height, 0.5);
         let k = Estimate::new(0.5, 0.1, "1");
         assert!(!tells_lost_steps(&alone, (k, Some(Estimate::new(20.0, 0.2, "m/s"))), &[], 0.1));
     }
 
     #[test]
     fn a_gross_miss_takes_the_numbers_away() {
-        assert_eq!(judged(&choice(ClosureKind::Turning, 20.0))[0].severity, Severity::Error);
+        assert_eq!(judged(&choice(CheckKind::Turning, 20.0))[0].severity, Severity::Error);
     }
 }

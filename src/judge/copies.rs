@@ -10,7 +10,7 @@ pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
         let original = channels[..at].iter().find(|other| is_same(&channel.samples, &other.samples))?;
         let found =
             ChannelFinding::Copied { of: original.name.clone(), is_other_end: original.end != channel.end };
-        Some(found.on(&channel.name))
+        Some(found.tag(&channel.name))
     };
     (1..channels.len()).filter_map(copy).collect()
 }

@@ -50,7 +50,7 @@ fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Find
     if !CARRIED.contains(&(most_m_s2 / (drop.gravity_m_s2 * drop.angle_rad.cos()))) {
         return None;
     }
-    Some(Finding::from(DropFinding::Carried { rate_hz }).between(flight.from_s, flight.to_s))
+    Some(Finding::from(DropFinding::Carried { rate_hz }).span(flight.from_s, flight.to_s))
 }
 
 fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> Vec<Finding> {
@@ -76,7 +76,7 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
                 step_m_s: plateau.velocity_step_m_s,
                 time_constant_s,
             };
-            found.on(&plateau.channel).between(flight.from_s, flight.to_s)
+            found.tag(&plateau.channel).span(flight.from_s, flight.to_s)
         })
         .collect()
 }
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_first_end_that_the_target_carries_is_told_from_a_zero_shift() {
-        let drop = Drop { impact_velocity_m_s: 3.13, ..Drop::of_height(0.5, 0.1) };
+        let drop = Drop { impact_velocity_m_s: 3.13, ..Drop::from_height(0.5, 0.1) };
         let is_carried =
             |first, second| supported(&[signal("A1"), signal("A2")], &flight(first, second), &drop).is_some();
         // Near the corner 8.6 m/s² of g cos φ = 9.76, and −0.43 of that where the step is.

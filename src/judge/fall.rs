@@ -2,7 +2,7 @@
 
 use super::closures;
 use crate::data::{
-    Axis, Closure, ClosureKind, CoarseEvent, Drop, DropFinding, Events, Finding, FindingKind, MISSED_U,
+    Axis, CheckKind, CoarseEvent, Consistency, Drop, DropFinding, Events, Finding, FindingKind, MISSED_U,
     RestLevel, Tolerances, U_RELEASE_S,
 };
 use crate::numerics::as_f64;
@@ -20,7 +20,7 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
     let (end_s, contact_s) = events.fall_end_s.zip(events.first_contact_s())?;
     let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
     let found = DropFinding::SoftTouch { end_s, contact_s };
-    (contact_s - end_s > MOST_LAG * expected_s).then(|| Finding::from(found).between(end_s, contact_s))
+    (contact_s - end_s > MOST_LAG * expected_s).then(|| Finding::from(found).span(end_s, contact_s))
 }
 
 /// Holds the length of the recorded fall against v0 where no motion could be had that does so with everything
@@ -38,20 +38,20 @@ pub fn judge_fall_time(
         .hypot(v0_m_s * tolerances.impact_velocity / 2.0)
         .hypot(fallen_m_s * tolerances.clock / 2.0);
     let miss_in_u = (fallen_m_s - v0_m_s) / u_m_s;
-    let closure = Closure {
+    let closure = Consistency {
         name: "time of the free fall".into(),
-        kind: ClosureKind::Fall,
+        kind: CheckKind::Fall,
         channel: None,
         miss: format!("{:+.1} % of v0", 100.0 * (fallen_m_s / v0_m_s - 1.0)),
         miss_in_u,
         beside_others_in_u: miss_in_u,
     };
-    (miss_in_u.abs() > MISSED_U && !found.iter().any(|f| missed_kind(f) == Some(ClosureKind::Fall)))
+    (miss_in_u.abs() > MISSED_U && !found.iter().any(|f| missed_kind(f) == Some(CheckKind::Fall)))
         .then(|| closures::missed(&closure, drop, events))
 }
 
 /// Of which closure a finding says that it is missed.
-fn missed_kind(finding: &Finding) -> Option<ClosureKind> {
+fn missed_kind(finding: &Finding) -> Option<CheckKind> {
     let FindingKind::Drop(DropFinding::Missed { closure, .. }) = &finding.what else { return None };
     Some(closure.kind)
 }
@@ -68,7 +68,7 @@ pub fn judge_slowed(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Vec<Finding> {
-    let explained = [Some(ClosureKind::Rest), Some(ClosureKind::Fall)];
+    let explained = [Some(CheckKind::Rest), Some(CheckKind::Fall)];
     let is_explained = |f: &Finding| explained.contains(&missed_kind(f));
     let severity = found.iter().filter(|f| is_explained(f)).map(|f| f.severity).max();
     let slowed = slowed_share(drop, rests, events, tolerances);
@@ -126,7 +126,7 @@ pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Findin
         step_m_s: another.velocity_step_m_s.abs(),
         first_step_m_s: event.velocity_step_m_s.abs(),
     };
-    Finding::from(found).between(from_s, to_s)
+    Finding::from(found).span(from_s, to_s)
 }
 
 #[cfg(test)]
@@ -135,14 +135,14 @@ mod tests {
     use crate::data::{At, FindingKind};
 
     fn drop(given: bool) -> Drop {
-        Drop { impact_velocity_m_s: 13.288, impact_velocity_given: given, ..Drop::of_height(9.0, 0.2) }
+        Drop { impact_velocity_m_s: 13.288, impact_velocity_given: given, ..Drop::from_height(9.0, 0.2) }
     }
 
     fn events(release_s: Option<f64>, end_s: f64, contact_s: f64) -> Events {
         Events {
             release_s,
             fall_end_s: release_s.map(|_| end_s),
-            first_contact: Some(At::exactly(contact_s)),
+            first_contact: Some(At::exact(contact_s)),
             ..Events::default()
         }
     }
@@ -187,9 +187,9 @@ mod tests {
             let fall_s = 13.288 / 9.81 / (1.0 - fall).sqrt();
             let drop = Drop { impact_velocity_given: given, ..drop };
             let events = events(Some(0.5), 0.5 + fall_s, 0.5 + fall_s);
-            let closure = Closure {
+            let closure = Consistency {
                 name: "rest level of A1".into(),
-                kind: ClosureKind::Rest,
+                kind: CheckKind::Rest,
                 channel: Some("A1".into()),
                 miss: "-5.0 %".into(),
                 miss_in_u: -9.0,

@@ -56,7 +56,7 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
         let stops_alone = |at_s| goes_on(at_s) && others().all(|other| !stops_about(other, at_s));
         let (at, size_m_s2) = jump().or_else(|| first_stop(signal, within.clone(), stops_alone))?;
         let found = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
-        Some(found.on(&signal.name).between(signal.time_s(at), signal.time_s(at + 1)))
+        Some(found.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
     });
     jumps.collect()
 }

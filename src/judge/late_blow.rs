@@ -4,7 +4,7 @@ use crate::data::{
     ChannelFinding, DropFinding, End, Estimate, Events, Finding, FlightFit, Signal, transverse,
 };
 use crate::numerics::as_f64;
-use crate::numerics::reduce::{block_means, block_of, peak};
+use crate::numerics::reduce::{block_means, block_size, peak};
 
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound
 /// drops none has more, but for steps below [`LEAST_STEP`].
@@ -40,7 +40,7 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64, speed: Option<Estimate>)
     } else {
         DropFinding::Blow { step_m_s, after_s }
     };
-    Some(Finding::from(found).between(strike.time_s, strike.time_s))
+    Some(Finding::from(found).span(strike.time_s, strike.time_s))
 }
 
 /// A first end that no force reaches for a part of what was taken for one contact: it left the target before,
@@ -48,7 +48,7 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64, speed: Option<Estimate>)
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = transverse(signals, End::First)?;
-    let block = block_of(RATE_HZ, struck.sample_rate_hz);
+    let block = block_size(RATE_HZ, struck.sample_rate_hz);
     let force = struck.force_m_s2.get(struck.index_from(contact_s)..struck.index_from(left_s))?;
     let means = block_means(force, block);
     let rests = (RESTS_SHARE * peak(&means)).max(RESTS_NOISE * struck.noise_m_s2);
@@ -66,19 +66,19 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
         let at_s = |mean: usize| contact_s + as_f64(mean * block) / struck.sample_rate_hz;
         let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
         let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
-        found.on(&struck.name).between(from_s, to_s)
+        found.tag(&struck.name).span(from_s, to_s)
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, FindingKind, Strike, example};
+    use crate::data::{At, FindingKind, FlightShock, example};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
         FlightFit {
-            strike: Some(Strike { time_s: 0.05, step_m_s, gain }),
+            strike: Some(FlightShock { time_s: 0.05, step_m_s, gain }),
             ..example::flight(0.02, 0.08, vec![])
         }
     }
@@ -94,7 +94,7 @@ mod tests {
         assert!(judge_late_blow(&flight(0.1, 40.0), 13.3, None).is_none());
         let speed = Some(Estimate::new(20.0, 0.6, "m/s"));
         let small = judge_late_blow(&flight(-0.5, 40.0), 13.3, speed).expect("a blow");
-        assert!(!small.takes(crate::data::ResultPart::Motion), "{small:?}");
+        assert!(!small.removes(crate::data::ResultPart::Motion), "{small:?}");
     }
 
     /// Half sines of 4 ms at these times, s, with these peaks.
@@ -110,8 +110,8 @@ mod tests {
     #[test]
     fn a_force_that_rests_and_comes_again_is_two_contacts() {
         let events = |left_s| Events {
-            first_contact: Some(At::exactly(0.01)),
-            separation: Some(At::exactly(left_s)),
+            first_contact: Some(At::exact(0.01)),
+            separation: Some(At::exact(left_s)),
             ..Events::default()
         };
         let twice = signal(&[(0.01, 3000.0), (0.022, 400.0)]);

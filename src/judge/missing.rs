@@ -66,12 +66,12 @@ mod tests {
 
     #[test]
     fn a_record_ends_before_the_slap_down_only_where_it_ends() {
-        let (cask, drop) = (Cask::block("rod", 1000.0, 5.0, 0.5), Drop::of_height(9.0, 0.3));
+        let (cask, drop) = (Cask::block("rod", 1000.0, 5.0, 0.5), Drop::from_height(9.0, 0.3));
         let code = |after_s, is_record_end| judge_no_slap_down(&cask, &drop, after_s, is_record_end).code;
-        let steep = judge_no_slap_down(&cask, &Drop::of_height(9.0, 1.5), 0.2, true);
+        let steep = judge_no_slap_down(&cask, &Drop::from_height(9.0, 1.5), 0.2, true);
         assert_eq!(steep.code, IssueCode::NoSlapDown);
         assert!(steep.message.contains("behind it (from 84.3° on"), "{}", steep.message);
-        let nearly = judge_no_slap_down(&cask, &Drop::of_height(9.0, 83.0_f64.to_radians()), 0.2, true);
+        let nearly = judge_no_slap_down(&cask, &Drop::from_height(9.0, 83.0_f64.to_radians()), 0.2, true);
         assert!(nearly.message.contains("not yet under it (from 84.3° on"), "{}", nearly.message);
         assert_eq!(code(0.2, true), IssueCode::EndsEarly);
         assert_eq!(code(0.2, false), IssueCode::NoSlapDown);
@@ -85,7 +85,7 @@ mod tests {
             judge_overlap(
                 lasts_s,
                 &cask,
-                &Drop::of_height(9.0, angle_deg.to_radians()),
+                &Drop::from_height(9.0, angle_deg.to_radians()),
                 &Tolerances::default(),
             )
         };
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_rate_too_low_to_show_an_impact_denies_none() {
-        let drop = Drop { impact_velocity_m_s: 6.26, ..Drop::of_height(2.0, 0.0) };
+        let drop = Drop { impact_velocity_m_s: 6.26, ..Drop::from_height(2.0, 0.0) };
         let finding_at = |rate_hz| judge_no_impact(&[], &drop, Some(rate_hz), None);
         assert_eq!((finding_at(10.0).code, finding_at(10.0).severity), (IssueCode::LowRate, Severity::Error));
         assert_eq!(finding_at(198.0).code, IssueCode::LowRate);

@@ -38,7 +38,7 @@ pub fn judge_other(
         finding.effect = if finding.effect == Effect::Motion { Effect::Nothing } else { finding.effect };
     }
     findings.extend(clipped(channel, told));
-    findings.extend(events.first_contact.and_then(|_| faint(told)).map(|found| found.on(&channel.name)));
+    findings.extend(events.first_contact.and_then(|_| faint(told)).map(|found| found.tag(&channel.name)));
     findings
 }
 
@@ -47,7 +47,7 @@ fn clipped(channel: &Channel, told: &OtherSummary) -> Option<Finding> {
     let samples = told.clipped.iter().map(|span| span.to - span.from).sum();
     let limit = channel.samples.get(first.from);
     let found = ChannelFinding::OtherClipped { limit, samples, unit: channel.unit.clone() };
-    Some(found.on(&channel.name).between(channel.time_s(first.from), channel.time_s(last.to)))
+    Some(found.tag(&channel.name).span(channel.time_s(first.from), channel.time_s(last.to)))
 }
 
 /// Nothing but noise, or much of it.
@@ -95,7 +95,7 @@ pub fn judge_rate_level(channel: &Channel, rest: AtRest, unit_rad_s: f64) -> Fin
         () if !rest.is_still => RestFinding::Turning,
         () => RestFinding::Rate { reads_deg_s: DEGREES * unit_rad_s * rest.level_m_s2 },
     };
-    found.on(&channel.name)
+    found.tag(&channel.name)
 }
 
 #[cfg(test)]
@@ -117,7 +117,7 @@ mod tests {
 
     /// Codes and severities of what is found.
     fn judged(issues: &[Finding], told: &OtherSummary) -> Vec<(IssueCode, Severity)> {
-        let events = Events { first_contact: Some(At::exactly(1.0)), ..Events::default() };
+        let events = Events { first_contact: Some(At::exact(1.0)), ..Events::default() };
         judge_other(&example::other(vec![20.0; 8]), issues, told, &events)
             .iter()
             .map(|found| (found.code, found.severity))
@@ -140,10 +140,10 @@ mod tests {
     fn clipping_and_a_gap_at_the_impacts_are_warnings_and_all_else_notes() {
         let gap = |from_s: f64| {
             let gap = Finding::from(TimesFinding::Gap { lost: 3, over_s: 0.1 });
-            gap.on("S1").between(from_s, from_s)
+            gap.tag("S1").span(from_s, from_s)
         };
         let clock = Finding::from(TimesFinding::FewBlocks { stamps_hz: 1.0, taken_hz: 2.0 });
-        let issues = [gap(1.0), gap(0.1), clock.clone().on("S1"), clock.on("T1")];
+        let issues = [gap(1.0), gap(0.1), clock.clone().tag("S1"), clock.tag("T1")];
         let clipped = OtherSummary { clipped: vec![Span { from: 2, to: 5 }], ..told(1.0, 100.0) };
         assert_eq!(
             judged(&issues, &clipped),
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn what_concerns_the_numbers_comes_first() {
         let other = OtherSummary { name: "S1".into(), ..OtherSummary::default() };
-        let on = |name: &str| ChannelFinding::Polarity.on(name);
+        let on = |name: &str| ChannelFinding::Polarity.tag(name);
         let mut findings = [on(&other.name), on("A1")];
         behind_the_motion(&mut findings, &[other]);
         assert_eq!(findings[0].channel.as_deref(), Some("A1"));

@@ -113,7 +113,7 @@ pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Findin
         of_motion.iter().any(|f| f.severity > Severity::Note && f.code != IssueCode::Swings);
     let found = DropFinding::Pressed { frequency_hz, periods };
     (is_contradicted && frequency_hz < SLOWEST_BENDING_HZ && periods < PRESSED_PERIODS)
-        .then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+        .then(|| Finding::from(found).span(flight.from_s, flight.to_s))
 }
 
 /// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the
@@ -167,7 +167,7 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .iter()
         .filter(|s| s.end == End::First && s.axis == Axis::Transverse)
         .filter(|s| flight.plateau(&s.name).is_some_and(|p| p.velocity_step_m_s < 0.0))
-        .map(|s| ChannelFinding::Polarity.on(&s.name))
+        .map(|s| ChannelFinding::Polarity.tag(&s.name))
         .collect()
 }
 
@@ -211,13 +211,13 @@ fn of_flight(
         }
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
-        let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.on(&plateau.channel);
+        let late = |mismatch_m_s| ChannelFinding::LateMismatch { mismatch_m_s }.tag(&plateau.channel);
         findings.extend(mismatch_m_s.map(late));
-        let short_m_s = if flight.is_told_apart() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
+        let short_m_s = if flight.can_rank_fits() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
         let &Plateau { slow_residual_m_s: residual_m_s, u_m_s, .. } = plateau;
         if residual_m_s > LARGE_RESIDUAL_M_S.min(short_m_s) || u_m_s > LARGE_U_SHARE * v0_m_s {
             let found = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
-            findings.push(found.on(&plateau.channel).between(flight.from_s, flight.to_s));
+            findings.push(found.tag(&plateau.channel).span(flight.from_s, flight.to_s));
         }
     }
     findings
@@ -246,7 +246,7 @@ fn shifted(
     let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
     let u_all_m_s2 = u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
     (flight.drift && beyond_m_s2 > 3.0 * u_all_m_s2)
-        .then(|| found.on(&plateau.channel).between(flight.from_s, flight.to_s))
+        .then(|| found.tag(&plateau.channel).span(flight.from_s, flight.to_s))
 }
 
 /// Modes that are none, each on the channel that shows it most.
@@ -256,8 +256,8 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
         let on = flight.plateaus.iter().max_by(|a, b| size_m_s(a).total_cmp(&size_m_s(b)))?;
         let found =
             ChannelFinding::Bend { frequency_hz: flight.modes[i].frequency_hz, size_m_s: size_m_s(on) };
-        (size_m_s(on) > LARGE_BEND * v0_m_s && flight.is_bend(i, signals))
-            .then(|| found.on(&on.channel).between(flight.from_s, flight.to_s))
+        (size_m_s(on) > LARGE_BEND * v0_m_s && flight.is_fit_artefact(i, signals))
+            .then(|| found.tag(&on.channel).span(flight.from_s, flight.to_s))
     };
     (0..flight.modes.len()).filter_map(of_mode).collect()
 }
@@ -265,8 +265,8 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 /// The slowest mode where a cask that bends has none, and both ends go along.
 fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> Option<Finding> {
     let size_m_s = |mode| flight.size_m_s(mode, signals);
-    let swinging = flight.swinging(signals, cask);
-    let mut modes = (0..swinging).filter(|mode| !flight.is_bend(*mode, signals));
+    let swinging = flight.rigid_modes(signals, cask);
+    let mut modes = (0..swinging).filter(|mode| !flight.is_fit_artefact(*mode, signals));
     let length_s = flight.to_s - flight.from_s;
     // What integrated noise walks by looks like an oscillation as slow as the flight is long.
     let walk_m_s = |s: &Signal| integral_uncertainty_by(&s.noise_spectrum, s.free_fall_s, length_s);
@@ -278,7 +278,7 @@ fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> O
     let mode = modes.find(is_large)?;
     let found =
         DropFinding::Swings { frequency_hz: flight.modes[mode].frequency_hz, size_m_s: size_m_s(mode) };
-    Some(Finding::from(found).between(flight.from_s, flight.to_s))
+    Some(Finding::from(found).span(flight.from_s, flight.to_s))
 }
 
 /// What was observed otherwise beside the same of a result.

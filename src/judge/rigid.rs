@@ -94,7 +94,7 @@ pub fn judge_rigid<'a>(
         .max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
     let found = ChannelFinding::OffLine { off_m_s, u_m_s };
     (off_m_s.abs() > SURE * u_m_s && off_m_s.abs() > LEAST_M_S)
-        .then(|| found.on(worst.name).between(flight.from_s, flight.to_s))
+        .then(|| found.tag(worst.name).span(flight.from_s, flight.to_s))
 }
 
 /// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10
@@ -160,7 +160,7 @@ mod tests {
             )
         };
         let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
-        let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, angle_rad) };
+        let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, angle_rad) };
         let events = example::events(0.0, 0.1);
         judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events).and_then(|i| i.channel)
     }
@@ -200,8 +200,8 @@ mod tests {
                 ..example::plateau(&s.name, 20.0 - 6.0 * s.position_m - s.offset_m / 0.4 * lower_m_s)
             };
             let flight = example::flight(0.03, 0.09, signals.iter().map(plateau).collect());
-            let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) };
-            let left = Some(At::exactly(0.024));
+            let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, 0.26) };
+            let left = Some(At::exact(0.024));
             let events = Events { separation: left, ..example::events(0.0, 0.1) };
             judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events)
         };

@@ -50,7 +50,7 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     for (signal, content) in signals.iter().zip(contents) {
         let is_filtered = content.as_ref().is_some_and(|found| found.in_band < LEAST_CONTENT * largest);
         let low = low_rate(&signal.name, signal.sample_rate_hz, length_s, share).filter(|_| !is_filtered);
-        findings.extend(low.map(|found| found.between(pulse_s.0, pulse_s.1)));
+        findings.extend(low.map(|found| found.span(pulse_s.0, pulse_s.1)));
         if !disturbed.contains(&signal.name.as_str()) {
             findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
         }
@@ -73,7 +73,7 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), Sampled)
     let within = force.get(..signal.index_from(contact_s.end).saturating_sub(from) + 2).unwrap_or(force);
     let largest = |force: &[f64]| force.iter().fold(0.0_f64, |m, f| m.max(*f));
     let (noise, peak) = (NOISE_FACTOR * signal.noise_m_s2, largest(within));
-    let calm = reduce::calmed(within, noise, FLANKS[0].0 * peak, peak);
+    let calm = reduce::average_noise(within, noise, FLANKS[0].0 * peak, peak);
     let (force, within, noise) = match &calm {
         Some((means, width)) => (&means[..], &means[..], noise / as_f64(*width).sqrt()),
         None => (force, within, noise),
@@ -114,7 +114,7 @@ pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64, share: f6
         let off_percent = 100.0 * share * PI * PI / 12.0 / (samples * samples);
         let least_hz = fit_rate_hz(length_s);
         let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
-        found.on(name)
+        found.tag(name)
     })
 }
 
@@ -152,13 +152,13 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
 }
 
 fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &BandContent, largest: f64) -> Option<Finding> {
-    if signal.touches(&signal.gaps, pulse_s.0, pulse_s.1) {
+    if signal.overlaps(&signal.gaps, pulse_s.0, pulse_s.1) {
         return None;
     }
     let share = found.in_band / largest;
     let said = ChannelFinding::Aliasing { share, sample_rate_hz: signal.sample_rate_hz };
     (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise)
-        .then(|| said.on(&signal.name).between(pulse_s.0, pulse_s.1))
+        .then(|| said.tag(&signal.name).span(pulse_s.0, pulse_s.1))
 }
 
 #[cfg(test)]
@@ -176,8 +176,8 @@ mod tests {
             ..example::signal(rate_hz, force_m_s2.map(|t| if t > 0.0 { force(t) } else { 0.0 }).collect())
         };
         let events = Events {
-            first_contact: Some(At::exactly(0.02)),
-            separation: Some(At::exactly(0.02 + found_end_s)),
+            first_contact: Some(At::exact(0.02)),
+            separation: Some(At::exact(0.02 + found_end_s)),
             ..Events::default()
         };
         judge_sampling(&[signal], &events, &[]).iter().map(|i| i.code).collect()

@@ -66,7 +66,7 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
     };
     let dead = |(channel, r): &(&&Channel, &Excursion)| {
         let found = ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
-        found.on(&channel.name)
+        found.tag(&channel.name)
     };
     silent.iter().map(dead).collect()
 }
@@ -134,7 +134,7 @@ mod tests {
         let takes_motion = |first_axis: Axis, second_axis: Axis| {
             let struck = Channel { axis: first_axis, ..channel("A1", pulse(300.0)) };
             let dead = Channel { axis: second_axis, ..channel("A2", noise) };
-            judge_silent(&[&struck, &dead]).iter().any(|found| found.takes(ResultPart::Motion))
+            judge_silent(&[&struck, &dead]).iter().any(|found| found.removes(ResultPart::Motion))
         };
         assert!(!takes_motion(Axis::Transverse, Axis::Transverse));
         assert!(!takes_motion(Axis::Transverse, Axis::Axial));

@@ -28,7 +28,7 @@ pub fn judge_skew(
     } else {
         return None;
     };
-    Some(found.on(&onset.channel))
+    Some(found.tag(&onset.channel))
 }
 
 #[cfg(test)]

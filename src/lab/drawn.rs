@@ -1,5 +1,5 @@
-//! A cask, how it falls and what it carries, or a few numbers of them, to the simulated drop with its cask
-//! file, and that to its recording.
+//! A simulated drop with its cask file and its recording, from a cask with its fall and sensors, or from a
+//! few numbers.
 
 use super::chance::Chance;
 use super::data::{
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 pub(super) const GRAVITY_M_S2: f64 = 9.81;
 
-/// The least friction between two bodies that nobody greased.
+/// Least friction between two bodies without grease.
 pub(super) const LEAST_FRICTION: f64 = 0.1;
 
 /// A cask as a block of its length and section.
@@ -35,7 +35,7 @@ pub(super) const ANF_18: Build = Build { name: "ANF-18", mass_kg: 4466.0, length
 pub(super) const VHLW: Build = Build { name: "VHLW", mass_kg: 20_950.0, length_m: 4.486, section_m: 1.156 };
 pub(super) const BUILDS: [Build; 4] = [ESBB, ANF_10, ANF_18, VHLW];
 
-/// The name of a cask that is none of these.
+/// Name of a cask outside this list.
 pub(super) const DRAWN: &str = "drawn";
 
 impl Build {
@@ -45,8 +45,8 @@ impl Build {
     }
 }
 
-/// A cask that is dropped and whose ends do this, the first at once; nothing rings, and there are no channels
-/// yet.
+/// A scene of a dropped cask with these impacts of its ends, the first at t = 0; nothing rings, and there are
+/// no channels yet.
 pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedImpact; 2]) -> Scene {
     let end = |end, impact| synth::crushable_end(&cask, &drop, contact, end, impact);
     Scene {
@@ -63,25 +63,25 @@ pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedIm
     }
 }
 
-/// What the cask file says of a drop, with the usual tolerances and still without channels; `defaults` are
-/// the keys that it leaves out.
+/// Makes a cask file for a drop, with the usual tolerances and still without channels; `defaults` are the
+/// keys that it omits.
 pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
     CaskFile {
         path: PathBuf::from("synthetic.toml"),
-        tolerances: Tolerances::of(&defaults, cask.length_m),
+        tolerances: Tolerances::with_defaults(&defaults, cask.length_m),
         defaults,
-        ..CaskFile::plain(cask, drop, contact)
+        ..CaskFile::new(cask, drop, contact)
     }
 }
 
-/// What a true cask file says of a channel.
+/// Specification of a channel in a true cask file.
 pub(super) fn spec(channel: &SceneChannel) -> ChannelSpec {
     ChannelSpec {
         axis: channel.axis,
         unit: Some(if channel.unit == "g" { Unit::G } else { Unit::MetrePerSecondSquared }),
         offset_m: channel.offset_m,
         lateral_m: channel.lateral_m,
-        ..ChannelSpec::plain(&channel.name, channel.end, &channel.name, channel.position_m)
+        ..ChannelSpec::new(&channel.name, channel.end, &channel.name, channel.position_m)
     }
 }
 
@@ -90,7 +90,7 @@ pub(super) fn unit_m_s2(unit: &str) -> f64 {
     if unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 }
 }
 
-/// A drop on its way to its recording: as it is, as stated, how it moves, and what is random of it yet.
+/// A drop before it is recorded: the true scene, the cask file, the motion, and its random numbers.
 pub(super) struct DrawnDrop {
     pub scene: Scene,
     pub stated: CaskFile,
@@ -104,12 +104,12 @@ impl DrawnDrop {
         self.motion.truth.contact_s.unwrap_or(0.0)
     }
 
-    /// From first contact to the slap-down, s.
-    pub(super) fn way_s(&self) -> f64 {
+    /// Time from first contact to the slap-down, s.
+    pub(super) fn contact_to_strike_s(&self) -> f64 {
         self.motion.truth.slap_t.unwrap_or(0.0)
     }
 
-    /// The largest force of the drop at channel `i`, as the channel scales it, m/s².
+    /// Largest force of the drop at channel `i`, with the channel's scale, m/s².
     pub(super) fn peak_m_s2(&self, i: usize) -> f64 {
         let channel = &self.scene.channels[i];
         let times_s: Vec<f64> = self.motion.steps.iter().map(|step| step.time_s).collect();
@@ -117,32 +117,32 @@ impl DrawnDrop {
         channel.chain.scale * reduce::peak(&force)
     }
 
-    /// What the recorder writes.
+    /// Recording as the recorder writes it.
     pub(super) fn recorded(&self) -> SyntheticRecording {
         synth::record(&self.scene, &self.motion)
     }
 
-    /// What reading the recording gives; none where it is refused.
+    /// Reads the recording; `None` if the reader refuses it.
     pub(super) fn read(&self, recording: &SyntheticRecording) -> Option<Recording> {
         in_memory::synthetic(recording, &self.stated).ok()
     }
 
-    /// What the program says of the recording; none where it is refused.
+    /// Analyses the recording; `None` if the reader refuses it.
     pub(super) fn analyzed(&self, recording: &SyntheticRecording) -> Option<Analysis> {
         Some(measure(&self.read(recording)?, &self.stated))
     }
 }
 
-/// A drop as a trial speaks of it.
+/// Plan of a drop for a trial.
 #[derive(Debug, Clone)]
 pub(super) struct DropPlan {
     pub build: Build,
     pub angle_deg: f64,
-    /// What either end does.
+    /// Requested impact of each end.
     pub ends: [WantedImpact; 2],
     pub contact: Contact,
     pub modes: Vec<BendingMode>,
-    /// The body where it is elastic: then no mode is listed.
+    /// The body if it is elastic: then no mode is listed.
     pub elastic: Option<ElasticBody>,
     pub rate_hz: f64,
     /// Chain of both transverse channels.
@@ -153,7 +153,7 @@ pub(super) struct DropPlan {
 
 impl DropPlan {
     /// A sound recording of a 9 m drop: 20 kHz, 0.1 g of noise, no ringing, 5 ms of contact.
-    pub(super) fn of(build: Build, angle_deg: f64, k: f64, seed: u64) -> Self {
+    pub(super) fn new(build: Build, angle_deg: f64, k: f64, seed: u64) -> Self {
         Self {
             build,
             angle_deg,
@@ -187,9 +187,9 @@ impl DropPlan {
         self.draw_with(|_, _, _| {})
     }
 
-    /// The drop, its scene and cask file changed before it is simulated.
+    /// Simulates the drop after `change` has modified its scene and cask file.
     pub(super) fn draw_with(&self, change: impl FnOnce(&mut Scene, &mut CaskFile, &mut Chance)) -> DrawnDrop {
-        let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
+        let drop = Drop::from_height(9.0, self.angle_deg.to_radians());
         let mut scene = Scene {
             seed: self.seed,
             modes: self.modes.clone(),

@@ -1,4 +1,4 @@
-//! The envelope of drop tests: between which values the laboratory draws its drops, and why.
+//! The envelope of drop tests: the ranges from which the laboratory draws its drops, with their reasons.
 
 /// The least and the greatest value.
 pub(super) type Range = [f64; 2];

@@ -1,4 +1,4 @@
-//! A synthetic recording to the channels that reading its file would give, without the file.
+//! Channels of a synthetic recording as a reader of its file would give them, without the file.
 
 use crate::data::{CaskFile, Recording, RecordingFormat, Samples};
 use crate::ingest::time_base::{self, Block};
@@ -6,18 +6,19 @@ use crate::ingest::{IngestError, RawChannel, RawRecording, assemble, error};
 use crate::lab::data::SyntheticRecording;
 use std::path::Path;
 
-/// What stands for the name of the file.
+/// Replaces the name of the file.
 const NAME: &str = "synthetic";
 
 /// The channels of `recording`, in the order of the cask file's, as from its MCAP file: runs of NaN were
 /// never written.
 ///
 /// # Errors
-/// A channel without a number, as for a file.
+///
+/// Returned for a channel without a number, as for a file.
 pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result<Recording, IngestError> {
     let path = Path::new(NAME);
     let mut channels = Vec::with_capacity(recording.channels.len());
-    let recording = recording.mounted(cask_file);
+    let recording = recording.to_mounted(cask_file);
     for channel in recording.channels.iter().take(cask_file.channels.len() + cask_file.others.len()) {
         let block = |(from, run): (usize, &[f32])| Block { start_s: channel.time_s(from), count: run.len() };
         let blocks: Vec<Block> = channel.runs().map(block).collect();

@@ -1,7 +1,8 @@
-//! The laboratory: scenes with a known truth, through everything, to how far off the analysis is and what
-//! other methods would do.
+//! The laboratory: scenes with a known truth go through the whole program, to measure its errors and those of
+//! other methods.
 //!
-//! It is no part of the product: it may use anything of it, and of the program only the command line uses it.
+//! It does not belong to the product: it may use any part of it, and only the command line uses the
+//! laboratory.
 
 pub mod campaign;
 mod chance;

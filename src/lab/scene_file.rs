@@ -1,5 +1,4 @@
-//! A scene file (TOML) to a checked scene and the cask file to go with it, or to one diagnostic that shows
-//! the line.
+//! Reads a scene file (TOML): a checked scene and its cask file, or one diagnostic that shows the line.
 
 mod channel;
 mod keys;
@@ -9,7 +8,7 @@ use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
 use crate::lab::data::{
-    BendingMode, CrushableEnd, ElasticBody, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slowed,
+    BendingMode, CrushableEnd, ElasticBody, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slow_down,
 };
 use crate::lab::drawn;
 use crate::lab::synth;
@@ -20,11 +19,11 @@ use std::path::Path;
 /// The scene file.
 const SCENE_FILE: Kind = Kind { name: "the scene file", root: &keys::ROOT, tables: &keys::TABLES };
 
-/// What the ends do where the file is silent: a lid system's usual pulses, the second end the softer.
+/// Impacts of the ends if the file states none: usual pulses of a lid system, the second end softer.
 const FIRST_IMPACT: WantedImpact = WantedImpact { duration_s: 6e-3, restitution: 0.5, yield_share: None };
 const SECOND_IMPACT: WantedImpact = WantedImpact { duration_s: 5e-3, restitution: 0.3, yield_share: None };
 
-/// Default of hanging at rest, s.
+/// Default duration of hanging at rest, s.
 const AT_REST_S: f64 = 0.25;
 
 /// The most samples of a channel.
@@ -36,18 +35,18 @@ const MOST_SAMPLES: f64 = 2e7;
 /// One diagnostic that shows the line.
 pub fn read(path: &Path) -> Result<SceneFile, IngestError> {
     let bytes = cask_file::read(path, &SCENE_FILE)?;
-    checked(path, cask_file::text(path, &bytes, &SCENE_FILE)?)
+    parse(path, cask_file::text(path, &bytes, &SCENE_FILE)?)
 }
 
-fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
+fn parse(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let document = Document::new(&SCENE_FILE, path, text);
     let root = document.root()?;
     let drop_table = root.required_table("drop")?;
     let cask = cask_file::cask(&root.required_table("cask")?, path)?;
     let free = cask_file::drop(&drop_table, &cask)?;
     let guided = value(&drop_table, "guided_percent")? / 100.0;
-    // Of what guides the fall the cask file does not know.
-    let drop = if free.impact_velocity_given { free } else { slowed(free, guided) };
+    // The cask file does not mention that guides slow the fall.
+    let drop = if free.impact_velocity_given { free } else { slow_down(free, guided) };
     let contact_table = root.table("contact")?;
     let contact = cask_file::contact(&contact_table)?;
     let (first, second) = (root.table("first_end")?, root.table("second_end")?);
@@ -75,7 +74,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     };
     let mut scene = Scene {
         name: root.text("name")?.unwrap_or_else(|| cask.name.clone()),
-        seed: whole(&root, "seed")?.unwrap_or(by_pulses.seed),
+        seed: whole_number(&root, "seed")?.unwrap_or(by_pulses.seed),
         first_end: crushable(&first, by_pulses.first_end)?,
         second_end: crushable(&second, by_pulses.second_end)?,
         modes: root.tables("mode")?.iter().map(mode).collect::<Result<_, _>>()?,
@@ -126,7 +125,7 @@ fn stated_drop(table: &Section, drop: Drop) -> Result<Drop, CaskFileError> {
     })
 }
 
-/// What `[first_end]` or `[second_end]` asks for by its pulse.
+/// Reads the impact that `[first_end]` or `[second_end]` requests by its pulse.
 fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFileError> {
     Ok(WantedImpact {
         duration_s: table.given("pulse_ms")?.map_or(usual.duration_s, |ms| ms * 1e-3),
@@ -135,7 +134,7 @@ fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFile
     })
 }
 
-/// The end with what the table says of it: its stiffnesses, or the pulse that has made `by_pulse`.
+/// The end with the stiffnesses of the table, or with the pulse that gave `by_pulse`.
 fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, CaskFileError> {
     needs(table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
     let by_pulse = CrushableEnd {
@@ -162,7 +161,7 @@ fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, Ca
     Ok(CrushableEnd { loading_n_m, unloading_n_m, yield_n, ..by_pulse })
 }
 
-/// The elastic body: its modes are its own.
+/// The elastic body, which has modes of its own.
 fn elastic_body(root: &Section) -> Result<ElasticBody, CaskFileError> {
     if let Some(mode) = root.tables("mode")?.first() {
         let mend = "leave [body] out, or the [[mode]] tables: an elastic body has modes of its own";
@@ -175,7 +174,7 @@ fn elastic_body(root: &Section) -> Result<ElasticBody, CaskFileError> {
 
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {
     Ok(BendingMode {
-        order: whole(table, "order")?.unwrap_or(1),
+        order: whole_number(table, "order")?.unwrap_or(1),
         frequency_hz: table.required_number("frequency_hz")?,
         damping: value(table, "damping")?,
         strength: value(table, "strength")?,
@@ -185,21 +184,21 @@ fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {
 /// The channels, each name once.
 fn channels(tables: &[Section], cask: &Cask) -> Result<Vec<channel::Both>, CaskFileError> {
     if tables.is_empty() {
-        return Ok(channel::usual(cask));
+        return Ok(channel::usual_channels(cask));
     }
     let mut channels: Vec<channel::Both> = Vec::new();
     for table in tables {
-        let both = channel::channel(table, cask)?;
-        if channels.iter().any(|other| other.0.name == both.0.name) {
-            let message = format!("two channels are named \"{}\"", both.0.name);
+        let pair = channel::channel(table, cask)?;
+        if channels.iter().any(|other| other.0.name == pair.0.name) {
+            let message = format!("two channels are named \"{}\"", pair.0.name);
             return Err(table.refuse("name", message, "name each channel once"));
         }
-        channels.push(both);
+        channels.push(pair);
     }
     Ok(channels)
 }
 
-/// A record too long for its rate would fill the memory.
+/// Refuses a record that is too long for its rate and would fill the memory.
 fn affordable(root: &Section, tables: &[Section], scene: &Scene) -> Result<(), CaskFileError> {
     let long_s = scene.before_s + scene.after_s;
     let Some(at) = scene.channels.iter().position(|c| c.sample_rate_hz * long_s > MOST_SAMPLES) else {
@@ -211,19 +210,19 @@ fn affordable(root: &Section, tables: &[Section], scene: &Scene) -> Result<(), C
     Err(table.refuse("sample_rate_hz", message, mend))
 }
 
-/// A number, the key's default where it is left out.
+/// A number; the key's default if it is absent.
 fn value(table: &Section, key: &str) -> Result<f64, CaskFileError> {
     let default = || table.row(key).and_then(|row| row.default.parse().ok()).unwrap_or(0.0);
     Ok(table.given(key)?.unwrap_or_else(default))
 }
 
-/// `true` or `false`; false where the key is missing.
+/// `true` or `false`; false if the key is absent.
 fn flag(table: &Section, key: &str) -> Result<bool, CaskFileError> {
     Ok(table.flag(key)?.unwrap_or(false))
 }
 
 /// A whole number of 0 or more, within the key's range.
-fn whole<T: std::str::FromStr>(table: &Section, key: &str) -> Result<Option<T>, CaskFileError> {
+fn whole_number<T: std::str::FromStr>(table: &Section, key: &str) -> Result<Option<T>, CaskFileError> {
     if table.given(key)?.is_none() {
         return Ok(None);
     }
@@ -252,7 +251,7 @@ fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, CaskFileError>
     })
 }
 
-/// Refuses the first of each pair of keys where the second is left out.
+/// Refuses the first of each pair of keys if the second is absent.
 fn needs(table: &Section, pairs: &[(&'static str, &str)]) -> Result<(), CaskFileError> {
     for (key, other) in pairs {
         if table.value(key).is_some() && table.value(other).is_none() {
@@ -263,7 +262,7 @@ fn needs(table: &Section, pairs: &[(&'static str, &str)]) -> Result<(), CaskFile
     Ok(())
 }
 
-/// The refusal of a key that the other keys of its table leave no meaning.
+/// Refuses a key that is meaningless with the other keys of its table.
 fn contradicts(table: &Section, key: &str, expected: &str, mend: &str) -> CaskFileError {
     let message = format!("{key} contradicts its table: {expected}");
     table.refuse(key, message, mend)

@@ -1,14 +1,14 @@
-//! The bending of a cask to how late a sensor answers a blow on its end.
+//! Delay of a sensor behind an impact on the end of a cask, from the cask's bending.
 
 use crate::data::{End, FlightFit, Signal};
 use crate::numerics::free_beam::WAVE_NUMBERS;
 use std::f64::consts::TAU;
 
-/// How late a sensor to which bending has to run may answer a blow, s   (50)
+/// Longest delay of a sensor's response to an impact, s, if bending must travel to it   (50)
 ///
 /// Bending spreads over the share x of the length in x² L²/√(EI/μ), by the first mode f of a free uniform
 /// beam (4.73)²/2π · x²/f: the answer comes at any time up to then.
-pub fn most_late_s(flight: &FlightFit, sensor: &Signal, length_m: f64, contact_s: f64) -> f64 {
+pub fn largest_delay_s(flight: &FlightFit, sensor: &Signal, length_m: f64, contact_s: f64) -> f64 {
     let from_first = sensor.position_m / length_m;
     let share = if sensor.end == End::First { from_first } else { 1.0 - from_first };
     WAVE_NUMBERS[0].powi(2) / TAU * share * share / flight.first_bending_hz(contact_s)
@@ -26,7 +26,7 @@ mod tests {
             let modes = modes_hz.iter().map(mode).collect();
             let flight = FlightFit { modes, ..example::flight(0.0, 0.1, vec![]) };
             let sensor = Signal { end, position_m, ..example::signal(1e4, vec![]) };
-            most_late_s(&flight, &sensor, 5.0, contact_s) / 3.0_f64.sqrt()
+            largest_delay_s(&flight, &sensor, 5.0, contact_s) / 3.0_f64.sqrt()
         };
         // 22.37/2π · 0.2²/50 Hz over √3.
         let far_s = late_s(End::First, 1.0, &[50.0, 130.0], 5e-3);

@@ -1,61 +1,60 @@
-//! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of
-//! ringing, crush.
+//! Values of a test report for one contact of the rigid motion: force, decelerations without ringing, crush.
 
 use super::Integrated;
-use super::curves::{cut_wide, filtered};
+use super::curves::{cut_wide, filter};
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{ChannelPulse, End, MotionState, PulseLength, Setup, Signal, transverse};
-use crate::numerics::filter::ZeroPhaseLowPass;
+use crate::numerics::filter::LowPass;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::{as_f64, reduce};
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-/// A second maximum of the force, as a share of the larger; and the share of the lower one that the force
-/// falls to between two touches: so it does in the corner that bends and touches twice within 5 ms, and in 8
-/// of 230 sound drops with modes as fast as the contact.
+/// Smallest second maximum of the force, as a share of the larger; and the share of the lower maximum to
+/// which the force falls between two touches: this happens in the corner that bends and touches twice within
+/// 5 ms, and in 8 of 230 sound drops with modes as fast as the contact.
 const SECOND_MAXIMUM: f64 = 0.3;
 const TWO_TOUCHES: f64 = 0.35;
-/// Where it falls to less than this share, the cask may have left the target; so the force on the sensor did,
-/// in means over an eighth of the contact, in 12 of 13 simulated drops of elastic bodies that touched twice,
+/// If the force falls below this share, the cask may have left the target; the force on the sensor, in means
+/// over an eighth of the contact, did so in 12 of 13 simulated drops of elastic bodies that touched twice,
 /// and in 23 of 132 others.
-const LEFT: f64 = 0.1;
+const LEFT_SHARE: f64 = 0.1;
 const MEAN_SHARE: f64 = 0.125;
-/// k is open from there on, as the times are, where the rotation gains no more than this share of all after
-/// it: else k would be known up to ten times less in 28 of 520 sound drops that hold it.
-const ENDED: f64 = 0.05;
+/// From the time on after which the rotation gains no more than this share, k is as uncertain as the times
+/// are: otherwise its interval would be up to ten times narrower in 28 of 520 sound drops that hold it.
+const ENDED_SHARE: f64 = 0.05;
 /// A corner that comes down faster than this share of the impact velocity has not left.
 const COMES_DOWN: f64 = -0.1;
 
-/// What one contact does to the rigid body, by steps of equal length.
+/// Effect of one contact on the rigid body, in steps of equal length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactCourse {
     /// The first and the last state of the contact.
     pub ends: [MotionState; 2],
     /// Vertical velocity of the struck corner as it touches, m/s, up positive.
     pub struck_m_s: f64,
-    /// The same after each step: the cask turns on as nothing strikes it.
+    /// Velocity of the corner after each step, if the cask turned on without an impact.
     pub corner_m_s: Vec<f64>,
-    /// Horizontal velocity gained by S, and vertical velocity gained but for gravity, m/s: the impulse over
+    /// Horizontal velocity gained by S, and vertical velocity gained without gravity, m/s: the impulse over
     /// the mass.
     pub impulse_m_s: [f64; 2],
     /// Vertical force of the target over the mass, m/s².
     pub up_m_s2: Vec<f64>,
-    /// What a transverse sensor at S reads of the rigid body, m/s².
+    /// Reading of a transverse sensor at S on the rigid body, m/s².
     pub at_cog_m_s2: Vec<f64>,
-    /// The same at the struck end of the axis   (14)
+    /// Reading of a sensor at the struck end of the axis   (14)
     pub at_end_m_s2: Vec<f64>,
-    /// How far the struck corner of the undeformed cask lies below where it touched, m, in the middle of each
-    /// step.
+    /// Depth of the struck corner of the undeformed cask below the point of first touch, m, in the middle of
+    /// each step.
     pub crush_m: Vec<f64>,
     step_s: f64,
 }
 
 impl ContactCourse {
-    /// From the states of a contact by the one force that it is of; `None` of fewer than two states, and of a
-    /// contact that gives nothing.
-    pub fn of(measured: &[MotionState], setup: &Setup, by: ForceCourse) -> Option<Self> {
-        let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
+    /// Derives the course from the states of a contact and the course of its force; `None` for fewer than two
+    /// states, and for a contact that gives nothing.
+    pub fn from_states(measured: &[MotionState], setup: &Setup, by: ForceCourse) -> Option<Self> {
+        let states = &follow_one_force(measured, setup.gravity_m_s2, by)?;
         let ends = [*states.first()?, *states.last()?];
         let step_s = (ends[1].time_s - ends[0].time_s) / as_f64(states.len().checked_sub(1)?);
         let steps = states.windows(2).map(|pair| (pair[0], pair[1]));
@@ -97,7 +96,7 @@ impl ContactCourse {
         })
     }
 
-    /// Whether the corner has passed its greatest crush.
+    /// True if the corner has passed its greatest crush.
     pub fn rises_again(&self) -> bool {
         self.crush_m.last().is_some_and(|last_m| *last_m < largest(&self.crush_m))
     }
@@ -110,58 +109,58 @@ impl ContactCourse {
         sinking.map(|(crush_m, up)| (crush_m[1] - crush_m[0]) * f64::midpoint(up[0], up[1])).sum()
     }
 
-    /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and
-    /// after them; as long as they are.
-    pub fn low_passed<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {
-        match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) {
+    /// Filters courses of forces with a zero-phase low-pass of this −3 dB cut-off, Hz, assuming zero before
+    /// and after them; the length does not change.
+    pub fn low_pass<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {
+        match LowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) {
             Some(filter) => filter.apply_to_pulses(courses_m_s2),
             None => courses_m_s2.map(<[f64]>::to_vec),
         }
     }
 }
 
-/// The first of two touches that the force of one contact may be.
+/// The first of two possible touches within the force of one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstTouch {
-    /// The lowest that the force falls to, as a share of the lower of the two maxima about it.
+    /// Lowest force, as a share of the lower of the two maxima around it.
     pub dip: f64,
-    /// k by the corner's velocity then.
+    /// k from the corner's velocity then.
     pub k: f64,
-    /// How long before the contact's end the corner may have left for the first time, s; 0 where it had not.
+    /// Time before the contact's end at which the corner may have left first, s; 0 if it had not.
     pub earlier_s: f64,
-    /// How far k moves from then on, as root mean square.
+    /// Root mean square change of k from then on.
     pub k_moves: f64,
 }
 
 impl ContactCourse {
-    /// The first of two touches, where the force through a low-pass of this −3 dB cut-off, Hz, or that on the
-    /// first end's sensor falls between two maxima; k is that of the whole contact.
+    /// The first of two touches, if the force through a low-pass of this −3 dB cut-off, Hz, or that on the
+    /// first end's sensor falls between two maxima; k belongs to the whole contact.
     pub fn first_touch(&self, k: f64, cutoff_hz: f64, integrated: &Integrated) -> Option<FirstTouch> {
-        let [up] = self.low_passed([&self.up_m_s2], cutoff_hz);
+        let [up] = self.low_pass([&self.up_m_s2], cutoff_hz);
         let by_rotation = dips(&up);
-        let at_sensor = dips(&self.at_struck_sensor(integrated)?);
+        let at_sensor = dips(&self.struck_sensor_force(integrated)?);
         let last_m_s = self.corner_m_s.last()?;
         let k_then = |corner_m_s: &f64| k - (corner_m_s - last_m_s) / self.struck_m_s;
         let ks: Vec<f64> = self.corner_m_s.iter().map(k_then).collect();
         let whole = reduce::sum(&self.up_m_s2);
-        // From where on the force may have ended, if the rotation gains no more than a share of it later.
+        // Time from which the rotation gains no more than this share, when the force may have ended.
         let ended = |most: f64| {
             let mut gains = whole;
             let lets_go = |&i: &usize| {
                 gains -= self.up_m_s2[i];
-                let at_sensor = at_sensor[i] < LEFT && gains < most * whole;
-                (by_rotation[i] < LEFT || at_sensor) && ks[i] > COMES_DOWN
+                let at_sensor = at_sensor[i] < LEFT_SHARE && gains < most * whole;
+                (by_rotation[i] < LEFT_SHARE || at_sensor) && ks[i] > COMES_DOWN
             };
             (0..ks.len()).find(lets_go).unwrap_or(ks.len())
         };
-        let rest = &ks[ended(ENDED)..];
+        let rest = &ks[ended(ENDED_SHARE)..];
         let square: f64 = rest.iter().map(|later| (later - k).powi(2)).sum();
         let lowest = |dips: &[f64]| (0..dips.len()).min_by(|&a, &b| dips[a].total_cmp(&dips[b]));
         let rotation_at = lowest(&by_rotation)?;
         let is_by_rotation = by_rotation[rotation_at] < TWO_TOUCHES;
         let (dips, at) =
             if is_by_rotation { (&by_rotation, rotation_at) } else { (&at_sensor, lowest(&at_sensor)?) };
-        (is_by_rotation || dips[at] < LEFT).then(|| FirstTouch {
+        (is_by_rotation || dips[at] < LEFT_SHARE).then(|| FirstTouch {
             dip: dips[at],
             k: ks[at],
             earlier_s: self.step_s * as_f64(ks.len() - ended(1.0)),
@@ -169,16 +168,16 @@ impl ContactCourse {
         })
     }
 
-    /// The force on the first end's transverse sensor, in means of [`MEAN_SHARE`] about the middle of each
-    /// step, in any unit.
-    fn at_struck_sensor(&self, integrated: &Integrated) -> Option<Vec<f64>> {
+    /// Force on the first end's transverse sensor, in means of [`MEAN_SHARE`] about the middle of each step,
+    /// in any unit.
+    fn struck_sensor_force(&self, integrated: &Integrated) -> Option<Vec<f64>> {
         let struck = transverse(&integrated.signals, End::First)?;
         let at = integrated.signals.iter().position(|s| s.name == struck.name)?;
         let [begin, end] = &self.ends;
         let half_s = MEAN_SHARE * (end.time_s - begin.time_s) / 2.0;
         let gained_m_s = |i: usize| {
             let [from_m_s, to_m_s] = [-half_s, half_s].map(|by_s| {
-                integrated.velocities[at].at(begin.time_s + (as_f64(i) + 0.5) * self.step_s + by_s)
+                integrated.velocities[at].velocity_at(begin.time_s + (as_f64(i) + 0.5) * self.step_s + by_s)
             });
             to_m_s - from_m_s
         };
@@ -186,8 +185,8 @@ impl ContactCourse {
     }
 }
 
-/// What a force falls to, as a share of the lower of the two maxima about each point; 1 where one of them is
-/// none.
+/// Level to which a force falls at each point, as a share of the lower of the two maxima on either side; 1 if
+/// one of them is missing.
 fn dips(force: &[f64]) -> Vec<f64> {
     let least = SECOND_MAXIMUM * largest(force);
     let highest = |most: &mut f64, f: &f64| {
@@ -204,19 +203,19 @@ fn dips(force: &[f64]) -> Vec<f64> {
     (0..force.len()).map(dip).collect()
 }
 
-/// What tells the course of the one force of a contact: how the share grows of what it gives in all   (42)
+/// Source of the course of the one force in a contact: the growth of the share that it has given   (42)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ForceCourse {
-    /// The rotation: the first bending mode, which rings alike at both ends, is none.
+    /// The rotation, which does not contain the first bending mode, since that rings alike at both ends.
     Rotation,
-    /// The velocity of S across the axis, which the first mode rings in most.
+    /// The velocity of S across the axis, in which the first mode rings most.
     Translation,
-    /// Nothing measured but the contact's length.
+    /// A half sine, from the measured duration of the contact alone.
     HalfSine,
 }
 
-/// The same contact with every velocity gained in this course: one force turns and throws the cask.
-fn by_one_force(states: &[MotionState], gravity_m_s2: f64, by: ForceCourse) -> Option<Vec<MotionState>> {
+/// Replaces every velocity change in a contact by this course: one force turns and throws the cask.
+fn follow_one_force(states: &[MotionState], gravity_m_s2: f64, by: ForceCourse) -> Option<Vec<MotionState>> {
     let (first, last) = (states.first()?, states.last()?);
     let given = |s: &MotionState| {
         let since_s = s.time_s - first.time_s;
@@ -256,17 +255,17 @@ pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value))
 }
 
-/// The pulse of which change of velocity and displacement are stated ends where its filtered reading falls to
-/// this share of its peak: of a half sine 5e-5 of the change of velocity lies beyond.
+/// A pulse, with its change of velocity and displacement, ends where its filtered reading falls to this share
+/// of its peak: for a half sine 5e-5 of the change of velocity lies beyond.
 const PULSE_FOOT: f64 = 0.01;
 
-/// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz;
-/// `None` where samples are clipped or lost.
+/// The pulse of each channel between two times, s, and that after a low-pass with this −3 dB cut-off, Hz;
+/// `None` if samples are clipped or lost.
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
     vector_pulses(signals, 1, between_s, cutoff_hz)
 }
 
-/// The same of vectors of so many components each, one behind the other and of the same times: that of the
+/// Finds the pulses of vectors, whose components follow one another and share their times: pulses of the
 /// magnitude, with the magnitudes of the vectors of change of velocity and displacement   (56)
 pub fn vector_pulses(
     signals: &[Signal],
@@ -276,11 +275,11 @@ pub fn vector_pulses(
 ) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
     let is_whole =
-        |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
-    // Without a low-pass the ends of the pulse are sought as far as with a slow one.
+        |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.overlaps(spans, from_s, to_s));
+    // Without a low-pass the ends of the pulse are sought as far away as with a slow one.
     let margin_hz = if cutoff_hz.is_finite() { cutoff_hz } else { 100.0 };
     let wide: Vec<Signal> = signals.iter().map(|s| cut_wide(s, (from_s, to_s), margin_hz)).collect();
-    let smooth = filtered(&wide, cutoff_hz);
+    let smooth = filter(&wide, cutoff_hz);
     let [signals, wide, smooth] = [signals, &wide, &smooth].map(|all| all.chunks(components));
     let all = signals.zip(wide.zip(smooth));
     all.map(|(signals, (wide, smooth))| {
@@ -289,12 +288,12 @@ pub fn vector_pulses(
     .collect()
 }
 
-/// A component by itself with its sign, of several the magnitude of their vector.
+/// A single component with its sign; for several the magnitude of their vector.
 fn magnitude(components: impl ExactSizeIterator<Item = f64>) -> f64 {
     if components.len() == 1 { components.sum() } else { components.map(|x| x * x).sum::<f64>().sqrt() }
 }
 
-/// The same of signals, sample by sample.
+/// Magnitudes of the vectors, sample by sample.
 fn magnitudes(components: &[Signal]) -> Cow<'_, Signal> {
     if let [one] = components {
         return Cow::Borrowed(one);
@@ -313,8 +312,8 @@ fn pulse(components: [&[Signal]; 2], [from_s, to_s]: [f64; 2]) -> Option<Channel
     };
     let (at, peak_m_s2) = peak(&smooth)?;
     let (filtered, sample_s) = (&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
-    // When the reading passes a share of the peak before and after it, in samples, and how much later it
-    // passes a higher level: on a line from a sample below the level to its neighbour above.
+    // Times at which the reading passes a share of the peak before and after it, in samples, and the delay
+    // with which it passes a higher level: on a line from a sample below the level to its neighbour above.
     let passed = |share: f64| {
         let level_m_s2 = share * peak_m_s2.abs();
         let above = |i: usize| filtered[i] * peak_m_s2.signum() - level_m_s2;
@@ -334,13 +333,13 @@ fn pulse(components: [&[Signal]; 2], [from_s, to_s]: [f64; 2]) -> Option<Channel
     let integrals = passed(PULSE_FOOT).map(|(began, ended)| {
         let index = |position: f64| wide.index_from(smooth.start_s + position * sample_s);
         let (pulse, step_s) = (index(began[0])..index(ended[0]), 1.0 / wide.sample_rate_hz);
-        let each = components[0].iter().map(|component| {
+        let squares = components[0].iter().map(|component| {
             let velocity_m_s = running_integral(&component.force_m_s2[pulse.clone()], step_s);
             let way_m = running_integral(&velocity_m_s, step_s);
             [velocity_m_s, way_m].map(|course| course.last().copied().unwrap_or_default())
         });
-        let each: Vec<[f64; 2]> = each.collect();
-        [0, 1].map(|i| magnitude(each.iter().map(|integrals| integrals[i])))
+        let squares: Vec<[f64; 2]> = squares.collect();
+        [0, 1].map(|i| magnitude(squares.iter().map(|integrals| integrals[i])))
     });
     let raw = peak(&wide)?.1;
     Some(ChannelPulse { raw, filtered: peak_m_s2, time_s: smooth.time_s(at), sample_s, length, integrals })
@@ -390,7 +389,7 @@ mod tests {
             let contact = contact(second);
             let force_m_s2 = [vec![0.0; 20], contact.up_m_s2.clone(), vec![0.0; 20]].concat();
             let signal = Signal { start_s: -2e-3, ..example::signal(1e4, force_m_s2) };
-            contact.first_touch(0.4, 1e3, &Integrated::over(&[signal], 0.0))
+            contact.first_touch(0.4, 1e3, &Integrated::new(&[signal], 0.0))
         };
         assert_eq!(first_touch(0.0), None);
         let touch = first_touch(0.4).unwrap();

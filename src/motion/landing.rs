@@ -1,4 +1,4 @@
-//! A flight in which L touches the target again, to what that changes the velocity of each channel by.
+//! Analyses a flight in which L touches the target again: the change of each channel's velocity.
 
 use super::flight::{centrifugal_m_s2, oscillation, series};
 use super::histories::AlongAxis;
@@ -9,47 +9,47 @@ use crate::numerics::as_f64;
 use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Series, SeriesFit, describe, uniform_ringing,
 };
-use crate::numerics::reduce::{block_means, block_of, peak};
+use crate::numerics::reduce::{block_means, block_size, peak};
 
 /// The touch is sought this long before R strikes, s, and in means over this rate, Hz: a touch lasts from a
-/// tenth of a millisecond to some.
+/// tenth of a millisecond to several.
 const SOUGHT_S: [f64; 2] = [0.12, 0.25];
 const RATE_HZ: f64 = 10_000.0;
-/// A touch has this many times the largest mean before it …
-const STANDS_OUT: f64 = 3.0;
-/// … begins with this share of it …
-const BEGINS: f64 = 0.25;
-/// … and lasts one of these times, s: the first behind which modes ring on alone. Further touches may follow
-/// it, so that they end at one of its multiples.
+/// A touch exceeds the largest mean before it by this factor.
+const TOUCH_FACTOR: f64 = 3.0;
+/// A touch begins with this share of its largest mean.
+const BEGIN_SHARE: f64 = 0.25;
+/// Possible durations of a touch, s, after which the modes ring freely. Further touches may follow, up to a
+/// multiple of [`ENDS_S`], s.
 const LASTS_S: [f64; 6] = [5e-4, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3];
 const ENDS_S: f64 = 2e-3;
-/// What is left out beside it, and before R strikes, s.
+/// Margin on either side of the touch, and before R strikes, s.
 const CLEAR_S: f64 = 1e-3;
-/// Just before R strikes, s: between these times the channel nearest L is read once more.
+/// Times before R strikes, s, between which the channel nearest L is read once more.
 const JUST_BEFORE_S: [f64; 2] = [4e-4, 1e-4];
-/// Least stretch behind it, s and in periods of the slowest mode: what the touch has struck anew is told from
-/// a step then.
+/// Shortest stretch after the touch, s and in periods of the slowest mode: from then on newly excited modes
+/// can be separated from a step.
 const LEAST_S: f64 = 6e-3;
 const LEAST_PERIODS: f64 = 0.4;
-/// The same where the touch gives the modes their phases, s.
+/// Shortest such stretch if the touch determines the phases of the modes, s.
 const LEAST_STRUCK_S: f64 = 1.5e-3;
-/// The flight before it is read over this long, s.
+/// Length of the flight before the touch that is used, s.
 const BEFORE_S: f64 = 0.12;
-/// A stretch that plateau and modes explain leaves less, m/s.
+/// Largest residual of a stretch that plateau and modes explain, m/s.
 const LEFT_M_S: f64 = 0.02;
-/// What a push at L turns the cask by is known to this share: twice what contents leave open of the inertia.
-const TURNED: f64 = 0.2;
-/// Without an axial channel that push tells what changes along the axis; it leans no more than this from the
-/// normal, as tan.
+/// Relative uncertainty of the rotation from a push at L: twice that of the inertia with unknown contents.
+const U_TURN: f64 = 0.2;
+/// Without an axial channel the axial change is derived from the turning moment; the force may lean at most
+/// this far from the normal (tangent).
 const MOST_LEAN: f64 = 1.5;
-/// A step known to less than this share, as a standard uncertainty, is not.
+/// A step whose relative standard uncertainty exceeds this is not used.
 const MOST_U: f64 = 0.1;
-/// Standard uncertainty of a step beside that of its two plateaus, as a share of it: room for what modes do
-/// that the flight no longer shows. Of 17 simulated touches none moved the speed by 1 % of its step.
+/// Relative standard uncertainty of a step beside that of its two plateaus, to cover modes that the flight no
+/// longer shows. Of 17 simulated touches none moved the speed by 1 % of its step.
 const SHARE: f64 = 0.03;
 
-/// The touches that `flight` holds near its end, as one; `None` where there is none, where the stretch behind
-/// them is too short, or where a push at L would turn the cask otherwise.
+/// Combines the touches of L near the end of the flight; `None` if there is none, if the stretch after them
+/// is too short, or if a push at L would turn the cask otherwise.
 pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cask: &Cask) -> Option<Landing> {
     let signals = &integrated.signals;
     let struck = transverse(signals, End::First).filter(|_| cask.is_body)?;
@@ -70,7 +70,7 @@ pub fn landing(flight: &FlightFit, integrated: &Integrated, window: &Window, cas
     begins_s.into_iter().find_map(read)
 }
 
-/// Whether what plateau and modes leave of the transverse channels is little.
+/// True if plateau and modes leave only small residuals of the transverse channels.
 fn is_explained(signals: &[Signal], left_m_s: impl Iterator<Item = f64>) -> bool {
     signals.iter().zip(left_m_s).all(|(signal, left_m_s)| signal.axis == Axis::Axial || left_m_s < LEFT_M_S)
 }
@@ -84,9 +84,9 @@ struct Touched<'a> {
     before: FlightFit,
     /// The channel nearest to L.
     nearest: usize,
-    /// When they begin, s.
+    /// Beginning of the touches, s.
     from_s: f64,
-    /// Where the flight ends that is read, s.
+    /// End of the usable flight, s.
     to_s: f64,
 }
 
@@ -98,24 +98,24 @@ impl Touched<'_> {
             let ends_s = LASTS_S.into_iter().chain(several).map(|lasts_s| self.from_s + lasts_s);
             ends_s.take_while(move |end_s| *end_s < latest_s)
         };
-        // The modes ring on as they like; where R strikes too soon for that, as the touch has struck them.
-        let free = |end_s: f64| Some((end_s, None, self.behind(end_s, None, 0.0)?));
+        // The modes ring freely; if R strikes too soon for that, with the phases that the touch gives them.
+        let free = |end_s: f64| Some((end_s, None, self.fit_after(end_s, None, 0.0)?));
         let struck = |end_s: f64| {
-            let drive = self.drive(end_s)?;
-            let fit = self.behind(end_s, Some(&drive), 0.0)?;
+            let drive = self.touch_drive(end_s)?;
+            let fit = self.fit_after(end_s, Some(&drive), 0.0)?;
             Some((end_s, Some(drive), fit))
         };
         let free_s = self.to_s - LEAST_S.max(LEAST_PERIODS * period_s);
         let found = ends_s(free_s).find_map(free);
         let (behind_s, drive, fit) = found.or_else(|| ends_s(self.to_s - LEAST_STRUCK_S).find_map(struck))?;
-        let line = AlongAxis::through(&self.integrated.signals, self.cask.cog_m)?;
+        let line = AlongAxis::new(&self.integrated.signals, self.cask.cog_m)?;
         let steps_m_s = |fit: &Fit| fit.series.iter().map(|own| own.plateau).collect::<Vec<_>>();
-        // Behind it the cask turns faster, and axial channels read more for it.
-        let gained_rad_s = -line.changed(&steps_m_s(&fit))[1];
-        let fit = self.behind(behind_s, drive.as_ref(), gained_rad_s)?;
+        // After the touch the cask turns faster, and axial channels read more because of it.
+        let gained_rad_s = -line.step_sums(&steps_m_s(&fit))[1];
+        let fit = self.fit_after(behind_s, drive.as_ref(), gained_rad_s)?;
         let mut steps_m_s = steps_m_s(&fit);
         let of_nearest_m_s = steps_m_s[self.nearest];
-        // As one step it comes when the mean over it is right.
+        // One equivalent step has the time that gives the correct mean over the touch.
         let share = (self.mean_m_s([self.from_s, behind_s], 0.0)? / of_nearest_m_s).clamp(0.0, 1.0);
         let once_s = behind_s - share * (behind_s - self.from_s);
         let strike_s = self.window.to_s + BEFORE_SLAP_DOWN_S;
@@ -126,7 +126,7 @@ impl Touched<'_> {
         };
         let ringing_m_s: f64 = fit.modes.iter().zip(&fit.series[self.nearest].amplitudes).map(rings).sum();
         let last_m_s = self.mean_m_s(late_s, gained_rad_s)? - of_nearest_m_s - ringing_m_s;
-        // A push that goes on into the strike is one more of the same kind, known to half of it.
+        // A push that continues into the strike adds another one of the same kind, known to half of it.
         let more = (last_m_s / of_nearest_m_s).max(0.0);
         for step_m_s in &mut steps_m_s {
             *step_m_s *= 1.0 + more;
@@ -138,24 +138,24 @@ impl Touched<'_> {
             own.u_plateau.hypot(u_before_m_s).hypot(SHARE.hypot(more / 2.0) * own.plateau)
         };
         let u_m_s: Vec<f64> = fit.series.iter().zip(&self.before.plateaus).map(u_m_s).collect();
-        let changed = line.changed(&steps_m_s);
+        let changed = line.step_sums(&steps_m_s);
         let is_known = u_m_s[self.nearest] < MOST_U * of_nearest_m_s.abs();
         let touch = Landing { begin_s: self.from_s, time_s, steps_m_s, u_m_s, along_m_s: None };
         is_known.then(|| self.pushed(touch, changed))?
     }
 
-    /// The touch, where what it changes, across the axis, of the rotation and along the axis, is what a push
-    /// at L does   (32)
+    /// The touch, if its changes across the axis, of the rotation and along the axis are those of a push at L
+    /// (32)
     fn pushed(&self, touch: Landing, [across_m_s, turned_rad_s, along_m_s]: [f64; 3]) -> Option<Landing> {
         let cask = self.cask;
         // Θ ΔΩ = m (h/2 Δv_ξ − a Δv_η)
         let (square_m2, half_m) = (cask.inertia_kg_m2 / cask.mass_kg, cask.height_m / 2.0);
         if self.integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
             let by_push_rad_s = (half_m * along_m_s - cask.cog_m * across_m_s) / square_m2;
-            return ((turned_rad_s - by_push_rad_s).abs() < TURNED * turned_rad_s.abs()).then_some(touch);
+            return ((turned_rad_s - by_push_rad_s).abs() < U_TURN * turned_rad_s.abs()).then_some(touch);
         }
         let along_m_s = (square_m2 * turned_rad_s + cask.cog_m * across_m_s) / half_m;
-        let u_m_s = TURNED / 2.0 * (square_m2 * turned_rad_s / half_m).abs();
+        let u_m_s = U_TURN / 2.0 * (square_m2 * turned_rad_s / half_m).abs();
         // R strikes with the axis along the target.
         let to_turn_rad = self.window.angular_velocity_rad_s * (self.window.to_s - touch.time_s);
         let (sin, cos) = to_turn_rad.sin_cos();
@@ -165,16 +165,16 @@ impl Touched<'_> {
         is_push.then_some(Landing { along_m_s: Some([along_m_s, u_m_s]), ..touch })
     }
 
-    /// What plateau and modes say of the changes from a time on, where they explain them.
-    fn behind(&self, from_s: f64, drive: Option<&Drive>, gained_rad_s: f64) -> Option<Fit> {
+    /// Fits plateau and modes to the changes from a time on; `None` if they do not explain them.
+    fn fit_after(&self, from_s: f64, drive: Option<&Drive>, gained_rad_s: f64) -> Option<Fit> {
         let changes = self.changes([from_s, self.to_s], gained_rad_s)?;
         let modes = self.before.modes.iter().map(oscillation).collect();
         let fit = describe(&changes, modes, Form { drift: false, drive })?;
         is_explained(&self.integrated.signals, fit.series.iter().map(|own| own.residual)).then_some(fit)
     }
 
-    /// The touches as the channel nearest to L shows them, for modes that ring from a time on.
-    fn drive(&self, end_s: f64) -> Option<Drive> {
+    /// The touches on the channel nearest to L, as the force on modes that ring from a time on.
+    fn touch_drive(&self, end_s: f64) -> Option<Drive> {
         let changes = self.changes([self.from_s, end_s], 0.0)?;
         let own = &changes[self.nearest];
         let impulses: Vec<f64> = own.value.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -188,8 +188,8 @@ impl Touched<'_> {
         (!own.is_empty()).then(|| own.iter().sum::<f64>() / as_f64(own.len()))
     }
 
-    /// Each velocity between two times, s, less what the stretch before the touches leads to; `None` where
-    /// samples are lost.
+    /// Each velocity between two times, s, less the extrapolation of the stretch before the touches; `None`
+    /// if samples are lost.
     fn changes(&self, [from_s, to_s]: [f64; 2], gained_rad_s: f64) -> Option<Vec<Series>> {
         let Self { integrated, window, before, .. } = self;
         let cog_m = self.cask.cog_m;
@@ -198,7 +198,7 @@ impl Touched<'_> {
         let mut all = series(integrated, &over, cog_m);
         let since_s = from_s - before.from_s;
         for ((own, signal), plateau) in all.iter_mut().zip(&*integrated.signals).zip(&before.plateaus) {
-            // The centrifugal force behind `from_s` is taken off already.
+            // The centrifugal force after `from_s` is already subtracted.
             let centrifugal_m_s = centrifugal_m_s2(signal, window.angular_velocity_rad_s, cog_m) * since_s;
             let first_s = *own.time_s.first()?;
             for (value, time_s) in own.value.iter_mut().zip(&own.time_s) {
@@ -214,15 +214,15 @@ impl Touched<'_> {
     }
 }
 
-/// When the pulse begins that stands out of a stretch, s.
+/// Beginning of the pulse that stands out of a stretch, s.
 fn touch_s(signal: &Signal, sought_s: &std::ops::Range<f64>) -> Option<f64> {
-    let block = block_of(RATE_HZ, signal.sample_rate_hz);
+    let block = block_size(RATE_HZ, signal.sample_rate_hz);
     let from = signal.index_from(sought_s.start);
     let samples = signal.force_m_s2.get(from..signal.index_from(sought_s.end))?;
     let means: Vec<f64> = block_means(samples, block).iter().map(|mean| mean.abs()).collect();
     let largest = peak(&means);
-    let first = means.iter().position(|mean| *mean > BEGINS * largest)?;
-    (first > 0 && largest > STANDS_OUT * peak(&means[..first])).then(|| signal.time_s(from + first * block))
+    let first = means.iter().position(|mean| *mean > BEGIN_SHARE * largest)?;
+    (first > 0 && largest > TOUCH_FACTOR * peak(&means[..first])).then(|| signal.time_s(from + first * block))
 }
 
 #[cfg(test)]
@@ -281,7 +281,7 @@ mod tests {
             signals.push(signal("A3", (End::First, Axis::Axial), [4.0, along], [0.1, 0.0], touches_s));
         }
         let window = Window { from_s: 0.026, to_s: 0.2995, drift: true, angular_velocity_rad_s: 0.0 };
-        let integrated = Integrated::over(&signals, 0.02);
+        let integrated = Integrated::new(&signals, 0.02);
         let flight = fit_flights(&integrated, &window, None, 2.5, 3).swap_remove(0);
         landing(&flight, &integrated, &window, &Cask::block("a", 4000.0, 5.0, 1.0))
     }

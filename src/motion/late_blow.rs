@@ -1,32 +1,30 @@
-//! A flight to the blow that the cask took in it, where one explains it better than ringing does.
+//! Finds a shock within the flight, if it explains the flight better than ringing does.
 
 use super::flight::{oscillation, series};
 use super::{Integrated, Window};
-use crate::data::{Axis, FlightFit, Strike};
+use crate::data::{Axis, FlightFit, FlightShock};
 use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, Series, fit};
 
-/// Places tried over the flight, and about the best of them.
+/// Times tried over the flight, and about the best of them.
 const PLACES: u32 = 24;
 const REFINED: u32 = 8;
-/// Parts of the flight at its beginning and end in which a step is a contact that was not over, or the
-/// slap-down.
+/// Parts of the flight at its beginning and end in which a step is an unfinished contact, or the slap-down.
 const FIRST_PART: f64 = 0.1;
 const LAST_PART: f64 = 0.06;
-/// Of a long flight so much on either side of a step tells its size, s.
+/// Stretch on either side of a step that determines its size in a long flight, s.
 const ABOUT_S: f64 = 0.05;
-/// Fewest points of a flight in which a step is told from a mode.
+/// Fewest points of a flight in which a step can be separated from a mode.
 const FEWEST: usize = 30;
 
-/// Looks for one step of all velocities within the flight, beside fewer of its modes: what the contents of
-/// the cask do when they strike it, or a cable. Three modes may bend around such a step and move the plateaus
-/// by a part of it.
+/// Finds one step of all velocities within the flight, with fewer modes beside it: the contents of the cask,
+/// or a cable, strike it. Three modes may bend around such a step and move the plateaus by a part of it.
 ///
-/// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that
-/// of the flight as it was fitted.
-pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) -> Option<Strike> {
+/// The criterion is the Bayesian information criterion (21) of the flight with the step and the same modes,
+/// less that of the fitted flight.
+pub fn find_shock(flight: &FlightFit, data: &Integrated, window: &Window, cog_m: f64) -> Option<FlightShock> {
     let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };
-    let series = series(integrated, &window, cog_m);
-    if !is_told(&series) {
+    let series = series(data, &window, cog_m);
+    if !has_enough_points(&series) {
         return None;
     }
     let mut strongest: Vec<_> = flight.modes.iter().collect();
@@ -50,15 +48,15 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
     if !(share(0)..=share(PLACES)).contains(&(after_s / length_s)) {
         return None;
     }
-    Some(Strike {
+    Some(FlightShock {
         time_s: window.from_s + after_s,
-        step_m_s: largest_m_s(integrated, steps[form].at(after_s)?)?,
+        step_m_s: largest_m_s(data, steps[form].step(after_s)?)?,
         gain: taken.bic(&series, taken.correlation) - bic,
     })
 }
 
-/// The largest step of a transverse channel's velocity at a time within the window, beside the flight's
-/// modes, m/s; `None` where too little of it lies on either side, or samples are missing.
+/// The largest step of a transverse channel's velocity at a time within the window, with the flight's modes
+/// beside it, m/s; `None` if too little of the window lies on either side, or samples are missing.
 pub fn step_m_s(
     flight: &FlightFit,
     integrated: &Integrated,
@@ -68,20 +66,20 @@ pub fn step_m_s(
 ) -> Option<f64> {
     let (from_s, to_s) = (window.from_s.max(at_s - ABOUT_S), window.to_s.min(at_s + ABOUT_S));
     let series = series(integrated, &Window { from_s, to_s, ..*window }, cog_m);
-    if !is_told(&series) {
+    if !has_enough_points(&series) {
         return None;
     }
     let modes: Vec<Oscillation> = flight.modes.iter().map(oscillation).collect();
     let steps = CommonStep::new(&series, &modes, Form::free(flight.drift))?;
-    largest_m_s(integrated, steps.at(at_s - from_s)?)
+    largest_m_s(integrated, steps.step(at_s - from_s)?)
 }
 
-/// Whether the series have points enough for a step, and no gaps.
-fn is_told(series: &[Series]) -> bool {
+/// True if the series have points enough for a step, and no gaps.
+fn has_enough_points(series: &[Series]) -> bool {
     series.iter().all(|s| s.steps_s.is_empty() && s.value.len() >= FEWEST)
 }
 
-/// The largest of the channels' jumps that a transverse one shows, m/s.
+/// The largest jump on a transverse channel, m/s.
 fn largest_m_s(integrated: &Integrated, jumps: Vec<(f64, f64)>) -> Option<f64> {
     let of_transverse = integrated.signals.iter().zip(jumps).filter(|(s, _)| s.axis == Axis::Transverse);
     of_transverse.map(|(_, (jump_m_s, _))| jump_m_s).max_by(|a, b| a.abs().total_cmp(&b.abs()))
@@ -123,18 +121,18 @@ mod tests {
     }
 
     /// The blow that explains the flight best, and the step where there is one.
-    fn found(blow_m_s: f64) -> (Strike, f64) {
+    fn found(blow_m_s: f64) -> (FlightShock, f64) {
         let signals = [
             signal("A1", End::First, 19.0, 2.0, -0.4 * blow_m_s),
             signal("A2", End::Second, -7.0, 1.8, blow_m_s),
         ];
         let window = Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
-        let integrated = Integrated::over(&signals, 0.02);
+        let integrated = Integrated::new(&signals, 0.02);
         let flight = fit_flights(&integrated, &window, None, 2.5, 3).swap_remove(0);
-        let strike = strike(&flight, &integrated, &window, 2.5).expect("a flight without gaps");
+        let strike = find_shock(&flight, &integrated, &window, 2.5).expect("a flight without gaps");
         let step_m_s = step_m_s(&flight, &integrated, &window, 2.5, 0.0605).expect("points enough");
         assert!(super::step_m_s(&flight, &integrated, &window, 2.5, 0.0262).is_some());
-        (strike, step_m_s)
+        (find_shock, step_m_s)
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! The velocity of the second end's channel as R strikes to what ringing and swinging add to R's corner.
+//! Velocity that ringing and rigid movement on mounts add to R's corner when it strikes, from the second
+//! end's channel.
 
 use super::Integrated;
 use super::flight::{centrifugal_m_s2, oscillation};
@@ -6,28 +7,28 @@ use crate::data::{At, Axis, Cask, FlightFit, Setup, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::free_beam;
 
-/// The shape of a mode is known to this share of what it changes between sensor and corner: the first shape
-/// of a uniform beam against a straight line, a quarter of their difference.
+/// Relative uncertainty of a mode's shape between sensor and corner: the first shape of a uniform beam
+/// against a straight line, a quarter of their difference.
 const SHAPE_SHARE: f64 = 0.25;
 
-/// A velocity that departs from the fitted modes by more than so many times what they leave is no longer of
-/// the flight.
-const BEGUN: f64 = 3.0;
+/// A velocity that departs from the fitted modes by more than this many times their residual no longer
+/// belongs to the flight.
+const CONTACT_FACTOR: f64 = 3.0;
 
 /// A velocity across the axis with its standard uncertainty, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CornerRinging {
     /// Positive away from the target.
     pub velocity_m_s: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of that velocity.
     pub u_m_s: f64,
 }
 
-/// What ringing and swinging add to the velocity of R's corner as it strikes   (44)
+/// Velocity that bending and rigid movement on mounts add to R's corner at the slap-down   (44)
 ///
-/// It is what the channel nearest to the corner then has beyond its plateau, each mode carried to the corner
-/// by its shape. `None` without a transverse channel on the second end.
-pub fn ringing_of_second_end(
+/// It is the velocity of the channel nearest to the corner beyond its plateau, each mode carried to the
+/// corner by its shape. `None` without a transverse channel on the second end.
+pub fn second_end_ringing(
     integrated: &Integrated,
     flight: &FlightFit,
     turning_rad_s: f64,
@@ -44,7 +45,7 @@ pub fn ringing_of_second_end(
     let before_s = slap_down.time_s - slap_down.u_s.max(1.0 / last.sample_rate_hz);
     let since_s = before_s - flight.from_s;
     let shift_m_s2 = plateau.zero_shift_m_s2 + centrifugal_m_s2(last, turning_rad_s, setup.cog_m);
-    let gained_m_s = integrated.velocities[channel].at(before_s);
+    let gained_m_s = integrated.velocities[channel].velocity_at(before_s);
     let own_m_s = gained_m_s - plateau.velocity_step_m_s - shift_m_s2 * since_s;
     let (mut fitted_m_s, mut carried_m_s, mut u_shape_m_s, mut rate_m_s2) = (0.0, 0.0, 0.0, 0.0_f64);
     let orders = flight.bending_orders(&integrated.signals, cask);
@@ -53,20 +54,21 @@ pub fn ringing_of_second_end(
         let Some(z) = uniform_ringing(oscillation(mode), since_s, 1.0).next() else { continue };
         let own_m_s = size.0 * z.re + size.1 * z.im;
         fitted_m_s += own_m_s;
-        let (square, ratio) = (size.0 * size.0 + size.1 * size.1, flight.goes_along(i, &integrated.signals));
+        let (square, ratio) = (size.0 * size.0 + size.1 * size.1, flight.end_ratio(i, &integrated.signals));
         let shares = [first, last].map(|s| s.position_m / setup.length_m);
         let straight = 1.0 + (1.0 - ratio) * (1.0 - shares[1]) / (shares[1] - shares[0]).max(0.1);
-        let bent = of_corner(if ratio > 0.0 { order.max(1) } else { 2 }, shares[1]);
+        let bent = corner_ratio(if ratio > 0.0 { order.max(1) } else { 2 }, shares[1]);
         carried_m_s += own_m_s * (if order == 0 { straight } else { bent } - 1.0);
         u_shape_m_s += (SHAPE_SHARE * own_m_s * (bent - straight)).abs();
-        // R may strike a little earlier or later: to the second order, since ringing may be at its largest.
+        // R may strike a little earlier or later: second-order terms count, since ringing may be at its
+        // maximum.
         let omega = std::f64::consts::TAU * mode.frequency_hz;
         let bent_m_s2 = 0.5 * omega * omega * slap_down.u_s * square.sqrt() * z.norm();
         rate_m_s2 += (omega * (size.1 * z.re - size.0 * z.im)).hypot(bent_m_s2);
     }
-    // What no mode makes is the contact that has begun.
+    // A velocity beyond the modes comes from the contact that has begun.
     let beyond_m_s = own_m_s - fitted_m_s;
-    let has_begun = beyond_m_s.abs() > BEGUN * plateau.residual_m_s;
+    let has_begun = beyond_m_s.abs() > CONTACT_FACTOR * plateau.residual_m_s;
     let (own_m_s, u_begun_m_s) = if has_begun { (fitted_m_s, beyond_m_s / 2.0) } else { (own_m_s, 0.0) };
     let u_m_s = plateau.u_m_s.hypot(plateau.residual_m_s).hypot(u_shape_m_s).hypot(u_begun_m_s);
     Some(CornerRinging {
@@ -75,18 +77,19 @@ pub fn ringing_of_second_end(
     })
 }
 
-/// How much more R's corner moves than the sensor at `share` of the length in the bending mode of this order.
-fn of_corner(order: u8, share: f64) -> f64 {
+/// Ratio of the movement of R's corner to that of the sensor at `share` of the length in the bending mode of
+/// this order.
+fn corner_ratio(order: u8, share: f64) -> f64 {
     let at_sensor = free_beam::shape(order, share);
     let at_corner = free_beam::shape(order, 1.0);
-    // Near a node of the shape the sensor tells nothing of the corner.
+    // Near a node of the shape the sensor does not show the movement of the corner.
     if at_sensor * at_corner > 0.25 * at_corner * at_corner { at_corner / at_sensor } else { 1.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{AxialClosure, CONTACT_STEPS, End, Mode, Plateau, example};
+    use crate::data::{AxialSource, CONTACT_STEPS, End, Mode, Plateau, example};
 
     /// 2 m/s at the corner of a 5 m cask, 0.05 of the length beyond the sensor, as R strikes at 0.1 s; the
     /// other end goes along by `opposite`.
@@ -120,14 +123,14 @@ mod tests {
             angular_velocity_rad_s: 0.0,
             horizontal_velocity_m_s: 0.0,
             gravity_m_s2: 9.81,
-            axial: AxialClosure::Sticking,
+            axial: AxialSource::Sticking,
             second_s: 1.0,
             inward: 0.0,
             contact_steps: CONTACT_STEPS,
         };
-        let integrated = Integrated::over(&signals, 0.02);
+        let integrated = Integrated::new(&signals, 0.02);
         let cask = example::cask(1.0, setup.length_m, setup.height_m);
-        ringing_of_second_end(&integrated, &flight, 0.0, At::exactly(0.1), &setup, &cask).expect("two ends")
+        second_end_ringing(&integrated, &flight, 0.0, At::exact(0.1), &setup, &cask).expect("two ends")
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Signals to the motion of the cask: velocity curves, flight plateaus free of ringing, the planar rigid
+//! Motion of the cask from the signals: velocity curves, flight plateaus without ringing, the planar rigid
 //! body.
 
 mod answer;
@@ -16,18 +16,18 @@ mod refit;
 mod ringing;
 mod window;
 
-pub use answer::most_late_s;
+pub use answer::largest_delay_s;
 pub use contact::{ContactCourse, FirstTouch, ForceCourse, largest, pulses, vector_pulses};
-pub use curves::{around, channel_curves, cutoff_hz, filter_name, filtered, shown, usual_filters};
+pub use curves::{channel_curves, cut_shown, cutoff_hz, filter, filter_name, usual_filters, visible};
 pub use flight::{compare_early, compare_late, fit_flights};
-pub use histories::drive;
+pub use histories::contact_drive;
 pub use landing::landing;
-pub use late_blow::{step_m_s, strike};
-pub use local::{CornerRinging, ringing_of_second_end};
+pub use late_blow::{find_shock, step_m_s};
+pub use local::{CornerRinging, second_end_ringing};
 pub use others::{other_curve, strongest_line};
 pub use reconstruct::{outcome, reconstruct, with_states};
-pub use refit::{at_once, with_modes};
-pub use ringing::{RingingRemoved, mirrored, rotation_by, rotation_rad_s, turned_rad_s};
+pub use refit::{flight_at, with_modes};
+pub use ringing::{RingingRemoved, mirror, rotation_from_names, rotation_rad_s, spin_rad_s};
 pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 
 use crate::data::Signal;
@@ -36,16 +36,17 @@ use crate::numerics::{as_count, as_f64, reduce};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Velocities count from so long before first contact, s: it may be moved within its uncertainty.
+/// Velocities count from this long before first contact, s, since its time may be shifted within its
+/// uncertainty.
 const MARGIN_S: f64 = 2e-3;
 /// Signals are integrated from this long before contact, s: the longest flight window and its clearance on
 /// both sides.
 const BEFORE_S: f64 = flight::LONGEST_S + 2.0 * flight::CLEAR_S;
 
 /// Signals with their running integrals, which every flight fit and every reconstruction of the same drop
-/// asks for again.
+/// uses again.
 pub struct Integrated<'a> {
-    /// As given, or means of their samples at a rate that the motion needs.
+    /// Signals as given, or means of their samples at the rate that the motion needs.
     pub(crate) signals: Cow<'a, [Signal]>,
     pub(crate) contact_s: f64,
     velocities: Vec<Velocity>,
@@ -53,12 +54,12 @@ pub struct Integrated<'a> {
 }
 
 impl<'a> Integrated<'a> {
-    /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz
-    /// at the least.
-    pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
-        let signals = decimate::decimated(signals, 0.0);
+    /// Integrates whole signals, 0 shortly before first contact; if all are complete, means at 100 kHz or
+    /// more.
+    pub fn new(signals: &'a [Signal], contact_s: f64) -> Self {
+        let signals = decimate::decimate(signals, 0.0);
         let velocity_and_peak = |s: &Signal| {
-            let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
+            let mut velocity = Velocity::integrate(s, contact_s - BEFORE_S, f64::INFINITY);
             velocity.count_from(contact_s - MARGIN_S);
             (velocity, reduce::peak(&s.force_m_s2))
         };
@@ -66,13 +67,13 @@ impl<'a> Integrated<'a> {
         Self { signals, contact_s, velocities, peaks_m_s2 }
     }
 
-    /// The same with signals of its own.
+    /// Copies the signals, so that the integrals own them.
     pub fn into_owned(self) -> Integrated<'static> {
         Integrated { signals: Cow::Owned(self.signals.into_owned()), ..self }
     }
 
-    /// Each signal with its velocity.
-    fn each(&self) -> impl IndexedParallelIterator<Item = (&Signal, &Velocity)> {
+    /// Iterates over each signal with its velocity.
+    fn with_velocities(&self) -> impl IndexedParallelIterator<Item = (&Signal, &Velocity)> {
         self.signals.par_iter().zip(&self.velocities)
     }
 }
@@ -85,8 +86,8 @@ struct Velocity {
 }
 
 impl Velocity {
-    /// From just before `from_s`, where it is 0, to just after `to_s`.
-    fn of(signal: &Signal, from_s: f64, to_s: f64) -> Self {
+    /// Integrates a signal from just before `from_s`, where it is 0, to just after `to_s`.
+    fn integrate(signal: &Signal, from_s: f64, to_s: f64) -> Self {
         let from = signal.index_from(from_s).saturating_sub(1);
         let to = (signal.index_from(to_s) + 2).min(signal.force_m_s2.len()).max(from);
         Self {
@@ -104,14 +105,14 @@ impl Velocity {
         }
     }
 
-    /// Index of the first sample at or after a time, cut to what there is.
+    /// Index of the first sample at or after a time, limited to the available samples.
     fn index_from(&self, time_s: f64) -> usize {
         let position = (time_s - self.start_s) * self.sample_rate_hz;
         as_count(position.ceil()).min(self.values_m_s.len())
     }
 
     /// Velocity at a time, m/s, linear between samples and constant beyond the ends.
-    fn at(&self, time_s: f64) -> f64 {
+    fn velocity_at(&self, time_s: f64) -> f64 {
         let Some(last) = self.values_m_s.len().checked_sub(1) else { return 0.0 };
         let position = (time_s - self.start_s) * self.sample_rate_hz;
         let index = if position > 0.0 { as_count(position).min(last) } else { return self.values_m_s[0] };
@@ -120,13 +121,13 @@ impl Velocity {
         self.values_m_s[index] + share * (self.values_m_s[next] - self.values_m_s[index])
     }
 
-    /// Mean velocity between two times, m/s: of the samples there, or the value in the middle where there are
+    /// Mean velocity between two times, m/s: of the samples there, or the value in the middle if there are
     /// none.
     fn mean(&self, from_s: f64, to_s: f64) -> f64 {
         let from = self.index_from(from_s);
         let inside = &self.values_m_s[from..self.index_from(to_s).max(from)];
         if inside.is_empty() {
-            return self.at(f64::midpoint(from_s, to_s));
+            return self.velocity_at(f64::midpoint(from_s, to_s));
         }
         reduce::sum(inside) / as_f64(inside.len())
     }

@@ -1,17 +1,17 @@
-//! A channel that takes no part in the motion to the curve a person looks at, as recorded, and its spectrum.
+//! Curve of a channel that takes no part in the motion, as recorded, and its spectrum.
 
-use super::curves::shown_s;
+use super::curves::span_s;
 use crate::data::{Channel, Events, OtherCurve, SpectralLine};
 use crate::numerics::as_f64;
 use crate::numerics::spectrum::magnitude;
 
-/// A line has so many periods in what is shown: what has fewer is the shape of a pulse.
+/// A spectral line needs this many periods within the curve: with fewer it is the shape of a pulse.
 const LEAST_PERIODS: f64 = 3.0;
 
-/// The curve over what is shown of the event; `None` where the first contact is not known.
+/// The curve over the range shown of the event; `None` if the first contact is not known.
 pub fn other_curve(channel: &Channel, events: &Events) -> Option<OtherCurve> {
-    let (from_s, to_s) = events.first_contact_s().map(|contact_s| shown_s(contact_s, events))?;
-    // Of a slow channel also the samples on either side.
+    let (from_s, to_s) = events.first_contact_s().map(|contact_s| span_s(contact_s, events))?;
+    // A slow channel also needs the samples on either side.
     let step_s = 1.0 / channel.sample_rate_hz;
     let shown = channel.index_at(from_s - step_s)..channel.index_at(to_s + 2.0 * step_s);
     let values = channel.force_m_s2(shown.start, shown.end);

@@ -1,12 +1,13 @@
-//! Velocity steps of the channels, a contact law and the initial motion to the planar motion of the cask.
+//! Reconstructs the planar motion of the cask from the velocity steps of the channels, a contact law and the
+//! initial motion.
 
 use super::Integrated;
 use super::curves::uniform;
 use super::histories::{AlongAxis, Histories};
-use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
+use crate::data::{AxialSource, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
 use crate::numerics::as_f64;
 
-/// The force acts no further inward of a corner than this share of the length: half of a limiter's overhang.
+/// The force acts at most this share of the length inward of a corner: half of a limiter's overhang.
 const MOST_INWARD: f64 = 0.1;
 /// Steps over the flight, for the curves.
 const FLIGHT_STEPS: u32 = 200;
@@ -23,7 +24,7 @@ pub fn reconstruct(
     setup: &Setup,
 ) -> Option<Motion> {
     let mut curve = MotionCurve::default();
-    let mut record = |state: &MotionState| push(&mut curve, setup, state);
+    let mut record = |state: &MotionState| push_state(&mut curve, setup, state);
     let mut motion = follow(integrated, fit, events, setup, &mut record)?;
     let separation = motion.separation;
     let end_s = events.slap_down_s().unwrap_or(fit.to_s);
@@ -35,7 +36,7 @@ pub fn reconstruct(
     let left_m = height_m(&separation).min(0.0);
     for state in flight {
         record(&state);
-        // Touches on the way that are followed as one hold L up at other times.
+        // Touches in the flight that are followed as one support L at other times.
         if fit.landing.is_none() {
             let above_m = height_m(&state) - left_m;
             motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
@@ -46,12 +47,12 @@ pub fn reconstruct(
     Some(motion)
 }
 
-/// The same motion without its curve and what L does in the flight: what a fit asks for often.
+/// The motion without its curve and the motion of L in the flight, which a fit evaluates often.
 pub fn outcome(integrated: &Integrated, fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
     follow(integrated, fit, events, setup, &mut |_| ())
 }
 
-/// The same with the states of the contact, in steps of equal length.
+/// The motion with the states of the contact, in steps of equal length.
 pub fn with_states(
     integrated: &Integrated,
     fit: &FlightFit,
@@ -63,7 +64,7 @@ pub fn with_states(
     Some((motion, states))
 }
 
-/// The motion over the contact, each state told to `record`, and its flight.
+/// Follows the motion over the contact, passing each state to `record`, and its flight.
 fn follow(
     integrated: &Integrated,
     fit: &FlightFit,
@@ -73,28 +74,28 @@ fn follow(
 ) -> Option<Motion> {
     let contact_s = events.first_contact_s()?;
     let separation_s = events.separation_s()?;
-    let line = AlongAxis::through(&integrated.signals, setup.cog_m)?;
+    let line = AlongAxis::new(&integrated.signals, setup.cog_m)?;
     let (before_rad_s, events_s) = (setup.angular_velocity_rad_s, (contact_s, separation_s));
     let histories = Histories::new(integrated, fit, &line, before_rad_s, events_s, setup.contact_steps)?
-        .at_rate(setup.second_s);
+        .scale_time(setup.second_s);
     let mut body = OnTarget::start(setup, contact_s);
     let contact = body.state;
     let step_s = (separation_s - contact_s) / as_f64(setup.contact_steps) * setup.second_s;
     record(&body.state);
-    let (mut turned_rad2_s, mut angular_impulse_m2_s, mut crush_m) = (0.0, 0.0, 0.0_f64);
+    let (mut turned_rad2_s, mut turning_m2_s, mut crush_m) = (0.0, 0.0, 0.0_f64);
     for i in 1..=setup.contact_steps {
         let before = body.state;
-        // What the rotation of the fall does to a sensor went with its offset.
+        // The offset of a sensor already contains the effect of the rotation in the fall.
         turned_rad2_s +=
             (before.angular_velocity_rad_s.powi(2) - contact.angular_velocity_rad_s.powi(2)) * step_s;
-        let (transverse_m_s, gained_rad_s) = histories.at(i, turned_rad2_s);
+        let (transverse_m_s, gained_rad_s) = histories.state_at(i, turned_rad2_s);
         let axial_m_s = histories.axial_mean(i, gained_rad_s);
         let rotation_rad_s = gained_rad_s - setup.angular_velocity_rad_s;
         let middle = body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
         let (_, below_m) = planar::arms_m(body.angle_by, setup.cog_m, setup.height_m);
         crush_m = crush_m.max(below_m - body.state.height_m);
         let inward_m = (setup.inward * crush_m).min(MOST_INWARD * setup.length_m);
-        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state, middle, inward_m);
+        turning_m2_s += angular_impulse_m2_s(setup, &before, &body.state, middle, inward_m);
         record(&body.state);
     }
     let separation = body.state;
@@ -102,11 +103,11 @@ fn follow(
     let impulse_ratio = (separation.horizontal_velocity_m_s - contact.horizontal_velocity_m_s)
         / (separation.vertical_velocity_m_s - contact.vertical_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
-    let strikes = |t| fly_on(integrated, fit, setup, &separation, by_clock_s(integrated, setup, t));
+    let strikes = |t| fly_on(integrated, fit, setup, &separation, clock_time_s(integrated, setup, t));
     let slap_down = events.slap_down_s().map(strikes);
     let height_m = |state: &MotionState| corner_height_m(setup, state, setup.cog_m);
     let touch_height_m = fit.landing.as_ref().map(|landing| {
-        let begins = fly(setup, &separation, by_clock_s(integrated, setup, landing.begin_s));
+        let begins = fly(setup, &separation, clock_time_s(integrated, setup, landing.begin_s));
         height_m(&begins) - height_m(&separation).min(0.0)
     });
     let behind_m = setup.cog_m - setup.length_m;
@@ -117,7 +118,7 @@ fn follow(
         rebound_m_s,
         slip_m_s,
         impulse_ratio,
-        angular_impulse_m2_s,
+        angular_impulse_m2_s: turning_m2_s,
         crush_m,
         slap_down,
         second_end_m_s: slap_down.map(|s| corner(setup, &s, behind_m)),
@@ -129,9 +130,9 @@ fn follow(
     })
 }
 
-/// Sine and cosine of an angle that lies `by_rad` beyond that of the given ones; exact to rounding, and quick
-/// for the small steps of a contact.
-fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
+/// Rotates sine and cosine of an angle by `by_rad`; exact to rounding, and quick for the small steps of a
+/// contact.
+fn rotate((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     // Below 0.01 the next terms of both series are less than 1e-16.
     let square = by_rad * by_rad;
     let (s, c) = if by_rad.abs() < 0.01 {
@@ -145,7 +146,7 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
 
 /// Angular impulse about S over mass in one step of the contact, m²/s: ∫((a − d) f_z − b f_x) dt with the
 /// arms of (1)   (32)
-fn turning_m2_s(
+fn angular_impulse_m2_s(
     setup: &Setup,
     before: &MotionState,
     after: &MotionState,
@@ -159,12 +160,12 @@ fn turning_m2_s(
     (a_m - inward_m) * up_m_s - b_m * along_m_s
 }
 
-/// A time of the recording by the clock as it is taken to go, s.
-fn by_clock_s(integrated: &Integrated, setup: &Setup, time_s: f64) -> f64 {
+/// Converts a time of the recording to the corrected clock, s.
+fn clock_time_s(integrated: &Integrated, setup: &Setup, time_s: f64) -> f64 {
     integrated.contact_s + (time_s - integrated.contact_s) * setup.second_s
 }
 
-/// [`fly`] with the touch of L on the way, which changes the velocities by what the channels say.
+/// Like [`fly`], with the touch of L in between, which changes the velocities as the channels show.
 fn fly_on(
     integrated: &Integrated,
     fit: &FlightFit,
@@ -173,15 +174,15 @@ fn fly_on(
     time_s: f64,
 ) -> MotionState {
     let touched =
-        fit.landing.as_ref().map(|landing| (landing, by_clock_s(integrated, setup, landing.time_s)));
+        fit.landing.as_ref().map(|landing| (landing, clock_time_s(integrated, setup, landing.time_s)));
     let touched = touched.filter(|(_, touched_s)| *touched_s < time_s);
-    // Asked for at each step of the fit: the line over the channels is drawn where there is a touch alone.
-    let line = || AlongAxis::through(&integrated.signals, setup.cog_m);
+    // The line over the channels is only fitted if there is a touch, since every step of the fit calls this.
+    let line = || AlongAxis::new(&integrated.signals, setup.cog_m);
     let Some(((landing, touched_s), line)) = touched.and_then(|touched| Some((touched, line()?))) else {
         return fly(setup, state, time_s);
     };
     let before = fly(setup, state, touched_s);
-    let [across_m_s, turned_rad_s, along_m_s] = line.changed(&landing.steps_m_s);
+    let [across_m_s, turned_rad_s, along_m_s] = line.step_sums(&landing.steps_m_s);
     let along_m_s = landing.along_m_s.map_or(along_m_s, |[along_m_s, _]| along_m_s);
     let [across_m_s, turned_rad_s, along_m_s] =
         [across_m_s, turned_rad_s, along_m_s].map(|change| change * setup.second_s);
@@ -254,8 +255,8 @@ impl OnTarget {
         }
     }
 
-    /// One step, given ∫f_η of S and Ω at its end, and for a measured axial velocity ∫f_ξ and where it was
-    /// measured; sine and cosine of the inclination in its middle.
+    /// Advances the motion by one step, given ∫f_η of S and Ω at its end, and for a measured axial velocity
+    /// ∫f_ξ and the position of its measurement; sine and cosine of the inclination in its middle.
     fn advance(
         &mut self,
         setup: &Setup,
@@ -266,22 +267,22 @@ impl OnTarget {
     ) -> (f64, f64) {
         let spin = -self.state.angular_velocity_rad_s;
         let mean_spin = f64::midpoint(spin, rotation_rad_s);
-        let (sin_m, cos_m) = turned(self.angle_by, spin * step_s / 2.0);
+        let (sin_m, cos_m) = rotate(self.angle_by, spin * step_s / 2.0);
         let gained_m_s = integral_m_s - self.last_transverse_m_s;
         self.last_transverse_m_s = integral_m_s;
         let g = setup.gravity_m_s2;
         self.transverse_m_s += gained_m_s - (g * cos_m + mean_spin * self.axial_m_s) * step_s;
         let angle_rad = self.state.angle_rad + mean_spin * step_s;
-        self.angle_by = turned(self.angle_by, mean_spin * step_s);
+        self.angle_by = rotate(self.angle_by, mean_spin * step_s);
         let (sin, cos) = self.angle_by;
         self.axial_m_s = match (setup.axial, axial) {
-            (AxialClosure::Measured, Some((axial_m_s, position_m))) => {
+            (AxialSource::Measured, Some((axial_m_s, position_m))) => {
                 let turned = mean_spin * mean_spin - setup.angular_velocity_rad_s.powi(2);
                 let gained = axial_m_s - self.last_axial_m_s + turned * (position_m - setup.cog_m) * step_s;
                 self.last_axial_m_s = axial_m_s;
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
             }
-            (AxialClosure::Sliding { friction }, _) => {
+            (AxialSource::Sliding { friction }, _) => {
                 // f_x = μ f_z: f_ξ = f_η tan(φ + atan μ) = f_η (sin φ + μ cos φ)/(cos φ − μ sin φ)   (18)
                 let gained = gained_m_s * (sin_m + friction * cos_m) / (cos_m - friction * sin_m);
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
@@ -307,7 +308,7 @@ impl OnTarget {
 }
 
 /// Adds a state to the curve.
-fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
+fn push_state(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
     let behind_m = setup.cog_m - setup.length_m;
     let second = corner(setup, state, behind_m);
     curve.time_s.push(state.time_s);
@@ -341,19 +342,19 @@ mod tests {
         }
     }
 
-    fn motion(first_m_s: f64, second_m_s: f64, axial: AxialClosure) -> Motion {
+    fn motion(first_m_s: f64, second_m_s: f64, axial: AxialSource) -> Motion {
         let signals = [signal("A1", End::First, 0.5, first_m_s), signal("A2", End::Second, 4.5, second_m_s)];
         let fit = example::flight(
             0.017,
             0.07,
             vec![example::plateau("A1", first_m_s), example::plateau("A2", second_m_s)],
         );
-        let events = Events { separation: Some(At::exactly(0.016)), ..example::events(0.01, 0.07) };
-        reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup(axial))
+        let events = Events { separation: Some(At::exact(0.016)), ..example::events(0.01, 0.07) };
+        reconstruct(&Integrated::new(&signals, 0.01), &fit, &events, &setup(axial))
             .expect("two channels apart")
     }
 
-    fn setup(axial: AxialClosure) -> Setup {
+    fn setup(axial: AxialSource) -> Setup {
         Setup {
             length_m: 5.0,
             height_m: 0.6,
@@ -373,7 +374,7 @@ mod tests {
 
     #[test]
     fn without_force_the_cask_falls_on() {
-        let m = motion(0.0, 0.0, AxialClosure::Sliding { friction: 0.0 });
+        let m = motion(0.0, 0.0, AxialSource::Sliding { friction: 0.0 });
         let fallen_m_s = 13.0 + 9.81 * 0.006;
         assert!((m.separation.vertical_velocity_m_s + fallen_m_s).abs() < 1e-9);
         assert!(m.separation.horizontal_velocity_m_s.abs() < 1e-9);
@@ -397,11 +398,11 @@ mod tests {
                 off_axis(signal("A1", End::First, 0.5, 19.0), 0.3),
                 off_axis(signal("A2", End::Second, 4.5, -7.0), -0.3),
             ];
-            let integrated = Integrated::over(&signals, 0.01);
+            let integrated = Integrated::new(&signals, 0.01);
             let read = signals.iter().zip(&integrated.velocities);
-            let steps = read.map(|(s, v)| example::plateau(&s.name, v.at(from_s))).collect();
-            let events = Events { separation: Some(At::exactly(0.016)), ..example::events(0.01, 0.07) };
-            let setup = setup(AxialClosure::Sticking);
+            let steps = read.map(|(s, v)| example::plateau(&s.name, v.velocity_at(from_s))).collect();
+            let events = Events { separation: Some(At::exact(0.016)), ..example::events(0.01, 0.07) };
+            let setup = setup(AxialSource::Sticking);
             let fit = example::flight(from_s, 0.07, steps);
             let m = reconstruct(&integrated, &fit, &events, &setup).expect("two channels apart");
             m.separation.angular_velocity_rad_s
@@ -412,21 +413,21 @@ mod tests {
 
     #[test]
     fn rotation_is_the_slope_of_the_steps_over_position() {
-        let m = motion(19.0, -7.0, AxialClosure::Sticking);
+        let m = motion(19.0, -7.0, AxialSource::Sticking);
         assert!((m.separation.angular_velocity_rad_s - 26.0 / 4.0).abs() < 1e-9);
     }
 
     #[test]
     fn the_contact_laws_hold_to_the_end_of_the_contact() {
         // The trapezoid over 200 steps of 30 µs leaves 1e-4 of the velocities.
-        assert!(motion(19.0, -7.0, AxialClosure::Sticking).slip_m_s.abs() < 1e-9);
-        let smooth = motion(19.0, -7.0, AxialClosure::Sliding { friction: 0.0 });
+        assert!(motion(19.0, -7.0, AxialSource::Sticking).slip_m_s.abs() < 1e-9);
+        let smooth = motion(19.0, -7.0, AxialSource::Sliding { friction: 0.0 });
         assert!(smooth.separation.horizontal_velocity_m_s.abs() < 2e-3, "{smooth:?}");
     }
 
     #[test]
     fn the_flight_is_ballistic_and_the_curve_uniform() {
-        let m = motion(19.0, -7.0, AxialClosure::Sticking);
+        let m = motion(19.0, -7.0, AxialSource::Sticking);
         let struck = m.slap_down.expect("a time is given");
         let flown_s = struck.time_s - m.separation.time_s;
         let expected = m.separation.vertical_velocity_m_s - 9.81 * flown_s;

@@ -1,4 +1,4 @@
-//! Integrals to a flight fit without a flight: the same window again with other signals, or one time alone.
+//! Fits of a flight without a flight: the same window again with other signals, or one time alone.
 
 use super::flight::{oscillation, plateaus, series};
 use super::{Integrated, Velocity, Window};
@@ -6,7 +6,8 @@ use crate::data::{FlightFit, Plateau, Signal};
 use crate::numerics::damped_modes::{Form, describe};
 use rayon::iter::ParallelIterator;
 
-/// The same window and the same modes, in the sizes that they have in these signals; the cask turns so fast.
+/// Fits the same window with the same modes, whose amplitudes follow from these signals; the cask turns at
+/// the given rate.
 pub fn with_modes(
     integrated: &Integrated,
     best: &FlightFit,
@@ -20,17 +21,17 @@ pub fn with_modes(
     Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })
 }
 
-/// What the integrals give at one time, as if the flight began there.
-pub fn at_once(integrated: &Integrated, time_s: f64) -> FlightFit {
+/// Values of the integrals at one time, as if the flight began there.
+pub fn flight_at(integrated: &Integrated, time_s: f64) -> FlightFit {
     let plateau = |(signal, velocity): (&Signal, &Velocity)| Plateau {
         channel: signal.name.clone(),
-        velocity_step_m_s: velocity.at(time_s),
+        velocity_step_m_s: velocity.velocity_at(time_s),
         ..Plateau::default()
     };
     FlightFit {
         from_s: time_s,
         to_s: time_s,
-        plateaus: integrated.each().map(plateau).collect(),
+        plateaus: integrated.with_velocities().map(plateau).collect(),
         ..FlightFit::default()
     }
 }

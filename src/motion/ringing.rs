@@ -1,4 +1,4 @@
-//! Signals and their flight fit to the same signals without ringing and zero shift.
+//! Subtracts ringing and zero shift from signals by their flight fit.
 
 use super::flight::{centrifugal_m_s2, oscillation};
 use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
@@ -6,25 +6,25 @@ use crate::numerics::damped_modes::uniform_ringing;
 use crate::numerics::{as_f64, reduce};
 use std::ops::Range;
 
-/// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back
-/// to it: the fit knows nothing of it there, and an error of its damping would be blown up likewise.
+/// A mode that would have been this much larger at an earlier time (e^1.6, fivefold) is not extrapolated back
+/// to it: the fit has no information there, and an error of its damping would grow likewise.
 const MOST_GROWTH: f64 = 1.6;
 
-/// Mean of ω² in a contact over ω² of the flight: 3/8 where the force is a half sine.
+/// Mean of ω² in a contact over ω² of the flight: 3/8 if the force is a half sine.
 const TURNING_SHARE: f64 = 0.375;
 /// ω² η is at most a quarter of a step: each round leaves a quarter of the error.
 const ROUNDS: usize = 4;
 
-/// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
+/// A sum of signals from which ringing and zero shift can be subtracted, and again with another fit.
 pub struct RingingRemoved {
     signal: Signal,
     parts: Vec<(String, f64)>,
-    /// The samples from an index on as they were before.
+    /// Original samples from an index on.
     before: (usize, Vec<f64>),
 }
 
 impl RingingRemoved {
-    /// The sum and what it is made of: signals by name, each with its weight.
+    /// Makes the sum with its composition: signals by name, each with its weight.
     pub fn new((signal, parts): (Signal, Vec<(String, f64)>)) -> Self {
         Self { signal, parts, before: (0, Vec::new()) }
     }
@@ -40,14 +40,14 @@ impl RingingRemoved {
         reduce::peak(self.signal.force_m_s2.get(from..to).unwrap_or_default())
     }
 
-    /// Puts back what was taken off.
+    /// Restores the subtracted ringing.
     pub fn restore(&mut self) {
         let (from, before) = &mut self.before;
         self.signal.force_m_s2[*from..*from + before.len()].copy_from_slice(before);
         before.clear();
     }
 
-    /// What a rotation, rad/s, pulls outward at the sensors of `signals`, m/s²   (14), (15)
+    /// Centrifugal acceleration of a rotation, rad/s, at the sensors of `signals`, m/s²   (14), (15)
     pub fn pull_m_s2(&self, signals: &[Signal], turning_rad_s: f64, cog_m: f64) -> f64 {
         let of_part = |(name, weight): &(String, f64)| {
             let signal = signals.iter().find(|signal| signal.name == *name)?;
@@ -56,8 +56,8 @@ impl RingingRemoved {
         self.parts.iter().filter_map(of_part).sum()
     }
 
-    /// Takes the fitted modes and zero shifts, and this pull, off between two times, s, instead of those
-    /// taken off before.
+    /// Subtracts the fitted modes and zero shifts, and this centrifugal acceleration, between two times, s,
+    /// in place of those subtracted before.
     pub fn take_off(&mut self, fit: &FlightFit, between_s: Range<f64>, pull_m_s2: f64) {
         self.restore();
         let (from, to) = (self.signal.index_from(between_s.start), self.signal.index_from(between_s.end));
@@ -78,7 +78,7 @@ impl RingingRemoved {
         }
     }
 
-    /// Takes off f = v̇ of v = e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from `begin_s` on   (20)
+    /// Subtracts f = v̇ of v = e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from `begin_s` on   (20)
     fn take_off_mode(&mut self, (from, to): (usize, usize), mode: &Mode, (a, b): (f64, f64), begin_s: f64) {
         let calm = &mut self.signal;
         let omega = std::f64::consts::TAU * mode.frequency_hz;
@@ -93,13 +93,13 @@ impl RingingRemoved {
     }
 }
 
-/// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went
-/// with their offset, rad/s: the root of the difference of both squares, negative where the cask turns more
-/// slowly than before.
+/// ω of a flight from the centrifugal force that its channels show in addition to that of the rotation before
+/// it, which belongs to their offset, rad/s: the root of the difference of both squares, negative if the cask
+/// turns more slowly than before.
 ///
 /// `events_s` are first contact and separation: from there on the steps of channels off the axis hold −ω² η
 /// (14).
-pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64, events_s: [f64; 2]) -> f64 {
+pub fn spin_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64, events_s: [f64; 2]) -> f64 {
     let [contact_s, left_s] = events_s;
     let turned_s = (fit.from_s - left_s + TURNING_SHARE * (left_s - contact_s)).max(0.0);
     let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
@@ -114,10 +114,10 @@ pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64, even
     beyond.abs().sqrt().copysign(beyond)
 }
 
-/// The signals of a drop from its flight on as those of a drop that begins with the slap-down, seen in a
-/// mirror: R is its first end, and nothing rings or shifts in its fall, nor pulls outward while the cask
-/// turns by ω, rad/s.
-pub fn mirrored(
+/// Mirrors the signals of a drop from its flight on, as if the drop began with the slap-down: R becomes the
+/// first end, and its fall has no ringing, no shift and no centrifugal force, while the cask turns by ω,
+/// rad/s.
+pub fn mirror(
     signals: &[Signal],
     fit: &FlightFit,
     turning_rad_s: f64,
@@ -141,21 +141,21 @@ pub fn mirrored(
 }
 
 /// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position
-/// (16); 0 where there is none.
+/// (16); 0 without a slope.
 pub fn rotation_rad_s(signals: &[Signal], fit: &FlightFit) -> f64 {
     let across = signals.iter().filter(|s| s.axis == Axis::Transverse);
-    rotation_by(across.map(|s| (&s.name[..], s.position_m)), fit)
+    rotation_from_names(across.map(|s| (&s.name[..], s.position_m)), fit)
 }
 
-/// The same from the names of the transverse channels and their positions, m.
-pub fn rotation_by<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &FlightFit) -> f64 {
+/// ω from the names of the transverse channels and their positions, m.
+pub fn rotation_from_names<'a>(across: impl Iterator<Item = (&'a str, f64)>, fit: &FlightFit) -> f64 {
     let points: Vec<(f64, f64)> = across
         .filter_map(|(name, position_m)| Some((position_m, fit.plateau(name)?.velocity_step_m_s)))
         .collect();
     -slope(&points)
 }
 
-/// Slope of the least-squares line through points (x, y); 0 where there is none.
+/// Slope of the least-squares line through points (x, y); 0 if they determine none.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = as_f64(points.len().max(1));
     let mean = points.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
@@ -204,7 +204,7 @@ mod tests {
             plateaus: signals.iter().map(plateau).collect(),
             ..FlightFit::default()
         };
-        let found_rad_s = turned_rad_s(&signals, &fit, 0.0, [0.010, 0.018]);
+        let found_rad_s = spin_rad_s(&signals, &fit, 0.0, [0.010, 0.018]);
         assert!((found_rad_s - omega_rad_s).abs() < 1e-6, "{found_rad_s}");
     }
 }

@@ -1,26 +1,27 @@
 //! The times between which the flight is fitted.
 
-/// A fit of the flight ends so long before the slap-down, s: its onset.
+/// Time between the end of the fitted flight and the slap-down, s: its onset.
 pub const BEFORE_SLAP_DOWN_S: f64 = 5e-4;
-/// It begins this share of the contact behind its end, and so long, s: what the force's tail hides.
+/// The window begins this share of the contact, and this time, s, after the contact's end: the margin covers
+/// the tail of the force.
 const BEHIND_CONTACT: f64 = 0.1;
 const BEHIND_CONTACT_S: f64 = 3e-4;
 
-/// When a fit of the flight may begin, s.
+/// Earliest beginning of a fit to the flight, s.
 pub fn clear_of_contact_s(contact_s: f64, left_s: f64) -> f64 {
     left_s + BEHIND_CONTACT * (left_s - contact_s) + BEHIND_CONTACT_S
 }
 
-/// The times a flight fit needs, s from the recording's first sample.
+/// Times for a flight fit, s from the recording's first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Start of free flight.
     pub from_s: f64,
-    /// End of it.
+    /// End of free flight.
     pub to_s: f64,
-    /// Whether a change of the offset may be fitted.
+    /// True if a change of the offset may be fitted.
     pub drift: bool,
-    /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off, put back where
-    /// it is negative; else 0.
+    /// ω of the flight if it is already known, rad/s: its centrifugal force is subtracted, or added if ω is
+    /// negative; else 0.
     pub angular_velocity_rad_s: f64,
 }

@@ -1,4 +1,4 @@
-//! A mode of the free uniform beam and a place on it to its deflection there.
+//! Deflection of a mode of the free uniform beam at a position along it.
 
 /// Shapes that [`shape`] knows.
 pub const MOST_MODES: usize = 3;
@@ -10,7 +10,7 @@ pub const WAVE_NUMBERS: [f64; MOST_MODES] =
 /// Deflection of the mode of this order, from 1 on, at `share` of the length; ±2 at the ends, mean square 1,
 /// so that its modal mass is the body's.
 ///
-/// An order beyond the shapes there are takes the last one.
+/// An order beyond the available shapes uses the last one.
 pub fn shape(order: u8, share: f64) -> f64 {
     let beta = WAVE_NUMBERS[usize::from(order).clamp(1, MOST_MODES) - 1];
     let sigma = (beta.cosh() - beta.cos()) / (beta.sinh() - beta.sin());

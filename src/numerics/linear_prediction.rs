@@ -1,36 +1,35 @@
-//! A series to the difference between each value and the one predicted linearly from the values before it (a
-//! robust fit).
+//! Difference between each value of a series and its linear prediction from the values before it (a robust
+//! fit).
 
 use super::{as_f64, reduce, robust};
 use nalgebra::{DMatrix, DVector};
 
-/// Values before it that one is predicted from at the most: an offset and three damped sines need seven,
-/// noise and filters on them more.
+/// Largest number of earlier values in a prediction: an offset and three damped sines need seven, noise and
+/// filters on them more.
 pub const MOST_BEFORE: usize = 12;
-/// Values of the series to each of these at the least, so that few of them are not fitted to the noise.
+/// Least number of values per unknown, so that a short series is not fitted to its noise.
 const VALUES_EACH: usize = 8;
-/// Fewest of them worth a try: an offset and one damped sine, and noise.
+/// Least number of unknowns: an offset and one damped sine, and noise.
 const LEAST_BEFORE: usize = 4;
-/// Rounds of the robust fit: the largest of what is left over its spread moves by less than 2 % in a further
-/// one.
+/// Rounds of the robust fit: a further one changes the largest residual over its spread by less than 2 %.
 const ROUNDS: usize = 8;
-/// A value so many spreads off counts half (Cauchy's weight, 95 % as sharp as least squares on normal noise;
-/// Holland & Welsch 1977).
+/// A value off by this many spreads counts half (Cauchy's weight, 95 % as sharp as least squares on normal
+/// noise; Holland & Welsch 1977).
 const HALF_AT: f64 = 2.385;
-/// What keeps the fit of a series without any noise regular, as a share of its largest square: noise a
+/// Regularisation of the fit of a series without any noise, as a share of its largest square: noise a
 /// millionth of the series.
 const RIDGE: f64 = 1e-12;
 
-/// What a series leaves of itself.
+/// Residual of a series after its prediction from earlier values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearPrediction {
-    /// How many values at its beginning have too few before them.
+    /// Number of values at its beginning that have too few before them.
     pub before: usize,
     /// Each other value less its prediction.
     pub left: Vec<f64>,
-    /// Standard deviation of that by the median, for as many unknowns as were fitted.
+    /// Standard deviation of the residual by the median, corrected for the fitted unknowns.
     pub spread: f64,
-    /// By how much independent errors of single values are larger in what is left.
+    /// Factor by which independent errors of single values grow in the residual.
     pub gain: f64,
 }
 
@@ -69,7 +68,7 @@ pub fn predict_linearly(values: &[f64]) -> Option<LinearPrediction> {
     Some(LinearPrediction { before, left, spread, gain })
 }
 
-/// The shares of the columns that leave least of the target, each row by its weight.
+/// The coefficients of the columns that leave the smallest residual of the target, each row with its weight.
 fn weighted_fit(columns: &[&[f64]], target: &[f64], weights: &[f64]) -> Option<DVector<f64>> {
     let size = columns.len();
     let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));

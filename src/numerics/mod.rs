@@ -1,4 +1,4 @@
-//! Pure mathematics on slices and functions; it knows nothing of drops.
+//! Pure mathematics on slices and functions, independent of drops.
 
 pub mod damped_modes;
 pub mod filter;
@@ -25,13 +25,14 @@ pub fn as_f64(count: usize) -> f64 {
     count as f64
 }
 
-/// A number cut to a count: what is negative or no number to 0, what is too large to the largest.
+/// Converts a number to a count: negative values and NaN to 0, values that are too large to the largest
+/// count.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates so")]
 pub fn as_count(number: f64) -> usize {
     number as usize
 }
 
-/// The least and the largest of some numbers; from infinity down to its negative where there is none.
+/// The least and the largest of some numbers; infinity and its negative if there are none.
 pub fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)))
 }
@@ -42,8 +43,9 @@ pub fn nanoseconds(time_s: f64) -> i64 {
     (time_s * 1e9).round() as i64
 }
 
-/// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
+/// Converts to single precision: seven digits, more than any recorder resolves, in half the bytes of
+/// seventeen.
 #[allow(clippy::cast_possible_truncation, reason = "the loss of digits is meant")]
-pub fn single(value: f64) -> f32 {
+pub fn to_f32(value: f64) -> f32 {
     value as f32
 }

@@ -1,38 +1,38 @@
-//! A quiet stretch of samples to the spectrum of its noise, and to what that noise adds to an integral.
+//! Spectrum of the noise in a quiet stretch of samples, and the uncertainty that this noise adds to an
+//! integral.
 
-use super::spectrum::forward;
+use super::spectrum::forward_transform;
 use super::{as_count, as_f64};
 use rustfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Sine tapers averaged (Riedel & Sidorenko 1995): 2 × 5 degrees of freedom a line, a resolution of 3 lines.
 const TAPERS: u32 = 5;
-/// First line used: those below lie within the tapers' resolution of the mean that was taken off.
+/// First line used: those below lie within the tapers' resolution of the mean that was subtracted.
 const FIRST_LINE: usize = 3;
-/// Lines averaged into the first bin; from there on each bin is as wide as this share of its frequency.
+/// Lines averaged into the first bin; each later bin is as wide as this share of its frequency.
 const FIRST_BIN_LINES: usize = 4;
 const BIN_SHARE: f64 = 0.25;
-/// The lowest bins rise towards low frequencies if they stand this factor above those three octaves up; 1/f
+/// The lowest bins rise towards low frequencies if they exceed those three octaves up by this factor; 1/f
 /// gives 8, white noise 1 ± 0.3.
-const RISES: f64 = 3.0;
-/// Frequencies a decade at which the integral is taken, and the share of the lowest frequency that matters at
-/// which it begins: of white noise and of 1/f they give the uncertainty within 3e-4 of itself, of noise that
-/// rises with frequency within 2 %.
+const RISE_FACTOR: f64 = 3.0;
+/// Frequencies per decade of the integral, and its beginning as a share of the lowest frequency that matters:
+/// for white noise and 1/f the uncertainty is accurate to 3e-4, for noise that rises with frequency to 2 %.
 const STEPS_A_DECADE: f64 = 100.0;
 const LOWEST_SHARE: f64 = 1e-2;
 
 /// One-sided power spectral density of the samples less their mean: bins of (frequency in Hz, unit²/Hz),
 /// ascending.
 ///
-/// Mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for fewer than 32
-/// samples.
+/// The method is the mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for
+/// fewer than 32 samples.
 pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
     let n = quiet.len();
     if n < 32 {
         return Vec::new();
     }
     let mean = quiet.iter().sum::<f64>() / as_f64(n);
-    let fft = forward(n);
+    let fft = forward_transform(n);
     let mut lines = vec![0.0; n / 2];
     for taper in 1..=TAPERS {
         let turn = PI * f64::from(taper) / as_f64(n + 1);
@@ -60,16 +60,16 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
 /// Standard uncertainty of ∫ noise dt over `integrate_s`, less that time × the noise's mean over the `mean_s`
 /// just before it.
 ///
-/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as
-/// [`spectrum`] gives it; between its bins the density is a power of the frequency, below them it is flat, or
-/// 1/f where it rises. 0 for an empty one.
+/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` comes from
+/// [`spectrum`]; between its bins the density is a power of the frequency, below them it is flat, or 1/f if
+/// it rises. 0 for an empty one.
 pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s: f64) -> f64 {
     let (Some(&lowest), Some(&highest)) = (spectrum.first(), spectrum.last()) else { return 0.0 };
     if !(mean_s > 0.0 && integrate_s > 0.0) {
         return 0.0;
     }
-    // A power law through the two lowest bins would follow their scatter: both together are held against
-    // those three octaves up.
+    // A power law through the two lowest bins would follow their scatter: their mean is compared with that
+    // three octaves up.
     let mean = |bins: &[(f64, f64)], power: i32| {
         bins.iter().map(|b| b.1 * b.0.powi(power)).sum::<f64>()
             / f64::from(u32::try_from(bins.len()).unwrap_or(1))
@@ -77,7 +77,7 @@ pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s
     let low = &spectrum[..spectrum.len().min(2)];
     let above = spectrum.partition_point(|bin| bin.0 < 8.0 * lowest.0);
     let high = &spectrum[above..spectrum.len().min(above + 2)];
-    let rises = !high.is_empty() && mean(low, 0) > RISES * mean(high, 0);
+    let rises = !high.is_empty() && mean(low, 0) > RISE_FACTOR * mean(high, 0);
     let (level, hyperbola) = (mean(low, 0), mean(low, 1));
     let power = |pair: &[(f64, f64)]| {
         let (a, b) = (pair[0], pair[1]);

@@ -1,28 +1,29 @@
-//! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit
-//! among the others.
+//! Combines repeats of one quantity, each with its interval: mean, scatter, and the repeats that do not fit
+//! the others.
 
 use super::as_f64;
 
 /// Half-width of a 95 % interval over its standard uncertainty.
 const COVERAGE: f64 = 1.96;
 
-/// What repeats say together.
+/// Combined result of repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pooled {
-    /// How many.
+    /// Number of repeats.
     pub count: usize,
     /// Mean, weighted with 1/u².
     pub mean: f64,
-    /// Root mean square of the half-widths: what repeats share, such as a calibration, no mean makes smaller.
+    /// Root mean square of the half-widths: no mean reduces an error that repeats share, such as a
+    /// calibration.
     pub u95: f64,
-    /// Standard deviation of the repeats about their mean, n − 1; NaN of one.
+    /// Standard deviation of the repeats about their mean, n − 1; NaN for a single one.
     pub scatter: f64,
-    /// Σ ((x − mean) / u)² with u = u95 / 1.96, of n − 1 degrees of freedom where the intervals are
+    /// Σ ((x − mean) / u)² with u = u95 / 1.96, with n − 1 degrees of freedom if the intervals are
     /// independent.
     pub chi_square: f64,
 }
 
-/// How a scatter stands beside what the intervals foretell.
+/// Comparison of a scatter with the stated intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScatterWord {
     /// χ² below its 5 % quantile.
@@ -38,7 +39,7 @@ fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0) / a.1.hypot(b.1)
 }
 
-/// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
+/// Combines (value, half-width) pairs; `None` without any. Half-widths are above 0.
 pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
     let count = as_f64(values.len());
     let mean = mean(values)?;
@@ -60,7 +61,7 @@ fn mean(values: &[(f64, f64)]) -> Option<f64> {
 }
 
 impl Pooled {
-    /// Whether the repeats scatter as their intervals say; `None` of one.
+    /// Compares the scatter with the intervals; `None` for a single repeat.
     pub fn word(&self) -> Option<ScatterWord> {
         let degrees = self.count.checked_sub(1).filter(|degrees| *degrees > 0)?;
         Some(if self.chi_square > chi_square_quantile(degrees, 1.645) {
@@ -81,14 +82,14 @@ pub fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
     nu * (1.0 - share + z * share.sqrt()).max(0.0).powi(3)
 }
 
-/// E_n of each value against the mean of the others, and whether it falls out of them.
+/// E_n of each value against the mean of the others, and true if it is an outlier.
 ///
-/// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three
-/// are left (largest consistent subset, Cox 2007): one wrong value does not make the right ones look wrong.
-/// Of two that contradict each other both fall out.
-pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
+/// The value with the largest |E_n| above 1 is removed, then the others are compared again, as long as three
+/// remain (largest consistent subset, Cox 2007): one wrong value does not make the correct ones look wrong.
+/// If two contradict each other both are outliers.
+pub fn compare_with_others(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
     let weight = |i: usize| values[i].1.powi(-2);
-    // Sums over those that are kept: without one of them, its share is taken off.
+    // The sums cover the remaining values: the mean of the others follows by subtracting one share.
     let (mut weights, mut sum) = (0.0, 0.0);
     for (i, value) in values.iter().enumerate() {
         weights += weight(i);
@@ -148,12 +149,12 @@ mod tests {
 
     #[test]
     fn one_wrong_value_is_named_and_the_right_ones_are_not() {
-        let found = apart(&[(1.0, 0.1), (1.02, 0.1), (1.6, 0.1), (0.99, 0.1)]);
+        let found = compare_with_others(&[(1.0, 0.1), (1.02, 0.1), (1.6, 0.1), (0.99, 0.1)]);
         assert_eq!(found.iter().map(|(_, is_out)| *is_out).collect::<Vec<_>>(), [false, false, true, false]);
         assert!(found[2].0.unwrap() > 4.0 && found[0].0.unwrap().abs() < 0.2);
-        assert!(apart(&[(1.0, 0.1), (2.0, 0.1)]).iter().all(|(_, is_out)| *is_out));
-        assert!(apart(&[(1.0, 0.1), (1.1, 0.1)]).iter().all(|(_, is_out)| !is_out));
-        assert_eq!(apart(&[(1.0, 0.1)]), [(None, false)]);
+        assert!(compare_with_others(&[(1.0, 0.1), (2.0, 0.1)]).iter().all(|(_, is_out)| *is_out));
+        assert!(compare_with_others(&[(1.0, 0.1), (1.1, 0.1)]).iter().all(|(_, is_out)| !is_out));
+        assert_eq!(compare_with_others(&[(1.0, 0.1)]), [(None, false)]);
         assert!((e_n((1.0, 0.3), (2.0, 0.4)) + 2.0).abs() < 1e-12);
     }
 }

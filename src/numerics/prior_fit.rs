@@ -1,54 +1,54 @@
-//! Unknowns with unit normal priors and observations of unit uncertainty to the most probable unknowns and
-//! what each datum tells of them.
+//! Finds the most probable unknowns for unit normal priors and observations of unit uncertainty, and the
+//! information of each datum on them.
 
 use super::as_f64;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 use rayon::prelude::*;
 
-/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and the change
-/// stands far above their round-off.
+/// Step of the derivatives, in prior standard deviations: the models are smooth over it, and the change is
+/// far above their round-off.
 const STEP: f64 = 0.05;
 
-/// A fit that leaves this χ² for each observation may have stuck where it began.
-const IMPROBABLE: f64 = 10.0;
+/// A fit with this χ² per observation may have stuck at its start.
+const IMPROBABLE_CHI_SQUARE: f64 = 10.0;
 
-/// More unknowns are sought in as many directions as there are observations.
+/// With more unknowns than this, the fit uses as many directions as there are observations.
 const MOST_UNKNOWNS: usize = 150;
 
-/// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the
-/// model fails there.
+/// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` if the model
+/// fails there.
 pub type Residuals<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 
-/// Their derivatives there, such as [`derivatives`] gives them.
+/// Their derivatives there, for example from [`derivatives`].
 pub type Slopes<'a> = &'a dyn Fn(&[f64]) -> Option<DMatrix<f64>>;
 
-/// Where the fit ended.
+/// Result of the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorFit {
     /// The unknowns, in prior standard deviations.
     pub unknowns: Vec<f64>,
     /// Σ q² + Σ r², with as many degrees of freedom as there are observations.
     pub chi_square: f64,
-    /// How each datum, first the priors and then the observations, moves each unknown: a row an unknown, unit
-    /// steps.
+    /// Response of each unknown to each datum, first the priors and then the observations: one row per
+    /// unknown, unit steps.
     pub response: DMatrix<f64>,
 }
 
 impl PriorFit {
-    /// The fit without any observation: the priors as they are.
-    pub fn of_priors(count: usize) -> Self {
+    /// The fit without any observation, which is the prior.
+    pub fn from_priors(count: usize) -> Self {
         Self { unknowns: vec![0.0; count], chi_square: 0.0, response: DMatrix::identity(count, count) }
     }
 
     /// Standard deviation of unknown `index` after the fit, as a share of the one before.
-    pub fn left_share(&self, index: usize) -> f64 {
+    pub fn remaining_share(&self, index: usize) -> f64 {
         self.response.row(index).norm()
     }
 }
 
-/// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start
-/// or the normal matrix is singular.
+/// Minimises Σ q_i² + Σ r_j(q)²   (30) by the Levenberg-Marquardt method; `None` if the model fails at the
+/// start or the normal matrix is singular.
 pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let search = LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4);
     let solved_from = |unknowns| search.minimize(PriorProblem { residuals, slopes, unknowns });
@@ -58,24 +58,24 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
         return in_few_directions(count, residuals, slopes);
     }
     let (mut solved, _) = solved_from(DVector::zeros(count));
-    if chi_square(&solved) > IMPROBABLE * observations {
-        // Where the model jumps or ripples at the start its slope there leads nowhere; that over a standard
-        // deviation on either side does.
+    if chi_square(&solved) > IMPROBABLE_CHI_SQUARE * observations {
+        // If the model jumps or ripples at the start its slope there misleads; the slope over a standard
+        // deviation on either side does not.
         let (other, _) = solved_from(linear_solution(begun, &wide_slopes(residuals, count)?)?);
         if chi_square(&other) < chi_square(&solved) {
             solved = other;
         }
     }
     let chi_square = chi_square(&solved);
-    ended(solved.unknowns.as_slice(), chi_square, slopes)
+    finish(solved.unknowns.as_slice(), chi_square, slopes)
 }
 
-/// [`fit`] where unknowns are many: at the most probable ones q = −Jᵀ r, so that they lie in as many
+/// Like [`fit`] for many unknowns: the most probable ones are q = −Jᵀ r, so that they lie in as many
 /// directions as there are observations.
 fn in_few_directions(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let mut unknowns = DVector::zeros(count);
     let mut chi_square = f64::INFINITY;
-    // J changes on the way: the second time the directions are those at the end of the first.
+    // J changes during the fit: the second pass uses the directions at the end of the first.
     for _ in 0..2 {
         let directions = slopes(unknowns.as_slice())?.transpose().qr().q();
         let at = |along: &[f64]| &directions * DVector::from_column_slice(along);
@@ -85,12 +85,12 @@ fn in_few_directions(count: usize, residuals: Residuals, slopes: Slopes) -> Opti
         unknowns = at(&solved.unknowns);
         chi_square = solved.chi_square;
     }
-    ended(unknowns.as_slice(), chi_square, slopes)
+    finish(unknowns.as_slice(), chi_square, slopes)
 }
 
-/// What each datum tells where a search ended: (1 + JᵀJ)⁻¹ (prior + Jᵀ observation), in which the inverse is
-/// 1 − Jᵀ (1 + JJᵀ)⁻¹ J   (31)
-fn ended(unknowns: &[f64], chi_square: f64, slopes: Slopes) -> Option<PriorFit> {
+/// Response of the unknowns at the end of a search: (1 + JᵀJ)⁻¹ (prior + Jᵀ observation), in which the
+/// inverse is 1 − Jᵀ (1 + JJᵀ)⁻¹ J   (31)
+fn finish(unknowns: &[f64], chi_square: f64, slopes: Slopes) -> Option<PriorFit> {
     let jacobian = slopes(unknowns)?;
     let (rows, count) = jacobian.shape();
     let of_observations = DMatrix::identity(rows, rows) + &jacobian * jacobian.transpose();
@@ -102,8 +102,8 @@ fn ended(unknowns: &[f64], chi_square: f64, slopes: Slopes) -> Option<PriorFit> 
     chi_square.is_finite().then(|| PriorFit { unknowns: unknowns.to_vec(), chi_square, response })
 }
 
-/// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`,
-/// any move of it changes more than its size says: its differences are those between both sides.
+/// ∂r/∂q by differences from the values at `at`, on all cores; one column per unknown. If an unknown `jumps`,
+/// any shift of it changes more than proportionally: its differences are those between both sides.
 pub fn derivatives(
     values: &[f64],
     model: Residuals,
@@ -125,7 +125,7 @@ pub fn derivatives(
     Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
 }
 
-/// The most probable unknowns of a linear model with these residuals at none of them and these slopes.
+/// The most probable unknowns of a linear model with these residuals at zero and these slopes.
 fn linear_solution(residuals: Vec<f64>, slopes: &DMatrix<f64>) -> Option<DVector<f64>> {
     let normal = DMatrix::identity(slopes.ncols(), slopes.ncols()) + slopes.tr_mul(slopes);
     Some(-normal.cholesky()?.solve(&slopes.tr_mul(&DVector::from_vec(residuals))))
@@ -211,7 +211,7 @@ mod tests {
         // Prior 0 ± 1, observation 3 ± 0.5 of it: (0/1 + 3/0.25) / (1/1 + 1/0.25) = 2.4, u = √(1/5).
         let fit = by_differences(1, &|q| Some(vec![(q[0] - 3.0) / 0.5])).expect("a fit");
         assert!((fit.unknowns[0] - 2.4).abs() < 1e-6, "{fit:?}");
-        assert!((fit.left_share(0) - 0.2_f64.sqrt()).abs() < 1e-6);
+        assert!((fit.remaining_share(0) - 0.2_f64.sqrt()).abs() < 1e-6);
         // χ² = 2.4² + (0.6/0.5)².
         assert!((fit.chi_square - 7.2).abs() < 1e-6);
     }
@@ -230,8 +230,8 @@ mod tests {
         let fit = by_differences(2, &|q| Some(vec![(q[0] + q[1]) / 0.3])).expect("a fit");
         // Covariance of (1 + JᵀJ)⁻¹ with J = (1, 1)/0.3: diagonal 1 − 1/(2 + 0.09).
         let variance = 1.0 - 1.0 / 2.09;
-        assert!((fit.left_share(0).powi(2) - variance).abs() < 1e-6);
-        assert_eq!(PriorFit::of_priors(3).left_share(1).to_bits(), 1.0_f64.to_bits());
+        assert!((fit.remaining_share(0).powi(2) - variance).abs() < 1e-6);
+        assert_eq!(PriorFit::from_priors(3).remaining_share(1).to_bits(), 1.0_f64.to_bits());
     }
 
     #[test]

@@ -1,48 +1,48 @@
-//! Samples and a few regressors to what no combination of the regressors explains.
+//! Residual of samples after subtracting the best combination of a few regressors.
 
 use super::reduce::dot;
 
-/// A regressor that keeps less than this share of itself beside the others says nothing of its own.
-const DEPENDENT: f64 = 1e-9;
+/// A regressor that keeps less than this share of itself beside the others is redundant.
+const DEPENDENT_SHARE: f64 = 1e-9;
 
-/// Where less than this share of a square is left, what was taken off is taken off again: the rounding of it
-/// is no longer small beside the rest.
+/// If less than this share of a square remains, the projection is subtracted again: its rounding error is no
+/// longer small beside the residual.
 const NEARLY_ALL: f64 = 1e-4;
 
-/// Sum of squares that `values` keep after their least-squares fit by `regressors` (each as long as
+/// Sum of squares of the residual of `values` after a least-squares fit by `regressors` (each as long as
 /// `values`).
 ///
-/// Modified Gram-Schmidt; regressors that are zero or depend on the others are left out.
+/// Modified Gram-Schmidt; regressors that are zero or depend on the others are omitted.
 pub fn residual_square(values: &[f64], regressors: Vec<Vec<f64>>) -> f64 {
     let mut left = values.to_vec();
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(regressors.len());
     for mut column in regressors {
         let before = dot(&column, &column);
-        take_all_off(&mut column, &basis);
+        subtract_projections(&mut column, &basis);
         let mut after = dot(&column, &column);
         if after < NEARLY_ALL * before {
-            take_all_off(&mut column, &basis);
+            subtract_projections(&mut column, &basis);
             after = dot(&column, &column);
         }
-        if after > 0.0 && after > DEPENDENT * DEPENDENT * before {
+        if after > 0.0 && after > DEPENDENT_SHARE * DEPENDENT_SHARE * before {
             let length = after.sqrt();
             for c in &mut column {
                 *c /= length;
             }
-            take_off(&mut left, &column);
+            subtract_projection(&mut left, &column);
             basis.push(column);
         }
     }
     dot(&left, &left)
 }
 
-fn take_all_off(values: &mut [f64], basis: &[Vec<f64>]) {
+fn subtract_projections(values: &mut [f64], basis: &[Vec<f64>]) {
     for unit in basis {
-        take_off(values, unit);
+        subtract_projection(values, unit);
     }
 }
 
-fn take_off(values: &mut [f64], unit: &[f64]) {
+fn subtract_projection(values: &mut [f64], unit: &[f64]) {
     let share = dot(values, unit);
     for (v, u) in values.iter_mut().zip(unit) {
         *v -= share * u;

@@ -3,7 +3,7 @@
 /// Running integral of uniform samples by the trapezoid with end correction; entry 0 is 0, same length as
 /// `samples`.
 ///
-/// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), the slopes by central differences,
+/// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), with slopes by central differences,
 /// one-sided at the ends.
 pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
     const TOGETHER: usize = 8;
@@ -21,7 +21,7 @@ pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
     let at = |doubled_sum: f64, slope: f64| 0.5 * step * (doubled_sum - (slope - first_slope) / 12.0);
     let mut doubled_sum = 0.0;
     integral.push(0.0);
-    // Several steps are summed before they are added to what waits for the sum before it.
+    // Several steps are summed before they are added to the total, whose previous value they wait for.
     for own in samples.windows(TOGETHER + 2).step_by(TOGETHER) {
         let mut since = 0.0;
         integral.extend(own.windows(3).map(|w| {

@@ -1,11 +1,11 @@
-//! Two curves on one even base to how alike they are, by ISO/TS 18571: corridor, phase, magnitude, slope.
+//! Ratings of two curves on one uniform base by ISO/TS 18571: corridor, phase, magnitude, slope.
 
 use super::{as_count, as_f64, extent};
 use std::ops::Range;
 
 /// The grid for which ISO/TS 18571 states its parameters, s.
 pub const RATING_STEP_S: f64 = 1e-4;
-/// A slope is the mean of so many differences: no shorter curve has one.
+/// A slope is the mean of this many differences: a shorter curve has none.
 const SLOPE_WIDTH: usize = 9;
 
 /// Corridors and limits of ISO/TS 18571, as shares of the largest reference value, of the length, or of the
@@ -13,23 +13,23 @@ const SLOPE_WIDTH: usize = 9;
 const INNER_CORRIDOR: f64 = 0.05;
 const OUTER_CORRIDOR: f64 = 0.5;
 const MOST_SHIFT: f64 = 0.2;
-/// Warping stays within one of so many parts of the length.
+/// Warping stays within one of this many parts of the length.
 const WARPING_PARTS: usize = 10;
 const MOST_MAGNITUDE_ERROR: f64 = 0.5;
 const MOST_SLOPE_ERROR: f64 = 2.0;
 /// Weights in the total; the corridor has the first, the others the second.
 const WEIGHTS: [f64; 2] = [0.4, 0.2];
 
-/// How alike two curves are: 1 equal, 0 beyond every limit.
+/// Ratings of two curves: 1 is equal, 0 is beyond every limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveRating {
     /// Share of the curve within the corridors, the outer one weighted.
     pub corridor: f64,
-    /// By the shift with which both correlate best.
+    /// Rating by the shift with which both curves correlate best.
     pub phase: f64,
-    /// By what remains of the difference after that shift and a warping of time.
+    /// Rating by the difference that remains after that shift and a warping of time.
     pub magnitude: f64,
-    /// By the slopes after that shift.
+    /// Rating by the slopes after that shift.
     pub slope: f64,
 }
 
@@ -40,11 +40,11 @@ impl CurveRating {
     }
 }
 
-/// Rates `curve` against `reference`, both of one length on steps of [`RATING_STEP_S`]; `None` where they are
+/// Rates `curve` against `reference`, both of one length on steps of [`RATING_STEP_S`]; `None` if they are
 /// too short for a slope, or the reference is constant.   (54)
 pub fn rate(reference: &[f64], curve: &[f64]) -> Option<CurveRating> {
     let count = reference.len();
-    // What the largest shift leaves must have a slope.
+    // The shortest part that a shift may leave must have a slope.
     let (least, most) = extent(reference.iter().copied());
     if count != curve.len() || count < 2 * SLOPE_WIDTH || least >= most {
         return None;
@@ -72,18 +72,17 @@ fn corridor(reference: &[f64], curve: &[f64]) -> f64 {
     reference.iter().zip(curve).map(within).sum::<f64>() / as_f64(reference.len())
 }
 
-/// Sum of the differences over that of the second values, all without their signs.
+/// Sum of the absolute differences over that of the absolute second values.
 fn relative_difference(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (off, all) = pairs.fold((0.0, 0.0), |(off, all), (c, r)| (off + (c - r).abs(), all + r.abs()));
     if off > 0.0 { off / all } else { 0.0 }
 }
 
-/// The samples of the reference and of the curve that belong together by the smallest of the shifts that
-/// correlate best.
+/// The overlapping samples of reference and curve at the smallest of the shifts that correlate best.
 fn best_shift(reference: &[f64], curve: &[f64]) -> [Range<usize>; 2] {
     let count = reference.len();
     let most = as_count(MOST_SHIFT * as_f64(count));
-    // A curve that is late by as much goes first.
+    // For equal shifts a curve that is late comes first.
     let shifts = (0..=most).flat_map(|n| [[0..count - n, n..count], [n..count, 0..count - n]]);
     let mut best = (f64::NEG_INFINITY, [0..count, 0..count]);
     for [of_reference, of_curve] in shifts {
@@ -95,7 +94,7 @@ fn best_shift(reference: &[f64], curve: &[f64]) -> [Range<usize>; 2] {
     best.1
 }
 
-/// Pearson's coefficient; no number where a curve is constant.
+/// Pearson's coefficient; NaN if a curve is constant.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let [mean_a, mean_b] = [a, b].map(|values| values.iter().sum::<f64>() / as_f64(values.len()));
     let mut sums = [0.0; 3];
@@ -108,7 +107,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     sums[0] / (sums[1] * sums[2]).sqrt()
 }
 
-/// Central differences a step, each the mean of up to nine of its neighbours.
+/// Central differences per step, each the mean of up to nine of its neighbours.
 fn slopes(values: &[f64]) -> impl Iterator<Item = f64> {
     let last = values.len() - 1;
     let differences: Vec<f64> = (0..=last)
@@ -131,7 +130,7 @@ fn warp_time(curve: &[f64], reference: &[f64]) -> Vec<(f64, f64)> {
     // The part is rounded up, and the last place within it is one less.
     let reach = count.div_ceil(WARPING_PARTS) - 1;
     let width = 2 * reach + 1;
-    // Column `reach` of a row is the sample of equal time; where the path came from stands beside the cost.
+    // Column `reach` of a row is the sample of equal time; the origin of the path is stored with the cost.
     let mut from = vec![[0_u8; 2]; count * width];
     let mut above = vec![f64::INFINITY; width + 1];
     for (i, value) in curve.iter().enumerate() {
@@ -140,7 +139,7 @@ fn warp_time(curve: &[f64], reference: &[f64]) -> Vec<(f64, f64)> {
             let (up, diagonal) = (above[column + 1], above[column]);
             let steps = [(up, [1, 0]), (left, [0, 1]), (diagonal, [1, 1])];
             let begins = (if i == 0 && column == reach { 0.0 } else { f64::INFINITY }, [0, 0]);
-            // The first of equal ones, as the reference program takes it.
+            // The first of equal ones is used, as in the reference program.
             let (cost, step) = steps.into_iter().fold(begins, |a, b| if b.0 < a.0 { b } else { a });
             left = cost + (value - reference[i + column - reach]).powi(2);
             (above[column], from[i * width + column]) = (left, step);

@@ -1,28 +1,27 @@
-//! Samples to sums, means and extremes, in as many partial results as a processor works on at once: a single
+//! Sums, means and extremes of samples, in as many partial results as a processor computes at once: a single
 //! one waits for each step.
 
 use super::{as_count, as_f64};
 
 const LANES: usize = 8;
 
-/// Samples that are averaged into one to come down to about `rate_hz`.
-pub fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
+/// Number of samples averaged into one, to reduce the rate to about `rate_hz`.
+pub fn block_size(rate_hz: f64, sample_rate_hz: f64) -> usize {
     as_count(sample_rate_hz / rate_hz).max(1)
 }
 
-/// Means of whole blocks; samples left over at the end are left out.
+/// Means of whole blocks; remaining samples at the end are ignored.
 pub fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
     if block < LANES {
-        // One after the other: lanes would cost more than the few sums.
+        // The blocks are summed one by one: parallel lanes would cost more than the few sums.
         return samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / as_f64(block)).collect();
     }
     samples.chunks_exact(block).map(|chunk| sum(chunk) / as_f64(block)).collect()
 }
 
-/// A moving mean of the values, and how many it takes: so many that white noise of `noise` falls to `least`,
-/// but no more than a tenth of the pulse they hold is long, which is their sum over their `peak`. `None`
-/// where fewer than three do.
-pub fn calmed(values: &[f64], noise: f64, least: f64, peak: f64) -> Option<(Vec<f64>, usize)> {
+/// A moving mean of the values, and its width: wide enough that white noise of `noise` falls to `least`, but
+/// at most a tenth of the pulse's length, which is its sum over its `peak`. `None` if that is below three.
+pub fn average_noise(values: &[f64], noise: f64, least: f64, peak: f64) -> Option<(Vec<f64>, usize)> {
     let longest = as_count(sum(values).abs() / peak / 10.0);
     let half = as_count((noise / least).powi(2)).min(longest) / 2;
     if half == 0 || half >= values.len() {
@@ -39,10 +38,10 @@ pub fn calmed(values: &[f64], noise: f64, least: f64, peak: f64) -> Option<(Vec<
     Some(((0..values.len()).map(mean).collect(), 2 * half + 1))
 }
 
-/// Means of blocks, the last one as long as it is, of their finite values each; NaN where there is none.
+/// Means of the finite values in each block, the last of which may be shorter; NaN for a block without any.
 pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> Vec<f64> {
     let mean = |chunk: &[T]| {
-        let whole = sum_of(chunk, Into::into) / as_f64(chunk.len());
+        let whole = sum_by(chunk, Into::into) / as_f64(chunk.len());
         if whole.is_finite() {
             return whole;
         }
@@ -52,7 +51,7 @@ pub fn finite_block_means<T: Copy + Into<f64>>(samples: &[T], block: usize) -> V
     samples.chunks(block.max(1)).map(mean).collect()
 }
 
-/// Smallest |x − y| of neighbours above `least`; infinite where there is none.
+/// Smallest |x − y| of neighbours above `least`; infinite if there is none.
 pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     let mut smallest = [f64::INFINITY; LANES];
     let Some(next) = samples.get(1..) else { return f64::INFINITY };
@@ -66,8 +65,8 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     smallest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often
-/// tell.
+/// Evaluates [`least_step`]; 0 if there is none or if it does not exceed `limit`, which the first samples
+/// often decide.
 pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     const FIRST: usize = 4096;
     let within = |samples: &[f64]| least_step(samples, least);
@@ -77,19 +76,18 @@ pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     Some(within(samples)).filter(|step| *step > limit && step.is_finite()).unwrap_or(0.0)
 }
 
-/// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where
-/// nothing changes.
+/// Step of the converter behind the samples: the smallest change that exceeds rounding; 0 if nothing changes.
 pub fn converter_step(samples: &[f64]) -> f64 {
     least_step_beyond(samples, 1e-9 * peak(samples), 0.0)
 }
 
 /// Σ x.
 pub fn sum(values: &[f64]) -> f64 {
-    sum_of(values, |x| x)
+    sum_by(values, |x| x)
 }
 
 /// Σ f(x).
-pub fn sum_of<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
+pub fn sum_by<T: Copy>(values: &[T], f: impl Fn(T) -> f64) -> f64 {
     let (lanes, rest) = values.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
     for chunk in lanes {
@@ -115,7 +113,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Smallest and largest of the finite values and `start`.
 pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
-    // Whatever is compared with NaN is false: these two comparisons are one instruction each.
+    // Comparisons with NaN are false, so these two are one instruction each.
     let follow = |(low, high): (&mut f64, &mut f64), x: f64| {
         *low = if x < *low { x } else { *low };
         *high = if x > *high { x } else { *high };
@@ -138,7 +136,7 @@ pub fn extremes<T: Copy + Into<f64>>(values: &[T], start: f64) -> (f64, f64) {
     finite.fold((start, start), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// Largest finite |x|; 0 where there is none.
+/// Largest finite |x|; 0 if there is none.
 pub fn peak(values: &[f64]) -> f64 {
     let (low, high) = extremes(values, 0.0);
     high.max(-low)
@@ -154,10 +152,10 @@ mod tests {
         assert!((sum(&values) - 231.0).abs() < 1e-12);
         // Σ n² to 21 is 21 · 22 · 43 / 6; only the first three of the other are there.
         assert!((dot(&values, &values) - 3311.0).abs() < 1e-12);
-        assert!((sum_of(&values, |x| x * x) - 3311.0).abs() < 1e-12);
+        assert!((sum_by(&values, |x| x * x) - 3311.0).abs() < 1e-12);
         assert!((dot(&values, &[1.0, 1.0, 2.0]) - 9.0).abs() < 1e-12);
         assert_eq!(block_means(&values, 10), [5.5, 15.5]);
-        assert_eq!((block_of(2e3, 5e5), block_of(2e3, 1e3)), (250, 1));
+        assert_eq!((block_size(2e3, 5e5), block_size(2e3, 1e3)), (250, 1));
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! Samples to centre and spread that a few wild values do not move.
+//! Centre and spread of samples, insensitive to a few wild values.
 
 use super::{as_count, as_f64, reduce};
 
-/// Median; NaN of an empty slice. Reorders `values`.
+/// Median; NaN for an empty slice. Reorders `values`.
 pub fn median(values: &mut [f64]) -> f64 {
     let n = values.len();
     if n == 0 {
@@ -17,14 +17,14 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996,
-/// type 7); NaN of none.
+/// The value below which this share of `ascending` lies, with linear interpolation (Hyndman & Fan 1996, type
+/// 7); NaN if it is empty.
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
-    quantile_of(ascending.len(), share, |rank| ascending[rank])
+    quantile_by(ascending.len(), share, |rank| ascending[rank])
 }
 
-/// [`quantile`] of so many values, each by its rank.
-pub fn quantile_of(count: usize, share: f64, value: impl Fn(usize) -> f64) -> f64 {
+/// Like [`quantile`] for `count` values, each by its rank.
+pub fn quantile_by(count: usize, share: f64, value: impl Fn(usize) -> f64) -> f64 {
     let Some(last) = count.checked_sub(1) else { return f64::NAN };
     let place = share * as_f64(last);
     let below = as_count(place).min(last);
@@ -34,28 +34,28 @@ pub fn quantile_of(count: usize, share: f64, value: impl Fn(usize) -> f64) -> f6
     if beyond > 0.0 && low < high { low + beyond * (high - low) } else { low }
 }
 
-/// Most values that a spread is taken from.
+/// Most values that a spread is computed from.
 const MOST: usize = 4000;
 
-/// Every n-th value, so that no more than some 4000 are left: of normal noise these tell its spread to 1.8 %.
-pub fn sampled(values: &[f64]) -> impl Iterator<Item = f64> {
+/// Every n-th value, so that at most some 4000 remain: for normal noise they give the spread to 1.8 %.
+pub fn thin(values: &[f64]) -> impl Iterator<Item = f64> {
     values.iter().step_by(stride(values.len())).copied()
 }
 
-/// How far apart the values of such a sample of `count` lie.
+/// Distance between the values of such a sample of `count`.
 pub fn stride(count: usize) -> usize {
     (count / MOST).max(1)
 }
 
-/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974),
-/// of many values by a sample.
+/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974);
+/// for many values from a sample.
 pub fn spread(values: &[f64]) -> f64 {
     centre_and_spread(values).1
 }
 
-/// The median of such a sample, and [`spread`].
+/// The median of such a sample, and its [`spread`].
 pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
-    let mut work: Vec<f64> = sampled(values).collect();
+    let mut work: Vec<f64> = thin(values).collect();
     let centre = median(&mut work);
     for w in &mut work {
         *w = (*w - centre).abs();
@@ -63,7 +63,7 @@ pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
     (centre, 1.482_602_218_505_602 * median(&mut work))
 }
 
-/// Mean and its standard uncertainty: white noise averages out; what differs between the two halves does not.
+/// Mean and its standard uncertainty: white noise averages out, a difference between the two halves does not.
 pub fn mean_and_u(values: &[f64]) -> (f64, f64) {
     let (mean, rms) = mean_and_rms(values);
     let (first, second) = values.split_at(values.len() / 2);
@@ -71,11 +71,11 @@ pub fn mean_and_u(values: &[f64]) -> (f64, f64) {
     (mean, (rms / as_f64(values.len()).sqrt()).max(wander / 2.0))
 }
 
-/// Mean and root mean square about it; NaN of an empty slice.
+/// Mean and root mean square about it; NaN for an empty slice.
 pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
     let n = as_f64(values.len());
     let mean = reduce::sum(values) / n;
-    (mean, (reduce::sum_of(values, |v| (v - mean).powi(2)) / n).sqrt())
+    (mean, (reduce::sum_by(values, |v| (v - mean).powi(2)) / n).sqrt())
 }
 
 #[cfg(test)]

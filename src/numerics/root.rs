@@ -14,7 +14,7 @@ pub fn first_root(f: impl Fn(f64) -> (f64, f64), bound: f64, last: f64, touch: f
             return None;
         }
         let (z, v) = f(t);
-        // A slope this small turns round within `touch`.
+        // A slope this small reverses within `touch`.
         let falling = v < -(2.0 * bound * touch).sqrt();
         if z < -touch || (z <= touch && falling) {
             return Some(t);

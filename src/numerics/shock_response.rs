@@ -1,13 +1,13 @@
-//! Uniform samples to their shock response spectrum: what a row of damped oscillators on that base reaches.
+//! Shock response spectrum of uniform samples: the maxima of damped oscillators on that base.
 
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Oscillators that are followed at once: one alone waits for each step.
+/// Oscillators that are followed at once: a single one waits for each step.
 const LANES: usize = 8;
 
-/// Of each oscillator its natural frequency, Hz, the largest absolute acceleration, in the unit of the
-/// samples, and the largest relative displacement times ω, in that unit times s: of either sign, while the
+/// For each oscillator: its natural frequency, Hz, the largest absolute acceleration, in the unit of the
+/// samples, and the largest relative displacement times ω, in that unit times s; of either sign, while the
 /// samples last and after them, at rest before them   (52)
 pub fn shock_response(
     samples: &[f64],
@@ -23,10 +23,10 @@ pub fn shock_response(
     frequencies_hz.chunks(LANES).flat_map(of_lanes).collect()
 }
 
-/// What one oscillator reaches.
+/// Maxima of one oscillator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShockResponse {
-    /// Its natural frequency, Hz.
+    /// Natural frequency, Hz.
     pub frequency_hz: f64,
     /// Largest absolute acceleration, in the unit of the samples.
     pub acceleration: f64,
@@ -39,7 +39,8 @@ pub struct ShockResponse {
 struct Oscillator {
     frequency_hz: f64,
     rate: Complex<f64>,
-    /// What a step leaves of q, and what the samples before and after it add, a line between them.
+    /// Factor of q over a step, and the contributions of the samples before and after it, with a line between
+    /// them.
     decay: Complex<f64>,
     gains: [Complex<f64>; 2],
 }
@@ -56,7 +57,7 @@ impl Oscillator {
         Self { frequency_hz, rate, decay, gains }
     }
 
-    /// The largest |Im(c q)| from now on, of a q that nothing drives any more.
+    /// The largest |Im(c q)| from now on, of a q without further excitation.
     fn residual(&self, factor: Complex<f64>, state: Complex<f64>) -> f64 {
         let now = factor * state;
         let phase = (self.rate * now).arg();

@@ -1,10 +1,10 @@
-//! Samples to the sinusoid of a known frequency in them, by least squares.
+//! Fits a sinusoid of known frequency to samples, by least squares.
 
 use super::as_f64;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// a cos ωt + b sin ωt, t counted from the middle of the samples it was fitted to.
+/// Sinusoid a cos ωt + b sin ωt, with t counted from the middle of the fitted samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sinusoid {
     /// Frequency, Hz.
@@ -13,7 +13,7 @@ pub struct Sinusoid {
     pub cosine: f64,
     /// b.
     pub sine: f64,
-    /// Standard uncertainty of the amplitude, from what the fit leaves taken for white.
+    /// Standard uncertainty of the amplitude, if the residual is white.
     pub u_amplitude: f64,
 }
 
@@ -23,8 +23,8 @@ impl Sinusoid {
         self.cosine.hypot(self.sine)
     }
 
-    /// Its value a time after the middle of the samples it was fitted to.
-    pub fn at(&self, since_middle_s: f64) -> f64 {
+    /// Value at a time after the middle of the fitted samples.
+    pub fn value_at(&self, since_middle_s: f64) -> f64 {
         let (sin, cos) = (TAU * self.frequency_hz * since_middle_s).sin_cos();
         self.cosine * cos + self.sine * sin
     }
@@ -41,7 +41,7 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     let mut matrix = nalgebra::Matrix4::zeros();
     let mut right = nalgebra::Vector4::zeros();
     let step = TAU * frequency_hz / sample_rate_hz;
-    // Turned on from sample to sample: a thousand steps cost a thousandth of a billionth of the phase.
+    // The phase is advanced from sample to sample: a thousand steps cost a thousandth of a billionth of it.
     let turn = Complex::cis(step);
     let mut phase = Complex::cis(-step * middle);
     let mut square = 0.0;
@@ -60,9 +60,9 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     Some(Sinusoid { frequency_hz, cosine: found[0], sine: found[1], u_amplitude })
 }
 
-/// The strongest sinusoid between two frequencies: eleven of them are tried, then eleven between the
-/// neighbours of the best.
-pub fn strongest(samples: &[f64], sample_rate_hz: f64, (low_hz, high_hz): (f64, f64)) -> Option<Sinusoid> {
+/// The strongest sinusoid between two frequencies: eleven are tried, then eleven between the neighbours of
+/// the best.
+pub fn search(samples: &[f64], sample_rate_hz: f64, (low_hz, high_hz): (f64, f64)) -> Option<Sinusoid> {
     let best = |low: f64, high: f64, steps: u32| {
         let step = (high - low) / f64::from(steps);
         (0..=steps)
@@ -85,14 +85,14 @@ mod tests {
         let wave = |t: f64| 3.0 * (TAU * 50.2 * t + 0.7).cos();
         let samples: Vec<f64> =
             (0..1000).map(|i| f64::from(i) / rate_hz).map(|t| 12.0 - 4.0 * t + wave(t)).collect();
-        let found = strongest(&samples, rate_hz, (49.5, 50.5)).expect("ten periods");
+        let found = search(&samples, rate_hz, (49.5, 50.5)).expect("ten periods");
         // Frequencies 20 mHz apart are tried.
         assert!((found.frequency_hz - 50.2).abs() < 0.013, "{found:?}");
         // Half a step over ± 0.1 s is a phase of 6e-3 at most, whose square the amplitude loses.
         assert!((found.amplitude() - 3.0).abs() < 0.01, "{found:?}");
         let middle_s = 999.0 / 2.0 / rate_hz;
         for since_s in [-0.09, 0.0, 0.05, 0.15] {
-            let off = found.at(since_s) - wave(middle_s + since_s);
+            let off = found.value_at(since_s) - wave(middle_s + since_s);
             assert!(off.abs() < 3.0 * TAU * 0.013 * 0.15 + 0.01, "{since_s}: {off}");
         }
     }

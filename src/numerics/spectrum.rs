@@ -1,20 +1,19 @@
-//! Uniform samples to the magnitude of their Fourier integral.
+//! Magnitude of the Fourier integral of uniform samples.
 
 use super::as_f64;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The last plans are kept, each with its length: the sines that one is made of cost more than to use it
-/// once.
+/// The last plans with their lengths: computing the sines of a plan costs more than using it once.
 static PLANS: Mutex<VecDeque<Arc<dyn Fft<f64>>>> = Mutex::new(VecDeque::new());
 
-/// So many: the channels of a recording have a few lengths, those of a campaign's recordings each its own,
-/// and a planner would keep all.
+/// Number of plans to keep: the channels of a recording have a few lengths, those of a campaign's recordings
+/// many, and a planner would keep all.
 const MOST_PLANS: usize = 16;
 
 /// The forward transform of `count` values.
-pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
+pub(super) fn forward_transform(count: usize) -> Arc<dyn Fft<f64>> {
     let mut plans = PLANS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(plan) = plans.iter().find(|plan| plan.len() == count) {
         return Arc::clone(plan);
@@ -36,7 +35,7 @@ pub fn magnitude(samples: impl ExactSizeIterator<Item = f64>, sample_rate_hz: f6
     let n = samples.len().next_power_of_two();
     let padding = std::iter::repeat_n(0.0, n - samples.len());
     let mut work: Vec<Complex<f64>> = samples.chain(padding).map(|x| Complex::new(x, 0.0)).collect();
-    forward(n).process(&mut work);
+    forward_transform(n).process(&mut work);
     let bins = n / 2 + 1;
     let frequency_hz = (0..bins).map(|i| as_f64(i) * sample_rate_hz / as_f64(n)).collect();
     let magnitude = work[..bins].iter().map(|c| c.norm_sqr().sqrt() / sample_rate_hz).collect();
@@ -50,7 +49,7 @@ mod tests {
     #[test]
     fn few_plans_are_kept() {
         for count in 1000..1100 {
-            assert_eq!(forward(count).len(), count);
+            assert_eq!(forward_transform(count).len(), count);
         }
         assert!(PLANS.lock().is_ok_and(|plans| plans.len() <= MOST_PLANS));
     }

@@ -1,18 +1,18 @@
-//! The order of a free beam's mode to its shape, and to what shear and the inertia of its sections do to it.
+//! Shape of a free beam's mode by its order, and the effect of shear and rotary inertia on it.
 
 use super::free_beam::{MOST_MODES, WAVE_NUMBERS, shape};
 use std::f64::consts::PI;
 
-/// Wave number times length of the mode of any order from 1 on: β = (n + ½) π − (−1)ⁿ/cosh((n + ½) π) but for
-/// the first three, within 1e-11.
+/// Wave number times length of the mode of any order from 1 on: β = (n + ½) π − (−1)ⁿ/cosh((n + ½) π) except
+/// for the first three, within 1e-11.
 pub fn wave_number(order: u8) -> f64 {
     let asymptote = (f64::from(order) + 0.5) * PI;
     let beyond = if order.is_multiple_of(2) { -1.0 } else { 1.0 } / asymptote.cosh();
     WAVE_NUMBERS.get(usize::from(order.max(1)) - 1).copied().unwrap_or(asymptote + beyond)
 }
 
-/// [`shape`] of any order: about the middle, u = share − ½, sines and hyperbolic sines each over its value at
-/// the end. There the form of the first orders would be a difference of numbers of e^β.
+/// Like [`shape`] for any order: about the middle, u = share − ½, sines and hyperbolic sines each over its
+/// value at the end. There the form of the first orders would be a difference of numbers of e^β.
 pub fn high_shape(order: u8, share: f64) -> f64 {
     if usize::from(order) <= MOST_MODES {
         return shape(order, share);
@@ -24,19 +24,19 @@ pub fn high_shape(order: u8, share: f64) -> f64 {
     }
 }
 
-/// What shear and the inertia of the sections make of a mode (Timoshenko 1921): of a wave of its wave number.
+/// Effect of shear and rotary inertia on a mode (Timoshenko 1921), from a wave of its wave number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThickBeam {
     /// Frequency over that of the slender beam of the same bending stiffness.
     pub slowing: f64,
-    /// How far a section turns over the slope of the axis: the rest is shear.
+    /// Rotation of a section over the slope of the axis: the difference is shear.
     pub turning: f64,
 }
 
 impl ThickBeam {
-    /// Of a rectangular section of `height` lengths; `shear` is E/(κG): with a = β² height²/12 and u the
-    /// squared slowing, 1 − u (1 + a (1 + shear)) + shear a² u² = 0.
-    pub fn of(order: u8, height: f64, shear: f64) -> Self {
+    /// A beam with a rectangular section of `height` lengths; `shear` is E/(κG): with a = β² height²/12 and u
+    /// the squared slowing, 1 − u (1 + a (1 + shear)) + shear a² u² = 0.
+    pub fn new(order: u8, height: f64, shear: f64) -> Self {
         let a = (wave_number(order) * height).powi(2) / 12.0;
         let b = 1.0 + a * (1.0 + shear);
         let square = 2.0 / (b + (b * b - 4.0 * shear * a * a).sqrt());
@@ -64,12 +64,12 @@ mod tests {
 
     #[test]
     fn a_thick_beam_is_slower_and_turns_less() {
-        let slender = ThickBeam::of(1, 0.0, 3.0);
+        let slender = ThickBeam::new(1, 0.0, 3.0);
         assert_eq!(slender, ThickBeam { slowing: 1.0, turning: 1.0 });
         // ASTM E1876, 8.2: a bar four heights long, ν 0.3: f²/f∞² = 1/1.42. Its ends are not in a wave.
-        let bar = ThickBeam::of(1, 0.25, 2.0 * 1.3 / (5.0 / 6.0));
+        let bar = ThickBeam::new(1, 0.25, 2.0 * 1.3 / (5.0 / 6.0));
         assert!((bar.slowing - (1.0 / 1.42_f64).sqrt()).abs() < 0.015, "{bar:?}");
-        let high = ThickBeam::of(8, 0.25, 3.0);
+        let high = ThickBeam::new(8, 0.25, 3.0);
         assert!(high.slowing < 0.3 && (0.0..0.2).contains(&high.turning), "{high:?}");
     }
 }

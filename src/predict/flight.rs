@@ -1,4 +1,4 @@
-//! The motion after an impact to the time at which a corner comes down to the target.
+//! Follows the motion after an impact to the time at which a corner comes down to the target.
 
 use super::state::{State, second_end_m};
 use super::support::Support;
@@ -30,26 +30,26 @@ fn next_touch(
         last_s,
         TOUCH_M,
     )?;
-    // One step of Newton's from there: the last digits.
+    // One step of Newton's method from there gives the last digits.
     let corner = state.after(time_s, gravity_m_s2).corner(body, along_m);
     let steep = corner.vertical_velocity_m_s < -(2.0 * bound_m_s2 * TOUCH_M).sqrt();
     Some(if steep { time_s - (corner.height_m + depth_m) / corner.vertical_velocity_m_s } else { time_s })
 }
 
-/// When R's corner comes down first.
+/// Time at which R's corner first comes down.
 pub(super) fn second_end_touches(body: &Body, gravity_m_s2: f64, state: &State) -> Option<f64> {
     let along_m = second_end_m(body);
     next_touch(body, gravity_m_s2, state, (along_m, 0.0), longest_s(body, gravity_m_s2, state, along_m))
 }
 
-/// When L's corner comes down again to where the target left it, at most when R does.
+/// Time at which L's corner returns to the height at which it left the target, at most that of R's impact.
 pub(super) fn first_end_touches(support: &Support, state: &State, second_end_s: Option<f64>) -> Option<f64> {
     let Support { body, gravity_m_s2, sunk_m, .. } = *support;
     let last_s = second_end_s.unwrap_or_else(|| longest_s(body, gravity_m_s2, state, body.cog_m));
     next_touch(body, gravity_m_s2, state, (body.cog_m, sunk_m), last_s)
 }
 
-/// From here on S itself lies deeper than the corner can reach up, s.
+/// Time from which S itself lies deeper than the corner can reach up, s.
 fn longest_s(body: &Body, gravity_m_s2: f64, state: &State, along_m: f64) -> f64 {
     let reach_m = along_m.hypot(body.height_m / 2.0);
     let rise_m_s = state.vertical_velocity_m_s;
@@ -57,8 +57,8 @@ fn longest_s(body: &Body, gravity_m_s2: f64, state: &State, along_m: f64) -> f64
     (rise_m_s + (rise_m_s * rise_m_s + 2.0 * gravity_m_s2 * height_m).sqrt()) / gravity_m_s2
 }
 
-/// Whether L, back where the target left it at the start of `span_s`, sinks deeper than `graze_m` before its
-/// end.
+/// True if L, back at the height at which it left the target at the start of `span_s`, sinks deeper than
+/// `graze_m` before its end.
 pub(super) fn sinks(support: &Support, state: &State, span_s: std::ops::Range<f64>, graze_m: f64) -> bool {
     const POINTS: u32 = 32;
     let Support { body, gravity_m_s2, sunk_m, .. } = *support;

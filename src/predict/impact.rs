@@ -1,11 +1,11 @@
-//! A moving body and its contact law to the motion just after L strikes; of the thin uniform rod by \[P\]
-//! Table 1.
+//! Motion just after L strikes, from the motion before and the contact law; for the thin uniform rod also by
+//! \[P\] Table 1.
 
 use super::state::{State, arms_m};
 use crate::data::{Body, Contact};
 
-/// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none; an unknown one
-/// is taken for rough.
+/// Coulomb coefficient of a contact law: rough is friction without limit, smooth is zero; an unknown one
+/// counts as rough.
 pub(super) fn coefficient(contact: Contact) -> f64 {
     match contact {
         Contact::Rough | Contact::Unknown => f64::INFINITY,
@@ -21,9 +21,9 @@ pub(super) struct Struck {
     pub horizontal_impulse_n_s: f64,
     /// I_z, N s.
     pub vertical_impulse_n_s: f64,
-    /// |I_x/I_z| with which L's corner, once at rest, stays so: μ* of (6).
+    /// |I_x/I_z| with which L's corner stays at rest once it has stopped: μ* of (6).
     pub friction_to_stick: f64,
-    /// Whether the corner does not slide when it leaves.
+    /// True if the corner does not slide when it leaves.
     pub sticks: bool,
 }
 
@@ -33,11 +33,11 @@ struct Stretch {
     ratio: f64,
     /// I_z until the sliding stops, N s; without end in the last stretch.
     length_n_s: Option<f64>,
-    /// Whether the corner sticks in it.
+    /// True if the corner sticks in the impact.
     sticks: bool,
 }
 
-/// The corner's velocity and what moves it: Δẋ_C = n_xx I_x − n_xz I_z, Δż_C = n_zz I_z − n_xz I_x.
+/// The corner's velocity and its response: Δẋ_C = n_xx I_x − n_xz I_z, Δż_C = n_zz I_z − n_xz I_x.
 struct ContactPoint {
     n_xx: f64,
     n_zz: f64,
@@ -61,8 +61,8 @@ impl ContactPoint {
         }
     }
 
-    /// dI_x/dI_z once the corner does not slide: what sticking needs, or the friction there is; and whether
-    /// it sticks   (6)
+    /// dI_x/dI_z once the corner does not slide: the ratio that sticking needs, or the available friction;
+    /// and true if it sticks   (6)
     fn ratio_from_rest(&self, friction: f64) -> (f64, bool) {
         let needed = self.n_xz / self.n_xx;
         if needed.abs() <= friction { (needed, true) } else { (friction * needed.signum(), false) }
@@ -88,21 +88,21 @@ impl ContactPoint {
 /// The motion just after L's corner strikes with restitution `k`.
 ///
 /// I_x = m Δẋ, I_z = m Δż, Θ Δω = a I_z − b I_x   (2). While the corner slides I_x = ± μ I_z against the
-/// sliding; where it stops it sticks if friction suffices. The normal force gives back k² of the work that it
-/// took (Stronge 1990); without sliding before the impact that is ż_C' = −k ż_C   (3)–(6).
+/// sliding; when it stops it sticks if friction suffices. The normal force returns k² of the work that it
+/// absorbed (Stronge 1990); without sliding before the impact that is ż_C' = −k ż_C   (3)–(6).
 pub(super) fn strike_first_end(body: &Body, before: &State, contact: Contact, k: f64) -> Struck {
     let (a, b) = arms_m(body, before.angle_rad, body.cog_m);
     let mut point = ContactPoint::new(body, before, a, b);
     let friction = coefficient(contact);
     let (mut impulse_x, mut impulse_z) = (0.0, 0.0);
     if friction.is_infinite() && point.slip_m_s != 0.0 {
-        // Friction without limit stops the sliding before the normal force has done anything.
+        // Friction without limit stops the sliding before the normal force has had any effect.
         impulse_x = -point.slip_m_s / point.n_xx;
         point.approach_m_s -= point.n_xz * impulse_x;
         point.slip_m_s = 0.0;
     }
     let (first, last) = point.stretches(friction);
-    // A corner at rest on the target may still jam: friction that presses it on (Painlevé).
+    // A corner at rest on the target may still jam, if friction presses it on (Painlevé).
     let jams = || point.approach_m_s == 0.0 && first.as_ref().is_some_and(|s| normal_rate(&point, s) < 0.0);
     if point.approach_m_s < 0.0 || jams() {
         let (in_first, in_last) = normal_impulses(&point, first.as_ref(), &last, k);
@@ -152,17 +152,17 @@ fn normal_impulses(point: &ContactPoint, first: Option<&Stretch>, last: &Stretch
     if whole <= length {
         return (whole, 0.0);
     }
-    // The sliding stops while the contact expands: what is left of k² C goes into the last stretch.
+    // The sliding stops while the contact expands: the remainder of k² C goes into the last stretch.
     let left = (v * v * k * k / first_rate - at_stop * at_stop / first_rate) * 0.5;
     let out = (at_stop * at_stop + left * rate * 2.0).sqrt();
     (length, (out - at_stop) / rate)
 }
 
-/// \[P\] Table 1, with ż_S2 of the smooth impact put right: a rod that falls at v0 without rotation, rough or
+/// \[P\] Table 1, with ż_S2 of the smooth impact corrected: a rod that falls at v0 without rotation, rough or
 /// smooth   (7)
 ///
-/// `body` is a thin uniform rod; any friction counts as rough. One that turns or moves sideways as it strikes
-/// is none of \[P\]'s (2).
+/// `body` is a thin uniform rod; any friction counts as rough. A rod that turns or moves sideways as it
+/// strikes is outside \[P\]'s (2).
 pub(super) fn table_1(body: &Body, before: &State, contact: Contact, k: f64) -> Struck {
     if before.angular_velocity_rad_s != 0.0 || before.horizontal_velocity_m_s != 0.0 {
         return strike_first_end(body, before, contact, k);
@@ -178,7 +178,7 @@ pub(super) fn table_1(body: &Body, before: &State, contact: Contact, k: f64) -> 
     } else {
         3.0 * (1.0 + k) * v0 * cos / (2.0 * l)
     };
-    // ẋ_S2 = ω2 (l/2) sin φ0 where L does not slide, ż_S2 = k v0 − ω2 (l/2) cos φ0
+    // ẋ_S2 = ω2 (l/2) sin φ0 if L does not slide, ż_S2 = k v0 − ω2 (l/2) cos φ0
     let after = State {
         horizontal_velocity_m_s: if smooth { 0.0 } else { w * l / 2.0 * sin },
         vertical_velocity_m_s: k * v0 - w * l / 2.0 * cos,

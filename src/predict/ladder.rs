@@ -1,17 +1,17 @@
-//! A rung of the ladder of models to its prediction, and all rungs to the one that suffices.
+//! Predicts a drop with each model, and finds the simplest one that suffices.
 
-use super::held::Held;
+use super::held::HeldBody;
 use super::impact::{Struck, strike_first_end, table_1};
-use super::path::{PathEnd, Way};
+use super::path::{PathEnd, Track};
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{Fall, predict, thin_rod};
 use crate::data::{Body, CogVelocity, Contact, Drop, FlightRegime, Ladder, LadderStep, Prediction, Rung};
 
-/// What `rung` says; [`predict`] is the highest one.
+/// Predicts with the given model; [`predict`] is the highest one.
 ///
-/// The rungs below Coulomb friction take any friction for rough. For k = 0 those below the unilateral contact
-/// hold L on the target.
+/// The models below Coulomb friction treat any friction as rough. For k = 0 those below the unilateral
+/// contact hold L on the target.
 pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
     let ideal = match contact {
         Contact::Coulomb(coefficient) if coefficient > 0.0 => Contact::Rough,
@@ -32,47 +32,49 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
     }
 }
 
-/// Every rung's prediction, simplest first, and the simplest beside which no richer one says otherwise. The
-/// finite pulse is among them where the drop says how long it lasts.
+/// Predicts with every model, simplest first, and finds the simplest that no richer one contradicts. The
+/// finite pulse is included if the drop states its duration.
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
-    for rung in Rung::of(drop) {
+    for rung in Rung::for_drop(drop) {
         let prediction = predict_by(rung, body, drop, contact, k);
         let below = steps.last().and_then(|step| step.prediction.slap_down_speed_m_s);
         let change_percent =
             below.zip(prediction.slap_down_speed_m_s).map(|(below, speed)| 100.0 * (speed - below) / below);
-        steps.push(LadderStep { rung, adds: rung.adds(), prediction, change_percent });
+        steps.push(LadderStep { rung, adds: rung.physics(), prediction, change_percent });
     }
     let speeds: Vec<Option<f64>> = steps.iter().map(|step| step.prediction.slap_down_speed_m_s).collect();
     let suffices = (0..steps.len())
-        .find(|&i| speeds[i..].iter().all(|richer| Rung::say_the_same(speeds[i], *richer)))
+        .find(|&i| speeds[i..].iter().all(|richer| Rung::agree(speeds[i], *richer)))
         .map_or(Rung::FinitePulse, |i| steps[i].rung);
-    // Free of the last digits of the conversion.
+    // The last digits of the conversion are rounded off.
     let angle_deg = (drop.angle_rad.to_degrees() * 1e9).round() / 1e9;
     Ladder { angle_deg, contact, k, steps, suffices }
 }
 
-/// An impact law: body, motion before, contact law and k to the motion after.
+/// An impact law: computes the motion after an impact from body, motion before, contact law and k.
 type ImpactLaw = fn(&Body, &State, Contact, f64) -> Struck;
 
 impl Fall {
-    /// One flight; before it for k = 0 L on the target while it pushes, or where it `pulls` until R strikes.
+    /// One flight; for k = 0 it follows a rest of L on the target, while the target pushes, or if it `pulls`
+    /// until R strikes.
     fn one_flight(&self, impact: ImpactLaw, pulls: bool) -> Prediction {
         let start = State::falling(&self.body, self.drop.angle_rad, &self.drop);
         let struck = impact(&self.body, &start, self.contact, self.k);
         let outcome = if pulls && self.k <= 0.0 {
-            self.held(&struck.after)
+            self.path_when_held(&struck.after)
         } else {
-            Way::of(&self.body, &self.drop, self.contact, None).follow(struck.after, self.k)
+            Track::new(&self.body, &self.drop, self.contact, None).follow(struck.after, self.k)
         };
         self.prediction(&start, &struck, &outcome)
     }
 
-    /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.
-    fn held(&self, after: &State) -> PathEnd {
+    /// Path of L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction
+    /// between them.
+    fn path_when_held(&self, after: &State) -> PathEnd {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
-                let end = Support::of(&self.body, &self.drop, self.contact, Hold::Pulls).rest(after);
+                let end = Support::new(&self.body, &self.drop, self.contact, Hold::Pulls).follow(after);
                 end.filter(|end| end.strikes).map(|end| (end.at, end.time_s))
             }
             _ => self.closed_form(after).and_then(|held| {
@@ -84,13 +86,13 @@ impl Fall {
     }
 
     /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
-    fn closed_form(&self, after: &State) -> Option<Held<'_>> {
+    fn closed_form(&self, after: &State) -> Option<HeldBody<'_>> {
         let slides = match self.contact {
             Contact::Rough | Contact::Unknown => false,
             Contact::Smooth => true,
             Contact::Coulomb(_) => return None,
         };
-        Some(Held { body: &self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
+        Some(HeldBody { body: &self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
     }
 
     fn second_end_speed_m_s(&self, state: &State) -> f64 {
@@ -98,7 +100,7 @@ impl Fall {
         corner.horizontal_velocity_m_s.hypot(corner.vertical_velocity_m_s)
     }
 
-    /// What is told of a way that began with `start` and its first impact.
+    /// Prediction for a path that began with `start` and its first impact.
     pub fn prediction(&self, start: &State, struck: &Struck, outcome: &PathEnd) -> Prediction {
         let at = outcome.second_end.as_ref().map(|(state, _)| state);
         let corner = at.map(|state| state.corner(&self.body, second_end_m(&self.body)));
@@ -139,7 +141,7 @@ mod tests {
     use crate::data::example::anf18;
 
     fn drop(angle_deg: f64) -> Drop {
-        Drop::of_height(9.0, angle_deg.to_radians())
+        Drop::from_height(9.0, angle_deg.to_radians())
     }
 
     #[test]
@@ -156,27 +158,27 @@ mod tests {
 
     #[test]
     fn each_step_says_what_it_changes() {
-        let told = ladder(&anf18(), &drop(15.0), Contact::Coulomb(0.3), 0.5);
+        let prediction = ladder(&anf18(), &drop(15.0), Contact::Coulomb(0.3), 0.5);
         let speeds: Vec<f64> =
-            told.steps.iter().map(|s| s.prediction.slap_down_speed_m_s.expect("R strikes")).collect();
+            prediction.steps.iter().map(|s| s.prediction.slap_down_speed_m_s.expect("R strikes")).collect();
         // physics: rod 22.49, body rough 20.18, with friction 22.31 m/s.
         for (speed, expected) in speeds.iter().zip([22.49, 20.18, 22.31, 22.31, 22.31]) {
             assert!((speed - expected).abs() < 0.005, "{speeds:?}");
         }
-        assert!(told.steps[0].change_percent.is_none());
-        let change = told.steps[1].change_percent.expect("both strike");
+        assert!(prediction.steps[0].change_percent.is_none());
+        let change = prediction.steps[1].change_percent.expect("both strike");
         assert!((change - 100.0 * (speeds[1] / speeds[0] - 1.0)).abs() < 1e-12);
-        assert!(!told.steps[2].prediction.sticks && told.steps[1].prediction.sticks);
+        assert!(!prediction.steps[2].prediction.sticks && prediction.steps[1].prediction.sticks);
     }
 
     #[test]
     fn the_closed_form_stands_beside_the_flight() {
         let castor = thin_rod(20950.0, 4.486);
-        let told = predict_by(Rung::Unilateral, &castor, &drop(15.0), Contact::Rough, 0.0);
-        assert!((told.closed_form_speed_m_s.expect("k = 0") - 20.12).abs() < 0.005);
-        assert_eq!(told.regime, FlightRegime::Free);
+        let prediction = predict_by(Rung::Unilateral, &castor, &drop(15.0), Contact::Rough, 0.0);
+        assert!((prediction.closed_form_speed_m_s.expect("k = 0") - 20.12).abs() < 0.005);
+        assert_eq!(prediction.regime, FlightRegime::Free);
         let held = predict_by(Rung::Rod, &castor, &drop(15.0), Contact::Rough, 0.0);
-        assert_eq!(held.slap_down_speed_m_s, told.closed_form_speed_m_s);
+        assert_eq!(held.slap_down_speed_m_s, prediction.closed_form_speed_m_s);
         assert_eq!(held.regime, FlightRegime::Contact);
         assert!(predict(&castor, &drop(15.0), Contact::Rough, 0.5).closed_form_speed_m_s.is_none());
     }
@@ -189,8 +191,8 @@ mod tests {
             assert!(predict(&anf18(), &drop(angle_deg), Contact::Rough, 0.0).slap_down_speed_m_s.is_some());
         }
         for tenth in 400..600 {
-            let told = predict(&anf18(), &drop(f64::from(tenth) / 10.0), Contact::Rough, 0.0);
-            assert!(told.slap_down_speed_m_s.is_some(), "{tenth}: {told:?}");
+            let prediction = predict(&anf18(), &drop(f64::from(tenth) / 10.0), Contact::Rough, 0.0);
+            assert!(prediction.slap_down_speed_m_s.is_some(), "{tenth}: {prediction:?}");
         }
         assert!(predict(&anf18(), &drop(85.0), Contact::Rough, 0.0).slap_down_speed_m_s.is_none());
         let upright = |k| predict(&thin_rod(1000.0, 5.0), &drop(90.0), Contact::Coulomb(0.3), k);

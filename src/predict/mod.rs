@@ -1,4 +1,4 @@
-//! A body, a drop, a contact law and k to rebound, flight and slap-down: the analytical prediction.
+//! The analytical prediction: rebound, flight and slap-down for a body, a drop, a contact law and k.
 
 mod flight;
 mod held;
@@ -12,13 +12,13 @@ mod study;
 mod support;
 
 pub use ladder::{ladder, predict_by};
-pub use study::{default_uncertain, richest, study, usual_request};
+pub use study::{default_uncertain, richest_body, study, usual_request};
 
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, block_inertia_kg_m2};
-use path::Way;
+use path::Track;
 use state::State;
 
-/// What is predicted.
+/// Object of the prediction.
 #[derive(Debug, Clone, Copy)]
 struct Fall {
     body: Body,
@@ -27,7 +27,7 @@ struct Fall {
     k: f64,
 }
 
-/// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
+/// The rod or body of a cask: the rod is thin and uniform whatever the cask file states.
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
     if model == BodyModel::Rod {
         return thin_rod(cask.mass_kg, cask.length_m);
@@ -42,28 +42,28 @@ fn thin_rod(mass_kg: f64, length_m: f64) -> Body {
     Body { model: BodyModel::Rod, mass_kg, length_m, height_m: 0.0, cog_m: length_m / 2.0, inertia_kg_m2 }
 }
 
-/// The bodies that a cask file asks to be predicted: the rod, and the body where the file describes one.
+/// The bodies to predict for a cask file: the rod, and the body if the file describes one.
 pub fn bodies(cask: &Cask) -> Vec<Body> {
     let models = if cask.is_body { &[BodyModel::Rod, BodyModel::Body][..] } else { &[BodyModel::Rod] };
     models.iter().map(|model| body(cask, *model)).collect()
 }
 
-/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1),
-/// equations (1)–(14) of `docs/physics.md`: the highest rung of the ladder. The first impact lasts
+/// Predicts first impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1),
+/// equations (1)–(14) of `docs/physics.md`, with the most detailed model. The first impact lasts
 /// `drop.contact_duration_s`; 0 is an impulse.
 ///
-/// L strikes again where it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. Where R never
-/// strikes the slap-down's quantities are `None`.
+/// L strikes again if it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. If R never strikes
+/// the slap-down's quantities are `None`.
 #[must_use]
 pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
     predict_grazing(body, drop, contact, k, GRAZE_SHARE)
 }
 
-/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid
-/// limit, in which every touch is an impact.
+/// Like [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the
+/// rigid limit, in which every touch is an impact.
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
-    let (struck, outcome) = Way::of(body, drop, contact, Some(graze_share)).from(&start, drop, k);
+    let (struck, outcome) = Track::new(body, drop, contact, Some(graze_share)).from(&start, drop, k);
     Fall { body: *body, drop: *drop, contact, k }.prediction(&start, &struck, &outcome)
 }
 
@@ -84,7 +84,7 @@ mod tests {
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 
     fn drop(angle_deg: f64) -> Drop {
-        Drop { impact_velocity_m_s: V0_M_S, ..Drop::of_height(9.0, angle_deg.to_radians()) }
+        Drop { impact_velocity_m_s: V0_M_S, ..Drop::from_height(9.0, angle_deg.to_radians()) }
     }
 
     fn rod(length_m: f64) -> Body {

@@ -1,4 +1,4 @@
-//! The motion just after L's first impact to the motion just before R strikes.
+//! Follows the motion from just after L's first impact to just before R strikes.
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::{Struck, strike_first_end};
@@ -8,30 +8,30 @@ use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, FlightRegime};
 
-/// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound
-/// is below [`REST_M_S`].
+/// More impacts of L than this before R strikes count as endless bouncing: with k ≤ 0.96 the last rebound is
+/// below [`REST_M_S`].
 const MOST_IMPACTS: u32 = 300;
 
-/// A rebound slower than this, m/s, is a rest on Earth: it lifts L by 5 nm. Another gravity's lifts it as
-/// high.
+/// A rebound slower than this, m/s, is a rest on Earth: it lifts L by 5 nm. With another gravity the limit
+/// scales so that the height is equal.
 const REST_M_S: f64 = 3e-4;
 
-/// L that touches the target again sooner than this, s, has not left it on Earth: gravity moves a free corner
-/// by 5 nm.
+/// If L touches the target again sooner than this, s, it has not left it on Earth: gravity moves a free
+/// corner by 5 nm.
 const LET_GO_S: f64 = 3e-5;
 
-/// Gravity for which the two hold, m/s²: the default of a cask file.
+/// Gravity for which both limits hold, m/s²: the default of a cask file.
 const EARTH_M_S2: f64 = 9.81;
 
-/// What L meets, and how far its motion is followed.
+/// Conditions of a path: the contact of L, and the extent of the calculation.
 #[derive(Clone, Copy)]
-pub(super) struct Way<'a> {
+pub(super) struct Track<'a> {
     pub support: Support<'a>,
-    /// How deep L must sink to strike again, m; `None`: further impacts are left out.
+    /// Depth to which L must sink to strike again, m; `None` ignores further impacts.
     pub graze_m: Option<f64>,
 }
 
-/// How the way ends.
+/// End of a path.
 pub(super) struct PathEnd {
     /// The motion just before R strikes, and the time since the first impact, s.
     pub second_end: Option<(State, f64)>,
@@ -39,17 +39,17 @@ pub(super) struct PathEnd {
     pub regime: FlightRegime,
 }
 
-impl<'a> Way<'a> {
-    /// `graze_share` is the share of the length that L must sink to strike again; `None`: further impacts are
-    /// left out.
-    pub fn of(body: &'a Body, drop: &Drop, contact: Contact, graze_share: Option<f64>) -> Self {
+impl<'a> Track<'a> {
+    /// Prepares the path; `graze_share` is the share of the length that L must sink to strike again, and
+    /// `None` ignores further impacts.
+    pub fn new(body: &'a Body, drop: &Drop, contact: Contact, graze_share: Option<f64>) -> Self {
         Self {
-            support: Support::of(body, drop, contact, Hold::Pushes),
+            support: Support::new(body, drop, contact, Hold::Pushes),
             graze_m: graze_share.map(|share| share * body.length_m),
         }
     }
 
-    /// L's first impact, as long as the drop says, and the way after it.
+    /// Follows L's first impact, with the duration that the drop states, and the path after it.
     pub fn from(mut self, start: &State, drop: &Drop, k: f64) -> (Struck, PathEnd) {
         let body = self.support.body;
         let (struck, strikes_s) = push_first_end(body, start, drop, self.support.contact, k);
@@ -67,15 +67,15 @@ impl<'a> Way<'a> {
         (struck, outcome)
     }
 
-    /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
+    /// Follows flights, rests and further impacts of L until R strikes, or reports that it does not.
     pub fn follow(&self, after_impact: State, k: f64) -> PathEnd {
         let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
         let mut state = after_impact;
         let mut elapsed_s = 0.0;
         let mut outcome = PathEnd { second_end: None, impacts: 1, regime: FlightRegime::Free };
         loop {
-            if self.rests(&state) {
-                let (end, held) = self.rest(&state);
+            if self.is_at_rest(&state) {
+                let (end, held) = self.follow_rest(&state);
                 let Some(RestEnd { at, time_s, strikes }) = end else { return outcome };
                 if strikes {
                     let whole = held && outcome.impacts == 1 && elapsed_s == 0.0;
@@ -90,7 +90,7 @@ impl<'a> Way<'a> {
                 elapsed_s += time_s;
             }
             let second_s = second_end_touches(body, gravity_m_s2, &state);
-            match self.strikes_again(&state, second_s) {
+            match self.next_strike_s(&state, second_s) {
                 Some(time_s) if outcome.impacts < MOST_IMPACTS => {
                     let at = state.after(time_s, gravity_m_s2).with_first_end_at(body, self.support.sunk_m);
                     state = strike_first_end(body, &at, self.support.contact, k).after;
@@ -113,30 +113,30 @@ impl<'a> Way<'a> {
         self.support.gravity_m_s2 / EARTH_M_S2
     }
 
-    /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough
+    /// True if the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough
     /// corner up.
-    fn rests(&self, state: &State) -> bool {
+    fn is_at_rest(&self, state: &State) -> bool {
         let body = self.support.body;
         state.corner(body, body.cog_m).vertical_velocity_m_s < REST_M_S * self.gravity_share().sqrt()
     }
 
-    /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0,
-    /// unless it sinks deeper than a graze: then it has not left the target at all and slides on until it
-    /// rises by itself. The flag says whether the contact law held L all the time.
-    fn rest(&self, from: &State) -> (Option<RestEnd>, bool) {
-        let end = self.support.rest(from);
+    /// Follows L on the target until R strikes or the target would have to pull. L then flies, the limit k →
+    /// 0, unless it sinks deeper than a graze: then it has not left the target at all and slides on until it
+    /// rises by itself. The flag is true if the contact law held L all the time.
+    fn follow_rest(&self, from: &State) -> (Option<RestEnd>, bool) {
+        let end = self.support.follow(from);
         let Some(lifted) = end.filter(|end| !end.strikes) else { return (end, true) };
         let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &lifted.at);
-        let again_s = self.strikes_again(&lifted.at, second_s);
+        let again_s = self.next_strike_s(&lifted.at, second_s);
         if again_s.is_none_or(|again_s| again_s > LET_GO_S / self.gravity_share().sqrt()) {
             return (end, true);
         }
-        let slid = (Support { hold: Hold::Yields, ..self.support }).rest(&lifted.at);
+        let slid = (Support { hold: Hold::Yields, ..self.support }).follow(&lifted.at);
         (slid.map(|end| RestEnd { time_s: lifted.time_s + end.time_s, ..end }), false)
     }
 
-    /// When L strikes again before R does, deeper than a graze   (9)
-    fn strikes_again(&self, state: &State, second_s: Option<f64>) -> Option<f64> {
+    /// Time at which L strikes again before R does, deeper than a graze   (9)
+    fn next_strike_s(&self, state: &State, second_s: Option<f64>) -> Option<f64> {
         let graze_m = self.graze_m?;
         let first_s = first_end_touches(&self.support, state, second_s)?;
         let Some(second_s) = second_s else { return Some(first_s) };
@@ -144,7 +144,7 @@ impl<'a> Way<'a> {
         strikes.then_some(first_s)
     }
 
-    /// R at the target but with the axis past the vertical is the other side of the cask.
+    /// If R is at the target but the axis is past the vertical, the cask lies on its other side.
     fn is_slap_down(&self, at: &State) -> bool {
         let body = self.support.body;
         let corner = at.corner(body, second_end_m(body));

@@ -1,5 +1,5 @@
-//! A moving body and the length of L's contact to the motion as L leaves the target: a half-sine of force in
-//! place of an impulse.
+//! Motion when L leaves the target after a contact of finite duration: a half-sine of force instead of an
+//! impulse.
 
 use super::impact::{Struck, coefficient, strike_first_end};
 use super::state::{State, arms_m, runge_kutta, second_end_m};
@@ -9,16 +9,17 @@ use std::f64::consts::PI;
 /// Steps of the integration: sixteen times as many move the vertical speed of R by less than 1e-4, near
 /// sticking by some of that more.
 const STEPS: u32 = 16;
-/// Into so many parts a step goes in which a corner at rest begins to slide: near the friction that sticking
-/// needs it slides at both ends of the pulse.
+/// Number of parts of a step in which a corner at rest begins to slide: near the friction that sticking needs
+/// it slides at both ends of the pulse.
 const PARTS: f64 = 32.0;
-/// Rounds of the search for the force, and the rebound that ends it, m/s: one more secant follows it.
+/// Rounds of the search for the force, and the rebound error at which it ends, m/s: one more secant step
+/// follows.
 const ROUNDS: usize = 30;
 const CLOSE_M_S: f64 = 1e-5;
-/// More energy than this, over that before it, no contact gives: half sines that swing a short rod through
-/// the target in a long contact would.
+/// Upper limit on the energy after a contact, relative to that before: half sines that swing a short rod
+/// through the target in a long contact would exceed it.
 const MOST_ENERGY: f64 = 1.05;
-/// R lower than this above the target as L strikes strikes with it, m.
+/// If R is lower than this above the target when L strikes, it strikes too, m.
 const FLAT_M: f64 = 1e-9;
 /// A corner slower than this does not slide, m/s.
 const STOPPED_M_S: f64 = 1e-9;
@@ -32,12 +33,12 @@ struct Pulse<'a> {
     steps: u32,
 }
 
-/// L pushed for `drop.contact_duration_s` by F sin(π t/T), F such that its corner leaves as fast as after the
-/// impulse   (41)
+/// Motion after L is pushed for `drop.contact_duration_s` by F sin(π t/T), with F such that its corner leaves
+/// as fast as after the impulse   (41)
 ///
-/// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by
-/// moment. Where no such force is found, or one that adds energy, the impulse stands. Where R strikes while L
-/// is still pressed on, the motion is that, with the time since first contact, s.
+/// The arms a, b turn with the body, gravity acts, and friction holds the corner or lets it slide, moment by
+/// moment. If no such force is found, or one that adds energy, the impulse is used. If R strikes while L is
+/// still pressed on, the motion is that at the strike, with the time since first contact, s.
 pub(super) fn push_first_end(
     body: &Body,
     before: &State,
@@ -51,23 +52,23 @@ pub(super) fn push_first_end(
         return (struck, None);
     }
     let friction = coefficient(contact);
-    Pulse { body, gravity_m_s2: drop.gravity_m_s2, friction, duration_s, steps: STEPS }.push(before, struck)
+    Pulse { body, gravity_m_s2: drop.gravity_m_s2, friction, duration_s, steps: STEPS }.find(before, struck)
 }
 
 impl Pulse<'_> {
-    /// The pulse that lets L's corner go as fast as `struck` does.
-    fn push(&self, before: &State, struck: Struck) -> (Struck, Option<f64>) {
+    /// The pulse after which L's corner leaves as fast as in `struck`.
+    fn find(&self, before: &State, struck: Struck) -> (Struck, Option<f64>) {
         let Self { body, gravity_m_s2, duration_s, .. } = *self;
         let leaves_m_s = struck.after.corner(body, body.cog_m).vertical_velocity_m_s;
-        let start = self.stopped(before);
+        let start = self.stop_corner(before);
         let missed = |force_n: f64| {
-            let left = self.end(&start, force_n, false).0;
+            let left = self.follow_pulse(&start, force_n, false).0;
             left.corner(body, body.cog_m).vertical_velocity_m_s - leaves_m_s
         };
         // ∫ F sin(π t/T) dt = 2 F T/π
         let first_n = struck.vertical_impulse_n_s * PI / (2.0 * duration_s);
         let Some(force_n) = secant(missed, first_n) else { return (struck, None) };
-        let (left, time_s) = self.end(&start, force_n, true);
+        let (left, time_s) = self.follow_pulse(&start, force_n, true);
         let energy_j = |at: &State| at.kinetic_energy_j(body) + body.mass_kg * gravity_m_s2 * at.height_m;
         if energy_j(&left) > MOST_ENERGY * energy_j(before) {
             return (struck, None);
@@ -86,17 +87,17 @@ impl Pulse<'_> {
         (pushed, Some(time_s).filter(|time_s| *time_s < duration_s))
     }
 
-    /// Friction without limit stops the corner before the normal force has done anything.
-    fn stopped(&self, before: &State) -> State {
+    /// Friction without limit stops the corner before the normal force has had any effect.
+    fn stop_corner(&self, before: &State) -> State {
         if self.friction.is_finite() {
             return *before;
         }
         strike_first_end(self.body, before, Contact::Rough, -1.0).after
     }
 
-    /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is: of a
-    /// flat body at once.
-    fn end(&self, start: &State, force_n: f64, has_second_end: bool) -> (State, f64) {
+    /// Motion at the end of the pulse, or when R comes down before it, if that is possible, and its time: for
+    /// a flat body at once.
+    fn follow_pulse(&self, start: &State, force_n: f64, has_second_end: bool) -> (State, f64) {
         let (step_s, along_m) = (self.duration_s / f64::from(self.steps), second_end_m(self.body));
         let (mut at, mut time_s) = (*start, 0.0);
         if has_second_end && start.corner(self.body, along_m).height_m <= FLAT_M {
@@ -121,15 +122,15 @@ impl Pulse<'_> {
         (at, self.duration_s)
     }
 
-    /// A step of at most `longest_s` with one grip: it ends where the sliding stops, and near where it
-    /// begins. Also the time taken.
+    /// Advances by a step of at most `longest_s` in one contact state: it ends when the sliding stops, and
+    /// near its beginning. Returns the time of the step too.
     fn stretch(&self, at: &State, time_s: f64, longest_s: f64, force_n: f64) -> (State, f64) {
-        let sticks = |time_s: f64| self.grip(at, self.force_n(time_s, force_n)).is_none();
+        let sticks = |time_s: f64| self.friction_ratio(at, self.force_n(time_s, force_n)).is_none();
         let is_long = longest_s * PARTS * f64::from(self.steps) > self.duration_s;
         if is_long && sticks(time_s) != sticks(time_s + longest_s) {
             return self.stretch(at, time_s, longest_s * 0.5, force_n);
         }
-        let ratio = self.grip(at, self.force_n(time_s + longest_s * 0.5, force_n));
+        let ratio = self.friction_ratio(at, self.force_n(time_s + longest_s * 0.5, force_n));
         let (mut next, mut taken_s) = (self.step(at, ratio, (time_s, longest_s), force_n), longest_s);
         if ratio.is_some() {
             let (slip_m_s, later_m_s) = (self.slip_m_s(at), self.slip_m_s(&next));
@@ -152,29 +153,29 @@ impl Pulse<'_> {
         (time_s * (PI / self.duration_s)).sin() * largest_n
     }
 
-    /// F_x/F of a corner that slides, with `normal_n` on it; `None` where it sticks.
-    fn grip(&self, at: &State, normal_n: f64) -> Option<f64> {
+    /// F_x/F of a corner that slides, with `normal_n` on it; `None` if it sticks.
+    fn friction_ratio(&self, at: &State, normal_n: f64) -> Option<f64> {
         let slip_m_s = self.slip_m_s(at);
         if slip_m_s.abs() >= STOPPED_M_S {
             return Some(-self.friction * slip_m_s.signum());
         }
-        let needed_n = self.holding_n(at, normal_n);
+        let needed_n = self.holding_force_n(at, normal_n);
         (needed_n.abs() > self.friction * normal_n).then(|| self.friction * needed_n.signum())
     }
 
-    /// F_x that keeps the corner where it is, ẍ_C = F_x n_xx + a ω² − a b F/Θ = 0, n_xx = 1/m + b²/Θ.
-    fn holding_n(&self, at: &State, normal_n: f64) -> f64 {
+    /// F_x that keeps the corner in place, ẍ_C = F_x n_xx + a ω² − a b F/Θ = 0, n_xx = 1/m + b²/Θ.
+    fn holding_force_n(&self, at: &State, normal_n: f64) -> f64 {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let theta = self.body.inertia_kg_m2;
         let w = at.angular_velocity_rad_s;
         (a * b * normal_n / theta - a * w * w) / (b * b / theta + 1.0 / self.body.mass_kg)
     }
 
-    /// A step over `span_s`, from when and how long, with F_x/F as given or F_x that holds the corner.
+    /// A step over `span_s` (start and length), with a given F_x/F or with the F_x that holds the corner.
     fn step(&self, at: &State, ratio: Option<f64>, span_s: (f64, f64), largest_n: f64) -> State {
         runge_kutta(at, span_s, |at, time_s| {
             let normal_n = self.force_n(time_s, largest_n);
-            let along_n = ratio.map_or_else(|| self.holding_n(at, normal_n), |ratio| normal_n * ratio);
+            let along_n = ratio.map_or_else(|| self.holding_force_n(at, normal_n), |ratio| normal_n * ratio);
             let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
             State {
                 height_m: at.vertical_velocity_m_s,
@@ -187,7 +188,7 @@ impl Pulse<'_> {
     }
 }
 
-/// The root of `missed` near `first`; `None` where the secants do not close in on one.
+/// The root of `missed` near `first`; `None` if the secant method does not converge.
 fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<f64> {
     let (mut low, mut high) = ((first, missed(first)), (1.02 * first, missed(1.02 * first)));
     for _ in 0..ROUNDS {
@@ -215,7 +216,7 @@ mod tests {
     }
 
     fn lasting(angle_deg: f64, contact_duration_s: f64) -> Drop {
-        Drop { contact_duration_s, ..Drop::of_height(9.0, angle_deg.to_radians()) }
+        Drop { contact_duration_s, ..Drop::from_height(9.0, angle_deg.to_radians()) }
     }
 
     /// At 21° the corner sticks from about 0.6 on.
@@ -254,7 +255,7 @@ mod tests {
                     let friction = coefficient(contact);
                     let end = |steps| {
                         let pulse = Pulse { body: &body, gravity_m_s2: 9.81, friction, duration_s, steps };
-                        pulse.push(&start, struck()).0.after
+                        pulse.find(&start, struck()).0.after
                     };
                     let (few, many) = (end(STEPS), end(16 * STEPS));
                     none += u32::from(few == struck().after);

@@ -1,4 +1,4 @@
-//! A moving body to the position and velocity of its corners.
+//! Position and velocity of the corners of a moving body.
 
 use crate::data::{Body, Drop, planar};
 
@@ -32,13 +32,13 @@ pub(super) fn second_end_m(body: &Body) -> f64 {
     body.cog_m - body.length_m
 }
 
-/// What an integration moves by its slopes, themselves of the same shape.
+/// State of an integration, which its slopes, of the same type, advance.
 pub(super) trait Advance {
-    /// It after `step_s` with these slopes.
-    fn plus(&self, slope: &Self, step_s: f64) -> Self;
+    /// Advances by `step_s` with these slopes.
+    fn step(&self, slope: &Self, step_s: f64) -> Self;
 }
 
-/// A step of Runge's and Kutta's fourth order, `(from_s, step_s)`.
+/// A step of the fourth-order Runge-Kutta method, `(from_s, step_s)`.
 pub(super) fn runge_kutta<S: Advance>(
     at: &S,
     (from_s, step_s): (f64, f64),
@@ -46,14 +46,14 @@ pub(super) fn runge_kutta<S: Advance>(
 ) -> S {
     let half_s = step_s * 0.5;
     let one = slope(at, from_s);
-    let two = slope(&at.plus(&one, half_s), from_s + half_s);
-    let three = slope(&at.plus(&two, half_s), from_s + half_s);
-    let four = slope(&at.plus(&three, step_s), from_s + step_s);
-    at.plus(&one, step_s / 6.0).plus(&two, step_s / 3.0).plus(&three, step_s / 3.0).plus(&four, step_s / 6.0)
+    let two = slope(&at.step(&one, half_s), from_s + half_s);
+    let three = slope(&at.step(&two, half_s), from_s + half_s);
+    let four = slope(&at.step(&three, step_s), from_s + step_s);
+    at.step(&one, step_s / 6.0).step(&two, step_s / 3.0).step(&three, step_s / 3.0).step(&four, step_s / 6.0)
 }
 
 impl Advance for State {
-    fn plus(&self, slope: &Self, step_s: f64) -> Self {
+    fn step(&self, slope: &Self, step_s: f64) -> Self {
         Self {
             height_m: self.height_m + slope.height_m * step_s,
             angle_rad: self.angle_rad + slope.angle_rad * step_s,
@@ -65,7 +65,7 @@ impl Advance for State {
 }
 
 impl State {
-    /// Just before L strikes at v0, L on the target: ż_S = −v0 − ω a   (3)
+    /// Motion just before L strikes at v0, with L on the target: ż_S = −v0 − ω a   (3)
     pub fn falling(body: &Body, angle_rad: f64, drop: &Drop) -> Self {
         let (a, b) = arms_m(body, angle_rad, body.cog_m);
         Self {
@@ -81,8 +81,8 @@ impl State {
         }
     }
 
-    /// The same motion after a turn about S by `angle_rad`.
-    pub fn turned(&self, angle_rad: f64) -> Self {
+    /// Turns the body about S by `angle_rad`.
+    pub fn turn(&self, angle_rad: f64) -> Self {
         Self { angle_rad: self.angle_rad + angle_rad, ..*self }
     }
 
@@ -111,8 +111,8 @@ impl State {
         Corner { height_m: self.height_m - arms.1, horizontal_velocity_m_s, vertical_velocity_m_s }
     }
 
-    /// The same motion with L's corner at the depth `sunk_m` to the last digit: a nanometre below it would
-    /// strike again at once.
+    /// Moves L's corner to the depth `sunk_m` to the last digit: a nanometre below it would strike again at
+    /// once.
     pub fn with_first_end_at(&self, body: &Body, sunk_m: f64) -> Self {
         Self { height_m: arms_m(body, self.angle_rad, body.cog_m).1 - sunk_m, ..*self }
     }

@@ -1,35 +1,36 @@
-//! L on the target to the force that holds it, and to how it turns and slides: one step of its motion.
+//! Forces on L at rest on the target, and its rotation and sliding: one step of its motion.
 
 use super::impact::coefficient;
 use super::state::{Advance, State, arms_m, runge_kutta};
 use crate::data::{Body, Contact, Drop};
 
-/// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
+/// A corner that slides slower than this, m/s, was stopped by the impact, except for round-off.
 const STOPPED_M_S: f64 = 1e-9;
 
-/// Rough contact while L rests: with more friction the normal force of a sliding corner falls below a
-/// millionth of the weight.
+/// Friction of a rough contact while L rests: with more friction the normal force of a sliding corner falls
+/// below a millionth of the weight.
 const ROUGH: f64 = 1e6;
 
-/// The target L rests on, and what holds it there.
+/// The target under L, and the condition under which it holds L.
 #[derive(Clone, Copy)]
 pub(super) struct Support<'a> {
     pub body: &'a Body,
     pub gravity_m_s2: f64,
     pub contact: Contact,
     pub hold: Hold,
-    /// How far the first impact has crushed L: its corner rests so deep below the target plane, m.
+    /// Depth of L's corner below the target plane after the first impact has crushed it, m.
     pub sunk_m: f64,
 }
 
-/// When the target lets go of L.
+/// Condition under which the target releases L.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// Never: it pulls as well as it pushes, as in \[P\] Table 2.
+    /// Never: the target pulls as well as it pushes, as in \[P\] Table 2.
     Pulls,
-    /// Where holding L as it moves, stuck or sliding, would need a pull   (10)
+    /// The target cannot pull: L leaves if holding it, stuck or sliding, would need a pull   (10)
     Pushes,
-    /// Where L would rise by itself, g < b ω². A stuck corner that only a pull would hold slides before that.
+    /// L leaves if it would rise by itself, g < b ω². A stuck corner that only a pull would hold slides
+    /// before that.
     Yields,
 }
 
@@ -41,7 +42,7 @@ pub(super) struct Turning {
     pub slip_m_s: f64,
 }
 
-/// How the corner meets the target.
+/// Contact state of the corner on the target.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Grip {
     Sticks,
@@ -50,11 +51,11 @@ pub(super) enum Grip {
         way: f64,
         ratio: f64,
     },
-    /// The friction presses the corner on without bound (Painlevé): it stops at once.
+    /// Friction presses the corner on without bound (Painlevé): it stops at once.
     Jams,
 }
 
-/// What the target does and what follows.
+/// Forces of the target and the resulting accelerations.
 #[allow(clippy::struct_field_names, reason = "the fields end in their units")]
 pub(super) struct Forces {
     /// N/m, m/s².
@@ -63,17 +64,17 @@ pub(super) struct Forces {
     pub angular_acceleration_rad_s2: f64,
     /// ẍ_C, m/s².
     pub slip_rate_m_s2: f64,
-    /// What friction must give for the corner not to slide, T/m = b ω̇ − a ω², m/s².
+    /// Friction that keeps the corner from sliding, T/m = b ω̇ − a ω², m/s².
     held_m_s2: f64,
 }
 
 impl<'a> Support<'a> {
-    pub fn of(body: &'a Body, drop: &Drop, contact: Contact, hold: Hold) -> Self {
+    pub fn new(body: &'a Body, drop: &Drop, contact: Contact, hold: Hold) -> Self {
         Self { body, gravity_m_s2: drop.gravity_m_s2, contact, hold, sunk_m: 0.0 }
     }
 
-    /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T
-    /// N: ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
+    /// Forces for z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T
+    /// = r_T N: ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
     pub fn forces(&self, at: &Turning, grip: Grip) -> Forces {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
@@ -102,8 +103,8 @@ impl<'a> Support<'a> {
         coefficient(self.contact).min(ROUGH)
     }
 
-    /// How much friction N leaves over beside that which holds a stuck corner, m/s².
-    fn left_m_s2(&self, stuck: &Forces) -> f64 {
+    /// Friction that remains available beside that which holds a stuck corner, m/s².
+    fn spare_friction_m_s2(&self, stuck: &Forces) -> f64 {
         let normal = match self.hold {
             Hold::Pulls => stuck.normal_m_s2.abs(),
             Hold::Pushes | Hold::Yields => stuck.normal_m_s2,
@@ -116,14 +117,14 @@ impl<'a> Support<'a> {
         }
     }
 
-    /// Whether the corner sticks, and against what it slides if not; with the forces that then act.
-    pub fn grip(&self, at: &Turning) -> (Grip, Forces) {
+    /// Contact state, with the direction of sliding if it slides, and the forces that then act.
+    pub fn find_grip(&self, at: &Turning) -> (Grip, Forces) {
         let slides = |grip| (grip, self.forces(at, grip));
         let arms_m = || arms_m(self.body, at.angle_rad, self.body.cog_m);
         if at.slip_m_s == 0.0 {
             let stuck = self.forces(at, Grip::Sticks);
             let lets_go = self.hold == Hold::Pushes && stuck.normal_m_s2 <= 0.0;
-            if self.left_m_s2(&stuck) >= 0.0 || lets_go {
+            if self.spare_friction_m_s2(&stuck) >= 0.0 || lets_go {
                 return (Grip::Sticks, stuck);
             }
             let way = -stuck.held_m_s2.signum();
@@ -135,8 +136,8 @@ impl<'a> Support<'a> {
         slides(if r2 + a * (a - ratio * b) <= 1e-9 * r2 { Grip::Jams } else { Grip::Slides { way, ratio } })
     }
 
-    /// T/N of a corner `b` below S that slides `way`; a target that pulls turns its sign. N has the sign of g
-    /// − b ω².
+    /// T/N of a corner `b` below S that slides in direction `way`; a target that pulls changes its sign. N
+    /// has the sign of g − b ω².
     fn ratio(&self, at: &Turning, b: f64, way: f64) -> f64 {
         let pushes = self.gravity_m_s2 - b * at.angular_velocity_rad_s.powi(2);
         -self.friction() * way * if self.hold == Hold::Pulls { pushes.signum() } else { 1.0 }
@@ -166,27 +167,27 @@ impl<'a> Support<'a> {
         })
     }
 
-    /// The inclination at which R strikes while L rests, rad: l sin φ is how deep L's corner lies.
+    /// The inclination at which R strikes while L rests, rad: L's corner is l sin φ deep.
     pub fn down_rad(&self) -> f64 {
         (self.sunk_m / self.body.length_m).clamp(-1.0, 1.0).asin()
     }
 
-    /// What ends a stretch with one `grip`: each is positive until then.
+    /// Margins of a stretch in one contact state: each is positive until the stretch ends.
     pub fn margins(&self, at: &Turning, grip: Grip) -> [f64; 3] {
         let forces = self.forces(at, grip);
         let lift = if self.hold == Hold::Pulls { 1.0 } else { forces.normal_m_s2 };
         let hold = match grip {
-            // A corner that slides from rest has used up nothing yet.
+            // A corner that starts to slide from rest has not used any margin yet.
             Grip::Slides { way, ratio } if ratio != 0.0 => way * at.slip_m_s,
             Grip::Slides { .. } => 1.0,
-            Grip::Sticks | Grip::Jams => self.left_m_s2(&forces),
+            Grip::Sticks | Grip::Jams => self.spare_friction_m_s2(&forces),
         };
         [at.angle_rad - self.down_rad(), lift, hold]
     }
 }
 
 impl Advance for Turning {
-    fn plus(&self, slope: &Self, step_s: f64) -> Self {
+    fn step(&self, slope: &Self, step_s: f64) -> Self {
         Self {
             angle_rad: self.angle_rad + slope.angle_rad * step_s,
             angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
@@ -196,7 +197,7 @@ impl Advance for Turning {
 }
 
 impl Turning {
-    pub fn of(body: &Body, state: &State) -> Self {
+    pub fn from_state(body: &Body, state: &State) -> Self {
         let slip_m_s = state.corner(body, body.cog_m).horizontal_velocity_m_s;
         Self {
             angle_rad: state.angle_rad,

@@ -1,18 +1,18 @@
-//! What a recording holds to the sources that look like accelerations in the plane of the drop.
+//! Finds the sources of a recording that look like accelerations in the plane of the drop.
 
 use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2, is_rate_of_turn};
 
 /// Units of a sensor's output that the cask file knows.
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
 
-/// Words in a source that make it no measured quantity.
+/// Words in a source that indicate no measured quantity.
 const NO_QUANTITY: &str = "time stamp sec nsec nanosec seq covariance sample_rate frame_id index";
 
-/// Words in a source that make it another quantity than an acceleration.
+/// Words in a source that indicate another quantity than acceleration.
 const OTHER_QUANTITIES: &str = "orientation angular gyro temp";
 
-/// The sources that look like accelerations and can be read: by unit or name where any does, else all that
-/// are numbers; none where those that do look so cannot be read.
+/// Readable sources that look like accelerations: by unit or name if any does, else all numeric ones; none if
+/// those that look so cannot be read.
 pub(super) fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
     let numeric: Vec<&ListedChannel> =
         candidates(listing).filter(|c| c.unreadable.is_none() && c.kind != "topic").collect();
@@ -30,13 +30,13 @@ pub(super) fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
     } else {
         numeric
     };
-    // A source that never changes is an axis that nobody connected, unless nothing else is there.
+    // A source that never changes is an axis without a sensor, unless it is the only source.
     let moves = |c: &&ListedChannel| c.range.is_none_or(|(low, high)| low < high);
     if taken.iter().any(moves) { taken.into_iter().filter(moves).collect() } else { taken }
 }
 
-/// The sources that might be accelerations if they could be read; those that look like it where any does.
-pub(super) fn unreadable(listing: &Listing) -> Vec<&ListedChannel> {
+/// Sources that might be accelerations if they could be read; those that look like it, if any does.
+pub(super) fn unreadable_sources(listing: &Listing) -> Vec<&ListedChannel> {
     let all: Vec<&ListedChannel> = candidates(listing).filter(|c| c.unreadable.is_some()).collect();
     let likely: Vec<&ListedChannel> = all.iter().copied().filter(|c| is_likely(c)).collect();
     if likely.is_empty() { all } else { likely }
@@ -47,11 +47,11 @@ pub(super) fn reason(listed: &ListedChannel) -> String {
     format!("{}: {}", listed.source, listed.unreadable.as_deref().unwrap_or("it cannot be read"))
 }
 
-/// What is there instead, and what makes it a recording that can be analysed.
-pub(super) fn none(listing: &Listing) -> miette::Report {
+/// Lists the available sources, and says how to make a recording that can be analysed.
+pub(super) fn no_acceleration(listing: &Listing) -> miette::Report {
     /// More than this many reasons no longer fit a terminal's few lines.
     const HANDFUL: usize = 4;
-    let unreadable = unreadable(listing);
+    let unreadable = unreadable_sources(listing);
     let reasons: Vec<String> = unreadable.iter().take(HANDFUL).map(|listed| reason(listed)).collect();
     let more = match unreadable.len().saturating_sub(HANDFUL) {
         0 => String::new(),
@@ -87,18 +87,18 @@ fn candidates(listing: &Listing) -> impl Iterator<Item = &ListedChannel> {
         .filter(|c| !OTHER_QUANTITIES.split(' ').any(|word| has_word(&c.source, word)))
 }
 
-/// Whether a source is not called as times, counts or names are.
+/// True unless a source is named like times, counts or names.
 pub(super) fn is_quantity(source: &str) -> bool {
     !NO_QUANTITY.split(' ').any(|word| has_word(source, word)) && !is_time(source)
 }
 
-/// Whether unit or name say that it is an acceleration.
+/// True if unit or name indicate an acceleration.
 fn is_likely(listed: &ListedChannel) -> bool {
     let is_known = |unit: &str| acceleration_unit_m_s2(unit).is_some() || VOLTAGES.contains(&unit);
     listed.unit.as_deref().is_some_and(is_known) || listed.source.to_lowercase().contains("acc")
 }
 
-/// Whether `word` stands in `source` between letters of another kind.
+/// True if `word` stands in `source` between letters of another kind.
 pub(super) fn has_word(source: &str, word: &str) -> bool {
     let source = source.to_lowercase();
     let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphabetic());
@@ -107,7 +107,7 @@ pub(super) fn has_word(source: &str, word: &str) -> bool {
     })
 }
 
-/// Whether a source is named as times are.
+/// True if a source is named like times.
 pub(super) fn is_time(source: &str) -> bool {
     let last = source.rsplit(['/', '.']).next().unwrap_or(source).to_lowercase();
     last == "t"

@@ -1,29 +1,29 @@
-//! An analysis to the document that the terminal and `report.html` show.
+//! Document of an analysis, for the terminal and `report.html`.
 
 use super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable, TableCell,
     TableShape, Tone,
 };
-use super::first_screen::{RIGID, agreement, built_in, by_measured, not_checkable, of_corner};
-use super::impacts::{impacts, not_determined, prototype};
+use super::first_screen::{RIGID, agreement, built_in, corner_words, measured_inputs, not_checkable};
+use super::impacts::{impacts, missing_notes, prototype};
 use super::kind;
 use super::prediction::prediction_columns;
 use super::reconstruction::{assumed, budget, flight, reconstruction};
-use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_said, others, tested};
+use super::record::{self, LIMIT_EXCEEDED, TOLD, limits_sentence, others, test_chapter};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::shocks::shocks;
 use super::simulation::simulation;
 use super::text::{
-    Style, causes, determined, dropped, json_word, reasons, sentence, span_text, taken_mark, true_minus,
-    verdict_sentence, verdict_style, verdict_word, yes,
+    Style, causes, chosen_mark, drop_words, json_word, or_unknown, reasons, sentence, span_text, true_minus,
+    verdict_sentence, verdict_style, verdict_word, yes_no,
 };
-use super::words::{KEPT_SENTENCE, OVER_SENTENCE};
+use super::words::{OVER_SENTENCE, REGIME_SENTENCE};
 use crate::data::{
     Analysis, CaskFile, DropResult, Finding, FlightRegime, Prediction, QuantityRow, STANDARD_GRAVITY_M_S2,
     Setting, Severity,
 };
 
-/// The whole document, with what a decision needs on its first page.
+/// The whole document, with the basis of a decision on its first page.
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let (name, input) = (&file.cask.name, &result.input);
@@ -42,7 +42,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             product: "Drop test report",
             foot: format!("{} · recording {hash}", result.test.id.as_deref().unwrap_or(name)),
             heading,
-            about: format!("{} · {}", dropped(&file.drop), input.recording),
+            about: format!("{} · {}", drop_words(&file.drop), input.recording),
             footer: "An interval holds the value with 95 % probability. Times count from the recording's \
                      first sample. Body axes: axial from the first end to the second, transverse away from \
                      the target. [P]: Analytical, Numerical and Experimental Investigations on the Impact \
@@ -58,11 +58,11 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             record::limits(&result.limits),
             quality(&result.quality),
             Chapter::new("Accelerations and velocities")
-                .only(Medium::Page)
+                .only_on(Medium::Page)
                 .with_all(pictures(&["accelerations", "velocities"])),
-            tested(file, "What was tested")
-                .with(ChapterPart::picture("setup", ""))
-                .with(record::sensors(file)),
+            test_chapter(file, "What was tested")
+                .then(ChapterPart::picture("setup", ""))
+                .then(record::sensors(file)),
             quantities(result),
             impacts(result).with_all(pictures(&["impacts", "crush"])),
             shocks(result),
@@ -77,20 +77,20 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             channels(result).with_all(pictures(&["spectra"])),
             others(result),
             provenance(result, file),
-            Chapter::new("Photographs").only(Medium::Page).with(photographs),
-            Chapter::new("Signatures").only(Medium::Page).with(signatures),
+            Chapter::new("Photographs").only_on(Medium::Page).then(photographs),
+            Chapter::new("Signatures").only_on(Medium::Page).then(signatures),
         ],
     }
 }
 
-/// What no reader of the first page should miss.
+/// Statement that no reader of the first page should miss.
 const NO_REFERENCE: &str = "The results relate to this one drop of this item only, and the verdict to the \
                             data of its recording, not to the cask. The intervals were tested on simulated \
                             drops of known truth; no recording with a certified slap-down velocity was \
                             available.";
 
-/// The verdict and its cause, the four numbers that a reader looks for first, and what they rest on: on a
-/// page; a terminal has its first screen.
+/// Chapter on the verdict and its cause, the four headline numbers, and their basis: on a page; a terminal
+/// has its first screen.
 fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let causes = Some(causes(result).join(" ")).filter(|said| !said.is_empty());
     let assumed = assumed(result, file, false).map(|words| format!("The interval {words}."));
@@ -100,28 +100,28 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let banner = |style, word: &str, sentence| PartContent::Banner(Tone(style, word.to_owned()), sentence);
     let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
     let verdict = banner(verdict_style(result.verdict), word, verdict_sentence(result));
-    let limits = limits_said(&result.limits, usize::MAX);
+    let limits = limits_sentence(&result.limits, usize::MAX);
     let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
     let alarm = alarm.map(|said| banner(Style::Red, LIMIT_EXCEEDED, said));
     let banners = alarm.into_iter().chain([verdict]).map(ChapterPart::from);
-    let said = [limits.map(|said| format!("Limits: {said}")), causes, assumed, unchecked];
-    let said = said.into_iter().flatten().map(ChapterPart::text);
+    let sentences = [limits.map(|sentences| format!("Limits: {sentences}")), causes, assumed, unchecked];
+    let sentences = sentences.into_iter().flatten().map(ChapterPart::text);
     Chapter::new("")
-        .only(Medium::Page)
+        .only_on(Medium::Page)
         .with_all(kind::words(result, file).map(ChapterPart::text))
         .with_all(banners)
-        .with(PartContent::Figures(figures(result, file)))
-        .with_all(said)
-        .with(ChapterPart::note(NO_REFERENCE))
+        .then(PartContent::Figures(figures(result, file)))
+        .with_all(sentences)
+        .then(ChapterPart::note(NO_REFERENCE))
 }
 
 fn figures(result: &DropResult, file: &CaskFile) -> Vec<[String; 3]> {
-    let corner = of_corner(result)
+    let corner = corner_words(result)
         .map_or_else(String::new, |corner| format!("; of the corner {}", corner.replace(' ', "\u{a0}")));
     let model = result.model.as_ref().map_or("no model taken", |model| model.rung.words());
     let compared = result.comparison.as_ref();
     let predicted = compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s"));
-    let by = compared.map(|_| format!("{model}, {}", by_measured(result, file)));
+    let by = compared.map(|_| format!("{model}, {}", measured_inputs(result, file)));
     let figures = [
         (
             "Slap-down speed, measured, ±\u{a0}95\u{a0}%",
@@ -140,7 +140,7 @@ fn figures(result: &DropResult, file: &CaskFile) -> Vec<[String; 3]> {
         ),
         ("Coefficient of restitution k, ±\u{a0}95\u{a0}%", interval(result.k.as_ref()), String::new()),
     ];
-    figures.map(|(name, value, detail)| [name.to_owned(), determined(value), detail]).into()
+    figures.map(|(name, value, detail)| [name.to_owned(), or_unknown(value), detail]).into()
 }
 
 /// First impact, slap-down and k, each with its interval or with the reason why it is missing.
@@ -154,16 +154,16 @@ fn quantities(result: &DropResult) -> Chapter {
     let fact = |row: QuantityRow| Fact::number(row.name, interval(row.value.as_ref())).note(row.remark);
     let estimates = |caption, rows: Vec<QuantityRow>, places: &[&str]| {
         let facts = ChapterPart::facts(caption, rows.into_iter().map(fact).collect());
-        [facts].into_iter().chain(not_determined(result, places)).collect()
+        [facts].into_iter().chain(missing_notes(result, places)).collect()
     };
-    Chapter::new("Results, ± 95 %").with(PartContent::Beside([
+    Chapter::new("Results, ± 95 %").then(PartContent::Beside([
         estimates("First impact", first_impact.collect(), &["first_impact.", "k"]),
         estimates("Slap-down", slap_down.collect(), &["slap_down."]),
     ]))
 }
 
-/// The measured speed beside the predicted one, the model taken and why, and all that were held against the
-/// measurement.
+/// Chapter on the measured and the predicted speed, the selected model with its reason, and all models that
+/// were compared.
 fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(
@@ -173,83 +173,83 @@ fn comparison(result: &DropResult, file: &CaskFile) -> Chapter {
         },
         |c| {
             let (style, by) =
-                (if c.agrees { Style::Green } else { Style::Yellow }, by_measured(result, file));
+                (if c.agrees { Style::Green } else { Style::Yellow }, measured_inputs(result, file));
             let facts = vec![
                 Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),
                 Fact::number("predicted", pair(c.predicted, c.predicted_u95, "m/s")).note(by),
-                Fact::number("difference", percent(c.difference_percent)).toned(style, agreement(c.agrees)),
+                Fact::number("difference", percent(c.difference_percent)).tone(style, agreement(c.agrees)),
             ];
             // A page has them in its first boxes.
-            ChapterPart::facts("", facts).only(Medium::Terminal)
+            ChapterPart::facts("", facts).only_on(Medium::Terminal)
         },
     );
     let model = taken.map(|model| {
-        let candidates = ReportTable::of(&model.candidates)
+        let candidates = ReportTable::from_rows(&model.candidates)
             .caption(
                 "The analytical models with the measured k, the simplest first, without those that change \
                  nothing. Taken: the first that agrees, all richer ones agreeing too and none farther from \
                  it than the measured speed is known; else the richest.",
             )
-            .chosen(|c| c.rung == model.rung)
-            .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
+            .mark_chosen(|c| c.rung == model.rung)
+            .head("Model", |c| format!("{}{}", c.rung.words(), chosen_mark(c.rung == model.rung)))
             .number("Predicted, m/s", |c| optional_fixed(c.predicted, 2))
             .number("± 95 %, m/s", |c| optional(c.u95, 2))
             .number("Measured against predicted", |c| percent(c.difference_percent))
-            .text("Within both intervals", |c| yes(c.consistent));
+            .text("Within both intervals", |c| yes_no(c.consistent));
         let built_in = built_in(result).map(|words| format!(" The agreement is partly {words}."));
         let built_in = built_in.unwrap_or_default();
         let words = format!("Model: {}. {}{built_in}", model.rung.words(), sentence(&model.reason));
         [ChapterPart::text(words), candidates.into()]
     });
     Chapter::new("Measured beside predicted")
-        .with(compared)
-        .with(ChapterPart::picture("comparison", ""))
+        .then(compared)
+        .then(ChapterPart::picture("comparison", ""))
         .with_all(model.into_iter().flatten())
 }
 
-/// Every finding: severity, code, channel and span, and what it says.
+/// Chapter on every finding: severity, code, channel and span, and its sentence.
 pub(super) fn quality(issues: &[Finding]) -> Chapter {
     let chapter = Chapter::new("Quality");
     if issues.is_empty() {
-        return chapter.with(ChapterPart::text("No check found anything to say."));
+        return chapter.then(ChapterPart::text("No check found anything to say."));
     }
     let style = |severity| match severity {
         Severity::Note => Style::Dim,
         Severity::Warning => Style::Yellow,
         Severity::Error => Style::Red,
     };
-    let findings = ReportTable::of(issues)
+    let findings = ReportTable::from_rows(issues)
         .class("findings")
         .shape(TableShape::Items)
-        .tag("Severity", |i| TableCell::toned(style(i.severity), json_word(i.severity)))
+        .tag("Severity", |i| TableCell::tone(style(i.severity), json_word(i.severity)))
         .code("Check", |i| json_word(i.code))
         .text("Channel", |i| i.channel.as_deref().unwrap_or(MISSING))
-        .soft("When", |i| span_text(i).unwrap_or_else(|| MISSING.into()))
+        .line("When", |i| span_text(i).unwrap_or_else(|| MISSING.into()))
         .text("Finding", |i| true_minus(&i.message));
-    chapter.with(findings)
+    chapter.then(findings)
 }
 
-/// What the analytical models say at the angle of the drop.
+/// Chapter on the predictions of the analytical models at the angle of the drop.
 fn predictions(result: &DropResult) -> Chapter {
-    let table = ReportTable::of(&result.predictions).class("").caption(
+    let table = ReportTable::from_rows(&result.predictions).class("").caption(
         "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the \
          first impact.",
     );
     let table = prediction_columns(table, Some, false)
         .number("Angle, °", |p| optional_fixed(p.slap_down_angle_deg, 1))
-        .only(Medium::Page)
+        .only_on(Medium::Page)
         .number("Impacts of the first end", |p| p.first_end_impacts.to_string())
-        .only(Medium::Page);
+        .only_on(Medium::Page);
     let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
     let over = result.predictions.iter().any(Prediction::turns_over);
-    let notes = [kept.then_some(KEPT_SENTENCE), over.then_some(OVER_SENTENCE)];
-    Chapter::new("Predictions").with(table).with_all(notes.into_iter().flatten().map(ChapterPart::note))
+    let notes = [kept.then_some(REGIME_SENTENCE), over.then_some(OVER_SENTENCE)];
+    Chapter::new("Predictions").then(table).with_all(notes.into_iter().flatten().map(ChapterPart::note))
 }
 
-/// What each channel is worth.
+/// Chapter on the quality of each channel.
 fn channels(result: &DropResult) -> Chapter {
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
-    let table = ReportTable::of(&result.channels)
+    let table = ReportTable::from_rows(&result.channels)
         .class("")
         .caption("Offset and noise (RMS) in g; where no impact is tabulated, also the peaks of the event")
         .head("Channel", |c| &c.name[..])
@@ -260,17 +260,17 @@ fn channels(result: &DropResult) -> Chapter {
         .text("Unit", |c| &c.unit[..])
         .number("Offset", |c| g(c.offset_m_s2))
         .number("Noise", |c| g(c.noise_m_s2));
-    // The impacts have the peaks otherwise, each with its interval.
+    // Otherwise the impacts show the peaks, each with its interval.
     let has_peaks = result.impacts.iter().all(|impact| impact.channels.is_empty());
     let table = table
         .number("Filtered peak", |c| g(c.peak_filtered_m_s2))
-        .if_any(has_peaks)
+        .show_if(has_peaks)
         .number("Unfiltered peak", |c| g(c.peak_raw_m_s2))
-        .if_any(has_peaks);
-    Chapter::new("Channels").with(table)
+        .show_if(has_peaks);
+    Chapter::new("Channels").then(table)
 }
 
-/// Which files, which version, which settings.
+/// Chapter on files, version and settings.
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     let input = &result.input;
     let own = result.program.as_ref().and_then(|program| program.sha256.as_deref());
@@ -292,14 +292,14 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         words("Recording read by", input.reader.as_deref()),
     ];
     let facts = facts.into_iter().flatten().collect();
-    let stated = record::of_cask_file(file, &result.settings);
+    let stated = record::cask_file_settings(file, &result.settings);
     let is_new = |s: &&Setting| !TOLD.contains(&s.name.as_str());
     let all: Vec<_> = result.settings.iter().chain(&stated).filter(is_new).collect();
-    let settings = ReportTable::of(&all)
+    let settings = ReportTable::from_rows(&all)
         .class("")
         .caption("Every other setting and where it came from; cask and drop stand under \"What was tested\"")
         .head("Setting", |s| &s.name[..])
         .text("Value", |s| true_minus(&s.value))
         .text("From", |s| &s.origin[..]);
-    Chapter::new("Provenance").with(ChapterPart::facts("", facts)).with(settings)
+    Chapter::new("Provenance").then(ChapterPart::facts("", facts)).then(settings)
 }

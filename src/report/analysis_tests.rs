@@ -74,7 +74,7 @@ fn a_missing_quantity_says_why() {
 
 /// One that looks as if it had this code, severity and effect.
 fn finding(code: IssueCode, severity: Severity, effect: Effect, words: &str) -> Finding {
-    Finding { code, severity, effect, message: words.into(), ..ChannelFinding::Polarity.on("A1") }
+    Finding { code, severity, effect, message: words.into(), ..ChannelFinding::Polarity.tag("A1") }
 }
 
 #[test]

@@ -1,18 +1,19 @@
-//! A document to a page: one file without network, for the desk and for A4 paper. Every word is escaped here.
+//! Writes a document as a page: one file without network, for the desk and for A4 paper. Every word is
+//! escaped here.
 
 use super::document::{
     CellKind, ChapterPart, Fact, Frame, Medium, PartContent, ReportColumn, ReportDocument, ReportTable,
     SentenceRole, TableCell, Tone, Words,
 };
 use super::pictures::draw::Picture;
-use super::text::{Style, capital, printable};
+use super::text::{Style, capital, sanitize};
 use crate::data::Photo;
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
 const STYLE: &str = include_str!("report.css");
-/// uPlot 1.6.32 (MIT) with its style, and what makes the figures of it.
+/// uPlot 1.6.32 (MIT) with its style, and the script that turns figures into its plots.
 const UPLOT_STYLE: &str = include_str!("live/uplot-1.6.32.min.css");
 const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_str!("live/live.js")];
 
@@ -27,10 +28,10 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                // Whatever a file smuggled in could neither run nor call out.
+                // The policy keeps a script that a file smuggled in from running or connecting.
                 meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(generator);
-                title { (printable(title)) }
+                title { (sanitize(title)) }
                 style { (PreEscaped(STYLE)) (PreEscaped(style)) (PreEscaped(foot_style("left", foot)))
                     @if is_live(pictures) {
                     (PreEscaped(UPLOT_STYLE)) } @if let Some(words) = &letterhead.footer {
@@ -39,21 +40,21 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
             body { main {
                 header {
                     @if let Some(logo) = &letterhead.logo { (image(logo, "logo")) }
-                    @if let Some(words) = &letterhead.header { p { (printable(words)) } }
+                    @if let Some(words) = &letterhead.header { p { (sanitize(words)) } }
                     div class="product" { (product) " · " (generator) }
-                    h1 { (printable(heading)) }
-                    p class="soft" { (printable(about)) }
+                    h1 { (sanitize(heading)) }
+                    p class="soft" { (sanitize(about)) }
                 }
                 @for (i, chapter) in document.chapters.iter().enumerate() {
-                    @if let Some(words) = chapter.heading(Medium::Page).map(printable) {
+                    @if let Some(words) = chapter.heading(Medium::Page).map(sanitize) {
                         h2 id=(anchor(&words)) { (words) }
                     }
-                    @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
+                    @for passage in chapter.parts_on(Medium::Page) { (self::passage(passage, pictures)) }
                     @if i == 0 { (contents(document)) }
                 }
                 footer {
                     (footer)
-                    @if let Some(words) = &letterhead.footer { p { (printable(words)) } }
+                    @if let Some(words) = &letterhead.footer { p { (sanitize(words)) } }
                 }
                 @if !data.is_empty() { script type="application/json" id="data" { (PreEscaped(data)) } }
                 @for script in &scripts { script { (PreEscaped(script)) } }
@@ -63,10 +64,10 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
     .into_string()
 }
 
-/// The chapters, and the files beside the page; nothing on a page without such files.
+/// List of the chapters, and of the files beside the page; empty on a page without such files.
 fn contents(document: &ReportDocument) -> Markup {
     let headings = document.chapters.iter().filter_map(|chapter| chapter.heading(Medium::Page));
-    let chapters = headings.map(|words| (format!("#{}", anchor(words)), printable(words)));
+    let chapters = headings.map(|words| (format!("#{}", anchor(words)), sanitize(words)));
     let files = document.page.files.iter().map(|name| ((*name).to_owned(), (*name).to_owned()));
     let links =
         |links: Vec<(String, String)>| html! { @for (to, words) in links { a href=(to) { (words) } " " } };
@@ -78,17 +79,17 @@ fn contents(document: &ReportDocument) -> Markup {
     } }
 }
 
-/// A heading as the name of its place.
+/// Turns a heading into the name of its anchor.
 fn anchor(words: &str) -> String {
     let parts = words.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
     parts.collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// Words at a place below each printed page; every sign that could end the words is written by its number.
+/// Words at a place below each printed page; characters that could end the words are written as numbers.
 fn foot_style(place: &str, words: &str) -> String {
     let plain =
         |c: char| if c.is_alphanumeric() || c == ' ' { c.into() } else { format!("\\{:x} ", u32::from(c)) };
-    let words: String = printable(words).chars().map(plain).collect();
+    let words: String = sanitize(words).chars().map(plain).collect();
     format!("@page {{ @bottom-{place} {{ content: \"{words}\" }} }}")
 }
 
@@ -101,25 +102,25 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         },
         PartContent::Figures(figures) => html! {
             dl class="figures" { @for [name, value, detail] in figures {
-                div { dt { (name) } dd { (value) @if !detail.is_empty() { small { (printable(detail)) } } } }
+                div { dt { (name) } dd { (value) @if !detail.is_empty() { small { (sanitize(detail)) } } } }
             } }
         },
         PartContent::Facts(caption, facts) => self::facts(caption, facts),
         PartContent::ReportTable(table) => self::table(table),
         PartContent::Picture(name, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
-                figure id=(name) aria-label=(printable(&picture.alt)) class=[class(room)] {
+                figure id=(name) aria-label=(sanitize(&picture.alt)) class=[class(room)] {
                     (PreEscaped(&picture.svg))
                     @if !picture.live.is_empty() {
                         script type="application/json" { (PreEscaped(&picture.live)) }
                     }
-                    figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
+                    figcaption { strong { (sanitize(&picture.title)) ". " } (sanitize(&picture.caption)) }
                 }
             }
         },
         PartContent::Photographs(photos) => html! {
             @for photo in photos {
-                figure class="photo" { (image(photo, "")) figcaption { (printable(&photo.name)) } }
+                figure class="photo" { (image(photo, "")) figcaption { (sanitize(&photo.name)) } }
             }
         },
         PartContent::List(sentences) => {
@@ -134,25 +135,25 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
     }
 }
 
-/// A picture whole in the page; as an image, an SVG runs and fetches nothing.
+/// Embeds a picture in the page; as an image, an SVG runs and fetches nothing.
 fn image(Photo { name, media_type, bytes }: &Photo, class: &str) -> Markup {
     let data = format!("data:{media_type};base64,{}", STANDARD.encode(bytes));
-    html! { @if !bytes.is_empty() { img class=[self::class(class)] alt=(printable(name)) src=(data); } }
+    html! { @if !bytes.is_empty() { img class=[self::class(class)] alt=(sanitize(name)) src=(data); } }
 }
 
-/// Whether any picture is to be zoomed.
+/// True if a picture can be zoomed.
 fn is_live(pictures: &[Picture]) -> bool {
     pictures.iter().any(|picture| !picture.live.is_empty())
 }
 
-/// What runs in the page.
+/// Scripts of the page.
 fn scripts(document: &ReportDocument, pictures: &[Picture]) -> Vec<&'static str> {
     let live = if is_live(pictures) { &SCRIPTS[..] } else { &[] };
     let own = Some(document.page.script).filter(|script| !script.is_empty());
     live.iter().copied().chain(own).collect()
 }
 
-/// Nothing from elsewhere, and no script but these very ones.
+/// Content security policy: nothing from other sites, and no script but these.
 fn policy(scripts: &[&str]) -> String {
     let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
     let hashes: String = scripts.iter().map(hash).collect();
@@ -184,9 +185,9 @@ fn sentence(role: SentenceRole, words: &Words) -> Markup {
     html! { p class=[class(name)] { (prose(words.on(Medium::Page))) } }
 }
 
-/// A sentence; what stands between backticks in it is a key or a word of the command line.
+/// Formats a sentence; text between backticks is a key or a word of the command line.
 fn prose(words: &str) -> Markup {
-    let words = printable(words);
+    let words = sanitize(words);
     html! { @for (i, part) in words.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else {
     (part) } } }
 }
@@ -195,12 +196,12 @@ fn facts(caption: &str, facts: &[Fact]) -> Markup {
     let noted = facts.iter().any(|fact| !fact.note.1.is_empty());
     html! {
         table class="whole" {
-            @if !caption.is_empty() { caption { (printable(caption)) } }
+            @if !caption.is_empty() { caption { (sanitize(caption)) } }
             tbody { @for fact in facts { tr {
-                th scope="row" { (capital(&printable(&fact.name))) @if fact.is_default {
+                th scope="row" { (capital(&sanitize(&fact.name))) @if fact.is_default {
                     " " (default_mark("default")) } }
                 (cell(fact.kind, &fact.value.as_str().into(), None))
-                @if noted { td class="soft" { (printable(fact.shown_note())) } }
+                @if noted { td class="soft" { (sanitize(fact.shown_note())) } }
             } } }
         }
     }
@@ -211,30 +212,30 @@ fn default_mark(word: &str) -> Markup {
 }
 
 fn table(table: &ReportTable) -> Markup {
-    let columns = table.shown(Medium::Page);
+    let columns = table.columns_on(Medium::Page);
     let (rows, left_out) = table.rows(Medium::Page);
     let number = |column: &ReportColumn| (column.kind == CellKind::Number).then_some("n");
-    // A row of more cells than a phone is wide stands there as a list, each cell behind its head.
+    // A row with more cells than a phone is wide becomes a list there, each cell after its head.
     let is_stacked = columns.len() > 3 && matches!(table.class, "" | "whole");
     let classes = if is_stacked { format!("{} stack", table.class) } else { table.class.to_owned() };
     html! {
         table class=[class(classes.trim())] {
-            @if !table.caption.is_empty() { caption { (printable(&table.caption)) } }
+            @if !table.caption.is_empty() { caption { (sanitize(&table.caption)) } }
             thead { tr { @for column in &columns {
-                th scope="col" class=[number(column)] { (printable(column.head.on(Medium::Page))) }
+                th scope="col" class=[number(column)] { (sanitize(column.head.on(Medium::Page))) }
             } } }
             tbody { @for (row, is_chosen) in table.chosen.iter().enumerate().take(rows) {
                 tr class=[is_chosen.then_some("chosen")] { @for column in &columns {
                     (cell(column.kind, &column.cells[row],
-                        is_stacked.then(|| printable(column.head.on(Medium::Page))).as_deref())) } }
+                        is_stacked.then(|| sanitize(column.head.on(Medium::Page))).as_deref())) } }
             } }
         }
         @if let Some(sentence) = left_out { p class="note" { (sentence) } }
     }
 }
 
-/// Words of a machine, which may go on in the next line behind a mark, and behind so many letters without
-/// one.
+/// Machine-readable text, which may continue on the next line after a punctuation mark, or after a number of
+/// letters without one.
 fn code(words: &str) -> Markup {
     const LONGEST: usize = 16;
     let letters: Vec<char> = words.chars().collect();
@@ -242,9 +243,9 @@ fn code(words: &str) -> Markup {
     html! { code { @for part in parts { (part.iter().collect::<String>()) wbr; } } }
 }
 
-/// A cell; below `head` where its row is stacked.
+/// Writes a cell; below `head` if its row is stacked.
 fn cell(kind: CellKind, cell: &TableCell, head: Option<&str>) -> Markup {
-    let text = printable(cell.words.on(Medium::Page));
+    let text = sanitize(cell.words.on(Medium::Page));
     let shown = html! { @if cell.link.is_empty() { (prose(&text)) } @else { a href=(cell.link) { (text) } } };
     let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() {
     " " } (default_mark(cell.mark)) } };

@@ -1,7 +1,7 @@
-//! A document to Markdown, its pictures beside it.
+//! Writes a document as Markdown, with its pictures in files beside it.
 
 use super::document::{CellKind, ChapterPart, Medium, PartContent, ReportDocument, ReportTable, TableCell};
-use super::text::printable;
+use super::text::sanitize;
 
 /// The Markdown.
 pub(crate) fn markdown(document: &ReportDocument) -> String {
@@ -9,7 +9,7 @@ pub(crate) fn markdown(document: &ReportDocument) -> String {
     for chapter in &document.chapters {
         let heading = chapter.heading(Medium::Markdown).map(cell_text).unwrap_or_default();
         blocks.extend((!heading.is_empty()).then(|| format!("### {heading}\n")));
-        let shown = chapter.shown(Medium::Markdown).into_iter();
+        let shown = chapter.parts_on(Medium::Markdown).into_iter();
         blocks.extend(shown.filter_map(|part| passage(part, &heading)));
     }
     blocks.join("\n")
@@ -18,17 +18,17 @@ pub(crate) fn markdown(document: &ReportDocument) -> String {
 fn passage(passage: &ChapterPart, heading: &str) -> Option<String> {
     match &passage.content {
         PartContent::Sentence(_, words) => {
-            Some(format!("{}\n", printable(words.on(Medium::Markdown)).replace('<', "&lt;")))
+            Some(format!("{}\n", sanitize(words.on(Medium::Markdown)).replace('<', "&lt;")))
         }
         PartContent::Picture(name, _) => Some(format!("![{heading}]({name}.svg)\n")),
         PartContent::ReportTable(table) => Some(self::table(table)),
-        // What only pages and terminals have.
+        // Other parts exist only for pages and terminals.
         _ => None,
     }
 }
 
 fn table(table: &ReportTable) -> String {
-    let columns = table.shown(Medium::Markdown);
+    let columns = table.columns_on(Medium::Markdown);
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let heads = columns.iter().map(|column| cell_text(column.head.on(Medium::Markdown)));
     let rule = columns.iter().map(|_| "---".to_owned());
@@ -48,5 +48,5 @@ fn cell(kind: CellKind, cell: &TableCell) -> String {
 
 /// Text that cannot leave its cell or begin markup.
 fn cell_text(text: &str) -> String {
-    printable(text).replace('|', "\\|").replace('<', "&lt;").replace('`', " ")
+    sanitize(text).replace('|', "\\|").replace('<', "&lt;").replace('`', " ")
 }

@@ -1,12 +1,12 @@
-//! A document to the text that a terminal of so many columns shows, with SGR colours that the caller strips
-//! where none are read.
+//! Sets a document as text for a terminal of a given width, with SGR colours that the caller strips if they
+//! cannot be shown.
 
 use super::document::{
     CellKind, ChapterPart, Fact, Medium, PartContent, ReportColumn, ReportDocument, ReportTable,
     SentenceRole, TableCell, TableShape, Tone,
 };
 use super::rounding::MISSING;
-use super::text::{Style, lines, printable, styled, styled_lines, wrap};
+use super::text::{Style, lines, sanitize, styled, styled_lines, wrap};
 use comfy_table::ColumnConstraint::LowerBoundary;
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle, Width};
 
@@ -15,20 +15,20 @@ const FACT_WIDTH: usize = 22;
 
 /// The whole document, in lines of at most `width` columns; its tables without their captions.
 pub(crate) fn text(document: &ReportDocument, width: usize) -> String {
-    written(document, width, false)
+    write_document(document, width, false)
 }
 
-/// The document as its page has it, in lines of at most `width` columns.
+/// The document with all parts of its page, in lines of at most `width` columns.
 pub(crate) fn full_text(document: &ReportDocument, width: usize) -> String {
-    written(document, width, true)
+    write_document(document, width, true)
 }
 
-fn written(document: &ReportDocument, width: usize, has_captions: bool) -> String {
+fn write_document(document: &ReportDocument, width: usize, has_captions: bool) -> String {
     let mut out = String::new();
     for chapter in &document.chapters {
         out.extend(chapter.heading(Medium::Terminal).map(|words| heading(words, width)));
         out.extend(
-            chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width, has_captions)),
+            chapter.parts_on(Medium::Terminal).into_iter().map(|part| passage(part, width, has_captions)),
         );
     }
     out
@@ -59,7 +59,7 @@ fn passage(passage: &ChapterPart, width: usize, has_captions: bool) -> String {
             head + &lines(facts.iter().map(|one| fact(one, names.clamp(FACT_WIDTH, width / 2), width)))
         }
         PartContent::ReportTable(table) => {
-            let caption = printable(&table.caption).replace('`', "");
+            let caption = sanitize(&table.caption).replace('`', "");
             let is_captioned = has_captions && !caption.is_empty() && !table.chosen.is_empty();
             let caption = if is_captioned { wrap(&caption, width, 2) } else { String::new() };
             styled_lines(Style::Dim, &caption) + &self::table(table, width)
@@ -70,12 +70,12 @@ fn passage(passage: &ChapterPart, width: usize, has_captions: bool) -> String {
             .filter(|passage| passage.is_shown(Medium::Terminal))
             .map(|part| self::passage(part, width, has_captions))
             .collect(),
-        // What is drawn.
+        // A terminal shows no pictures.
         _ => String::new(),
     }
 }
 
-/// A name, its value and the words on it beside one another, or what has no room below the name.
+/// A name, its value and the remark beside one another, or below the name if they do not fit.
 fn fact(fact: &Fact, names: usize, width: usize) -> String {
     let words = fact.shown_note();
     let line = format!("  {:<names$}{:<FACT_WIDTH$}", fact.name, fact.value);
@@ -88,24 +88,24 @@ fn fact(fact: &Fact, names: usize, width: usize) -> String {
         return line.trim_end().to_owned();
     }
     let note = styled(fact.note.0, words);
-    // What has no room beside the value stands below it.
+    // A note that does not fit beside the value goes below it.
     let is_beside = line.chars().count() + words.chars().count() <= width;
     if is_beside { line + &note } else { format!("{}\n      {note}", line.trim_end()) }
 }
 
 fn table(table: &ReportTable, width: usize) -> String {
-    let columns = table.shown(Medium::Terminal);
+    let columns = table.columns_on(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
     let gap =
         if table.shape == TableShape::Fitting && !fits(&columns, rows, width, longest_line) { 1 } else { 2 };
-    // A row of many cells that a line does not hold reads as a list of them, as on a phone.
+    // A row with many cells that does not fit a line becomes a list, as on a phone.
     let longest_word = |head: &str| head.split_whitespace().map(|word| word.chars().count()).max();
     let is_stacked = columns.len() > 3 && !fits(&columns, rows, width, longest_word);
     let apart = if table.shape == TableShape::ApartItems { "\n" } else { "" };
     let mut out = match &table.shape {
-        TableShape::Columns if is_stacked => (0..rows).map(|row| stacked(&columns, row, width)).collect(),
+        TableShape::Columns if is_stacked => (0..rows).map(|row| stack(&columns, row, width)).collect(),
         TableShape::Columns | TableShape::Fitting => lines(aligned(&columns, rows, gap, width).concat()),
-        TableShape::Groups(names) => grouped(&columns, rows, names, width),
+        TableShape::Groups(names) => group(&columns, rows, names, width),
         TableShape::Items | TableShape::ApartItems => {
             (0..rows).map(|row| apart.to_owned() + &item(&columns, row, width)).collect()
         }
@@ -116,9 +116,9 @@ fn table(table: &ReportTable, width: usize) -> String {
     out
 }
 
-/// The words of a cell; `None` where the table has no such row.
+/// The words of a cell; `None` if the table has no such row.
 fn cell(column: &ReportColumn, row: usize) -> String {
-    let words = |cell: &TableCell| printable(cell.words.on(Medium::Terminal)) + cell.mark;
+    let words = |cell: &TableCell| sanitize(cell.words.on(Medium::Terminal)) + cell.mark;
     column.cells.get(row).map_or_else(String::new, words)
 }
 
@@ -127,7 +127,7 @@ fn longest_line(words: &str) -> Option<usize> {
     words.lines().map(|line| line.chars().count()).max()
 }
 
-/// Whether columns two apart, with heads as wide as `of_head` says, are narrower than the terminal.
+/// True if columns two apart, with heads as wide as `of_head` gives, are narrower than the terminal.
 fn fits(columns: &[&ReportColumn], rows: usize, most: usize, of_head: fn(&str) -> Option<usize>) -> bool {
     let widest = |column: &&ReportColumn| {
         let cells = (0..rows).map(|row| longest_line(&cell(column, row)));
@@ -136,9 +136,10 @@ fn fits(columns: &[&ReportColumn], rows: usize, most: usize, of_head: fn(&str) -
     columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= most - 2
 }
 
-/// The lines of the heads, and those of each row, the columns `gap` apart; cells too wide are wrapped.
+/// The lines of the heads, and those of each row, with `gap` between the columns; cells that are too wide are
+/// wrapped.
 fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
-    /// Stands in a column of its own where a row begins, and is taken off again: a row may have several
+    /// Marks the beginning of a row in a separate column, which is then removed: a row may have several
     /// lines.
     const BEGINS: char = '•';
     let mut table = comfy_table::Table::new();
@@ -157,7 +158,7 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
         let Some(column) = column.filter(|column| column.kind == CellKind::Number) else { continue };
         set.set_cell_alignment(CellAlignment::Right);
         if is_narrow {
-            // A number that goes on in the next line is another one.
+            // A number must not be broken across lines, since its parts would be other numbers.
             let longest = (0..rows).map(|row| cell(column, row).chars().count()).max().unwrap_or(0);
             let most = (width / 2).min(longest + usize::from(gap));
             set.set_constraint(LowerBoundary(Width::Fixed(u16::try_from(most).unwrap_or(40))));
@@ -175,15 +176,15 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
     found
 }
 
-/// The table with the name of each group on a line of its own above its rows.
-fn grouped(columns: &[&ReportColumn], rows: usize, names: &[String], width: usize) -> String {
+/// Writes a table with the name of each group on a separate line above its rows.
+fn group(columns: &[&ReportColumn], rows: usize, names: &[String], width: usize) -> String {
     let mut out = Vec::new();
     let mut before = "";
     for (i, row) in aligned(columns, rows, 2, width).into_iter().enumerate() {
-        // The first one is that of the heads.
+        // Index 0 belongs to the heads.
         let name = i.checked_sub(1).and_then(|i| names.get(i)).map_or("", String::as_str);
         if name != before {
-            out.push(format!("  {}", printable(name)).trim_end().to_owned());
+            out.push(format!("  {}", sanitize(name)).trim_end().to_owned());
         }
         out.extend(row);
         before = name;
@@ -191,8 +192,8 @@ fn grouped(columns: &[&ReportColumn], rows: usize, names: &[String], width: usiz
     lines(out)
 }
 
-/// The first cell, and below it the others that are not missing, each behind its head.
-fn stacked(columns: &[&ReportColumn], row: usize, width: usize) -> String {
+/// Writes the first cell, and below it the others that are not missing, each after its head.
+fn stack(columns: &[&ReportColumn], row: usize, width: usize) -> String {
     let [first, others @ ..] = columns else { return String::new() };
     let cells = others.iter().map(|column| (column.head.on(Medium::Terminal), cell(column, row)));
     let cells = cells.filter(|(_, words)| words != MISSING && !words.is_empty());
@@ -218,7 +219,7 @@ mod tests {
     #[test]
     fn a_long_cell_is_wrapped_within_the_width() {
         let rows = [("A1", "word ".repeat(40), "1.0")];
-        let rows = ReportTable::of(&rows)
+        let rows = ReportTable::from_rows(&rows)
             .text("name", |r| r.0)
             .text("words", |r| &r.1[..])
             .number("number", |r| r.2);
@@ -234,14 +235,14 @@ mod tests {
     fn groups_are_named_whatever_wraps() {
         let names = ["/cask/first_end/imu", "/cask/first_end/imu", "", "/cask/second_end/imu"];
         let fields = ["  .linear_acceleration.of_the_upper_sensor.x", "  .y", "A column with a name", "  .z"];
-        let table: ReportTable = ReportTable::of(&fields)
+        let table: ReportTable = ReportTable::from_rows(&fields)
             .head("source", |f| *f)
             .text("words", |f| if *f == "  .y" { "word ".repeat(30) } else { "–".into() })
             .number("samples", |_| "200000")
             .into();
         let names = names.map(str::to_owned);
         for width in [60, 80] {
-            let text = grouped(&table.shown(Medium::Terminal), fields.len(), &names, width);
+            let text = group(&table.columns_on(Medium::Terminal), fields.len(), &names, width);
             assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
             let at = |part: &str| text.lines().position(|line| line.trim_start().starts_with(part));
             let [first, second] = ["/cask/first_end/imu", "/cask/second_end/imu"].map(at);

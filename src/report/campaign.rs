@@ -1,5 +1,5 @@
-//! Lines of results to a campaign: its table, CSV, JSON and page; a recording that failed is a row with its
-//! reason.
+//! Collects lines of results as a campaign: its table, CSV, JSON and page; a recording that failed is a row
+//! with its reason.
 
 mod columns;
 mod drop_curves;
@@ -14,9 +14,9 @@ pub use drop_curves::drop_curves;
 pub use files::CampaignFiles;
 pub use series::PredictedCurve;
 
-use super::text::distinct;
+use super::text::dedup;
 use crate::data::keys::{CHANNEL, TABLES, Takes};
-use crate::data::shown::short;
+use crate::data::shown::show;
 use crate::data::{Comparison, Estimate, Verdict};
 use columns::{Columns, NamedQuantity};
 use drop_curves::DropCurves;
@@ -25,25 +25,25 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
-/// Rows that a page shows at most: more are for a program to read.
+/// Most rows on a page: a program must read more.
 const MOST_ROWS: usize = 2000;
-/// Casks that a page has a chapter and pictures of; `campaign.json` pools all.
+/// Most casks with a chapter and pictures on a page; `campaign.json` pools all.
 const MOST_SERIES: usize = 100;
 
 /// One recording of a campaign.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct BatchRow {
-    /// Its name in the campaign.
+    /// Name of the recording in the campaign.
     pub id: String,
     /// The recording, as given.
     pub recording: String,
-    /// Its cask file, as given.
+    /// Cask file, as given.
     pub cask: Option<String>,
-    /// Its report under `--out`.
+    /// Report under `--out`.
     pub report: Option<String>,
     /// The exit status that `analyze` would have.
     pub exit: u8,
-    /// The overall word; none where it could not be analysed.
+    /// The verdict; `None` if the recording could not be analysed.
     pub verdict: Option<Verdict>,
     /// Slap-down speed, m/s.
     pub slap_down_speed: Option<Estimate>,
@@ -51,25 +51,25 @@ pub struct BatchRow {
     pub k: Option<Estimate>,
     /// The limits that are exceeded, by their keys.
     pub exceeded: Vec<String>,
-    /// The model taken.
+    /// The selected model.
     pub model: Option<String>,
     /// Measured beside predicted.
     pub comparison: Option<Comparison>,
     /// Warnings and errors among the findings.
     pub findings: usize,
-    /// Their codes, each once: of what took k or the slap-down speed, then errors, then warnings.
+    /// Codes, each once: first those that removed k or the slap-down speed, then errors, then warnings.
     pub codes: Vec<String>,
-    /// Those of the notes.
+    /// Codes of the notes.
     pub note_codes: Vec<String>,
     /// Why it could not be analysed.
     pub error: Option<String>,
     /// An earlier row of the same recording, which counts once among the repeats.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub same_recording_as: Option<String>,
-    /// Where it stands in the pictures.
+    /// Position in the pictures.
     #[serde(skip)]
     pub(crate) at: DropPoint,
-    /// All of its quantities and its curves, of as many rows as a page has room for.
+    /// Drop with all quantities and curves, for as many rows as fit on a page.
     #[serde(skip)]
     quantities: Vec<NamedQuantity>,
     #[serde(skip)]
@@ -79,15 +79,15 @@ pub struct BatchRow {
     carried: Columns,
 }
 
-/// What Windows takes for a device, whatever ending follows.
+/// Names that Windows reserves for devices, with any extension.
 const DEVICES: &str = "CON PRN AUX NUL COM1 COM2 COM3 COM4 COM5 COM6 COM7 COM8 COM9 LPT1 LPT2 LPT3 LPT4 LPT5 \
                        LPT6 LPT7 LPT8 LPT9";
 
-/// The name of a test as the name of a folder that leads nowhere else.
+/// Turns the name of a test into the name of a folder that stays inside its parent.
 pub fn folder_name(test: &str) -> String {
     let is_plain = |c: char| !c.is_control() && !"/\\:*?\"<>|".contains(c);
     let plain: String = test.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-    // "..." is a way out of the folder and no name, and ".x" is hidden.
+    // "..." would leave the folder, and ".x" is hidden.
     let plain = plain.trim_matches(['.', ' ']);
     let device = plain.split('.').next().unwrap_or_default().trim_end();
     if plain.is_empty() {
@@ -99,8 +99,8 @@ pub fn folder_name(test: &str) -> String {
     }
 }
 
-/// The first number among a line's settings that no cask file may state, with its place: no run of this
-/// program wrote it.
+/// The first number among a line's settings that no cask file may state, with its path: such a line is not
+/// from this program.
 pub fn impossible(line: &Value) -> Option<String> {
     for (name, stated) in line["settings"].as_object().into_iter().flatten() {
         let channels = stated.as_array().map_or(std::slice::from_ref(stated), Vec::as_slice);
@@ -110,7 +110,7 @@ pub fn impossible(line: &Value) -> Option<String> {
             if let (Takes::Number(allowed), Some(number)) = (key.takes, number)
                 && !allowed.holds(number)
             {
-                let (key, number) = (key.name, short(number));
+                let (key, number) = (key.name, show(number));
                 return Some(format!("settings.{name}.{key} is {number}, which no cask file may state"));
             }
         }
@@ -118,41 +118,41 @@ pub fn impossible(line: &Value) -> Option<String> {
     None
 }
 
-/// What pictures and pools need of a drop.
+/// Values of a drop for pictures and pools.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct DropPoint {
-    /// Its number in the campaign, from 1.
+    /// Number in the campaign, from 1.
     pub(crate) number: u32,
-    /// The cask's name, and all that is stated of the cask and its fall but the angle.
+    /// Name of the cask, with all statements on it and its fall except the angle.
     pub(crate) cask: String,
     pub(crate) series: String,
     pub(crate) angle_deg: Option<f64>,
     /// Half-width of the stated angle, degrees.
     pub(crate) angle_u95_deg: f64,
-    /// Of the test, as RFC 3339 writes it.
+    /// Date of the test, as in RFC 3339.
     pub(crate) date: Option<String>,
     /// Largest deceleration of the struck end, m/s², and energy absorbed, J, of both impacts.
     pub(crate) peaks_m_s2: [Option<f64>; 2],
     pub(crate) energies_j: [Option<f64>; 2],
 }
 
-/// A part of a line; none where it has none, or not in this form.
+/// A part of a line; `None` if it is missing or has another form.
 fn part<T: DeserializeOwned>(line: &Value, place: &str) -> Option<T> {
     T::deserialize(line.pointer(place)?).ok()
 }
 
 impl BatchRow {
-    /// Why it was not analysed, or which limits are exceeded and what was found.
-    fn why(&self) -> String {
+    /// The reason why it was not analysed, or the exceeded limits and the findings.
+    fn reason(&self) -> String {
         let exceeded = self.exceeded.iter().map(|key| format!("exceeds its limit of {key}"));
         let found = exceeded.chain(self.codes.iter().cloned());
         self.error.clone().unwrap_or_else(|| found.collect::<Vec<_>>().join(", "))
     }
 
-    /// The row of a line.
-    pub fn of(line: &Value) -> Self {
+    /// Reads the row of a line.
+    pub fn from_line(line: &Value) -> Self {
         let verdict: Option<Verdict> = part(line, "/verdict");
-        // What is no folder of a campaign would be a link to elsewhere in its page.
+        // A path outside the campaign's folder would make a link to elsewhere in its page.
         let folder = part(line, "/campaign/report").filter(|folder: &String| folder_name(folder) == *folder);
         let codes = |severity| {
             let all = line["quality"].as_array().into_iter().flatten();
@@ -179,20 +179,20 @@ impl BatchRow {
             model: part(line, "/model/name"),
             comparison: part(line, "/comparison"),
             findings: grave.len(),
-            codes: distinct(took.chain(grave)).into_iter().map(str::to_owned).collect(),
-            note_codes: distinct(codes("note")).into_iter().map(str::to_owned).collect(),
+            codes: dedup(took.chain(grave)).into_iter().map(str::to_owned).collect(),
+            note_codes: dedup(codes("note")).into_iter().map(str::to_owned).collect(),
             error: part(line, "/error"),
             same_recording_as: None,
-            at: DropPoint::of(line),
+            at: DropPoint::from_line(line),
             quantities: columns::quantities(line),
             curves: part(line, "/curves"),
-            carried: columns::carried(line).map(|(name, value)| (name.clone(), value.clone())).collect(),
+            carried: columns::extras(line).map(|(name, value)| (name.clone(), value.clone())).collect(),
         }
     }
 }
 
 impl DropPoint {
-    fn of(line: &Value) -> Self {
+    fn from_line(line: &Value) -> Self {
         let stated = |table: &str| line["settings"][table].as_object().into_iter().flatten();
         let of_drop = stated("drop").filter(|(key, _)| *key != "angle_deg");
         let series = stated("cask").chain(of_drop).map(|(_, entry)| entry["value"].clone());
@@ -218,23 +218,23 @@ impl DropPoint {
 pub struct Batch {
     /// The manifest or the cask file.
     pub source: String,
-    /// One a recording, in the order given.
+    /// Rows of the recordings, in the order given.
     pub rows: Vec<BatchRow>,
-    /// What the manifest carries into the tables.
+    /// Columns that the manifest adds to the tables.
     carried: BTreeSet<String>,
     /// The first row of each recording, by its hash.
     recordings: HashMap<String, String>,
 }
 
 impl Batch {
-    /// Nothing yet of a campaign by this manifest or cask file.
+    /// An empty campaign with this manifest or cask file.
     pub fn new(source: String) -> Self {
         Self { source, ..Self::default() }
     }
 
-    /// Adds a line: a result, or why there is none.
+    /// Adds a line: a result, or the reason why there is none.
     pub fn add(&mut self, line: &Value) {
-        let mut row = BatchRow::of(line);
+        let mut row = BatchRow::from_line(line);
         if self.rows.len() >= MOST_ROWS {
             (row.quantities, row.curves) = (Vec::new(), None);
         }
@@ -246,12 +246,12 @@ impl Batch {
         self.rows.push(row);
     }
 
-    /// Whether any recording has a name of its own in the manifest, which its file does not show.
+    /// True if a recording has a name in the manifest other than that of its file.
     fn has_ids(&self) -> bool {
         self.rows.iter().any(|row| !row.recording.contains(&row.id))
     }
 
-    /// Whether a file that begins so is a `campaign.csv` of this program.
+    /// True if a file with this beginning is a `campaign.csv` of this program.
     pub fn begins(head_of_file: &[u8]) -> bool {
         let first = columns::names().take(10).collect::<Vec<_>>().join(",");
         head_of_file.starts_with(first.as_bytes())

@@ -1,37 +1,37 @@
-//! An error to plain lines: the message, the lines at fault and the remedy.
+//! Writes an error as plain lines: the message, the lines at fault and the remedy.
 
-use super::text::printable;
-use crate::data::shortened;
+use super::text::sanitize;
+use crate::data::shorten;
 use miette::Report;
 
-/// Of a line at fault so much is shown before and behind its place.
+/// Characters shown before and after the error in a long line.
 const LONGEST_LINE: usize = 400;
 
-/// The complaint as it is printed where there is no terminal, for another program to show.
+/// The message for use without a terminal, for another program to show.
 #[must_use]
 pub fn message(report: &Report) -> String {
-    in_lines(&told(report))
+    in_lines(&message_text(report))
 }
 
-/// Without what would steer a terminal, and of each line what a person reads.
+/// Removes sequences that would steer a terminal, and shortens each line for a reader.
 pub(crate) fn in_lines(text: &str) -> String {
-    let lines: Vec<String> = text.lines().map(|line| printable(&shortened(line))).collect();
+    let lines: Vec<String> = text.lines().map(|line| sanitize(&shorten(line))).collect();
     lines.join("\n").trim().to_owned()
 }
 
 /// The message, the lines at fault and the remedy, without drawing.
-pub(crate) fn told(report: &Report) -> String {
+pub(crate) fn message_text(report: &Report) -> String {
     let mut lines = vec![with_causes(report)];
     if let (Some(source), Some(labels)) = (report.source_code(), report.labels()) {
         for label in labels {
-            // With a line of context the line comes whole; the part before the label's own line is cut off.
+            // A line of context includes the whole line; the part before the label's own line is removed.
             let Ok(span) = source.read_span(label.inner(), 1, 1) else { continue };
             let text = String::from_utf8_lossy(span.data());
             let at = label.offset().saturating_sub(span.span().offset()).min(text.len());
             let before = text.get(..at).unwrap_or_default();
             let number = span.line() + before.matches('\n').count() + 1;
             let line = text.lines().nth(number - span.line() - 1).unwrap_or_default();
-            let line = around(line, before.rsplit('\n').next().map_or(0, str::len));
+            let line = excerpt(line, before.rsplit('\n').next().map_or(0, str::len));
             let word = label.label().map_or_else(String::new, |word| format!("   ({word})"));
             lines.push(format!("  line {number}: {line}{word}"));
         }
@@ -40,8 +40,8 @@ pub(crate) fn told(report: &Report) -> String {
     lines.join("\n")
 }
 
-/// So much of `line` as a person reads around byte `at`.
-fn around(line: &str, at: usize) -> String {
+/// Cuts out the part of `line` around byte `at` that a person reads.
+fn excerpt(line: &str, at: usize) -> String {
     let from = line.floor_char_boundary(at.saturating_sub(LONGEST_LINE / 2));
     let to = line.ceil_char_boundary(at.saturating_add(LONGEST_LINE / 2).min(line.len()));
     let (before, behind) = (if from > 0 { "…" } else { "" }, if to < line.len() { "…" } else { "" });
@@ -62,12 +62,12 @@ fn with_causes(report: &Report) -> String {
 
 /// The error and its remedy as one sentence, for a row of a table.
 pub fn sentence(report: &Report) -> String {
-    let mut text = shortened(&with_causes(report)).into_owned();
+    let mut text = shorten(&with_causes(report)).into_owned();
     if let Some(help) = report.help() {
         text.push_str("; ");
-        text.push_str(&shortened(&help.to_string()));
+        text.push_str(&shorten(&help.to_string()));
     }
-    printable(&text)
+    sanitize(&text)
 }
 
 #[cfg(test)]
@@ -82,7 +82,7 @@ mod tests {
             help = "did you mean mass_kg?",
             "cask.toml, line 2: no key mas_kg"
         );
-        let text = told(&Report::new(diagnostic).with_source_code(source));
+        let text = message_text(&Report::new(diagnostic).with_source_code(source));
         assert_eq!(
             text,
             "cask.toml, line 2: no key mas_kg\n  line 2: mas_kg = 1.0   (unknown key)\n  help: did you mean \
@@ -100,13 +100,13 @@ mod tests {
             "cask.toml, line 2: {line}"
         );
         let report = Report::new(diagnostic).with_source_code(miette::NamedSource::new("cask.toml", text));
-        let told = told(&report);
-        let shown = told.lines().nth(1).unwrap();
+        let message = message_text(&report);
+        let shown = message.lines().nth(1).unwrap();
         assert!(
             shown.contains("x = oops z") && shown.contains("  line 2: …") && shown.len() < 600,
             "{shown}"
         );
-        assert!(shortened(told.lines().next().unwrap()).len() < 700 && sentence(&report).len() < 700);
+        assert!(shorten(message.lines().next().unwrap()).len() < 700 && sentence(&report).len() < 700);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::grid::{CurveSeries, motion_series, named_events, step_s};
 use crate::data::Analysis;
-use crate::numerics::single;
+use crate::numerics::to_f32;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, Group, H5Type, Location};
 use std::fs;
@@ -18,23 +18,26 @@ const GZIP_LEVEL: u8 = 1;
 /// The file as bytes.
 ///
 /// # Errors
-/// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
+///
+/// [`ReportError::Hdf5`] if the library fails, [`ReportError::Scratch`] if the temporary folder does.
 pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     through_a_file(|file| write(file, analysis))
 }
 
-/// What `fill` writes, as bytes. The library writes only to files, so a scratch file in the system's
+/// Returns the bytes that `fill` writes. The library writes only to files, so a scratch file in the system's
 /// temporary folder carries them.
 ///
 /// # Errors
-/// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
+///
+/// [`ReportError::Hdf5`] if the library fails, [`ReportError::Scratch`] if the temporary folder does.
 pub(crate) fn through_a_file(
     fill: impl FnOnce(&File) -> Result<(), ReportError>,
 ) -> Result<Vec<u8>, ReportError> {
     let failed = |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
     let folder = scratch_folder().map_err(failed)?;
     let path = folder.path().join(FILE_NAME);
-    // As every version of the library reads it, and without the times of writing that newer ones add.
+    // Every version of the library can read this format, and it omits the times of writing that newer ones
+    // add.
     let file = File::with_options().with_fapl(|access| access.libver_earliest()).create(&path)?;
     fill(&file)?;
     file.close()?;
@@ -94,7 +97,7 @@ fn events(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
 }
 
 fn dataset(group: &Group, name: &str, values: &[f64], unit: &str, time_s: &[f64]) -> Result<(), ReportError> {
-    let dataset = filled(group, name, &singles(values))?;
+    let dataset = store(group, name, &to_f32s(values))?;
     text(&dataset, "unit", unit)?;
     if let Some(step_s) = step_s(time_s) {
         dataset.new_attr::<f64>().create("sample_rate_hz")?.write_scalar(&(1.0 / step_s))?;
@@ -106,18 +109,18 @@ fn dataset(group: &Group, name: &str, values: &[f64], unit: &str, time_s: &[f64]
 }
 
 fn spectrum(group: &Group, frequency_hz: &[f64], magnitude: &[f64], unit: &str) -> Result<(), ReportError> {
-    let frequency = filled(group, "spectrum_frequency", &singles(frequency_hz))?;
+    let frequency = store(group, "spectrum_frequency", &to_f32s(frequency_hz))?;
     text(&frequency, "unit", "Hz")?;
-    let magnitude = filled(group, "spectrum_magnitude", &singles(magnitude))?;
+    let magnitude = store(group, "spectrum_magnitude", &to_f32s(magnitude))?;
     text(&magnitude, "unit", unit)
 }
 
-fn singles(values: &[f64]) -> Vec<f32> {
-    values.iter().copied().map(single).collect()
+fn to_f32s(values: &[f64]) -> Vec<f32> {
+    values.iter().copied().map(to_f32).collect()
 }
 
-/// A dataset of these values, compressed.
-pub(crate) fn filled<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Result<Dataset, ReportError> {
+/// Writes a compressed dataset of these values.
+pub(crate) fn store<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Result<Dataset, ReportError> {
     let builder = group.new_dataset_builder();
     // A chunked dataset cannot be of length zero.
     let builder = if values.is_empty() { builder } else { builder.shuffle().deflate(GZIP_LEVEL) };
@@ -132,8 +135,7 @@ pub(crate) fn text(place: &Location, name: &str, value: &str) -> Result<(), Repo
     Ok(())
 }
 
-/// A link name that HDF5 takes: no slash, not a dot, not taken; the group's attribute `name` has the
-/// channel's own.
+/// A valid and free HDF5 link name: no slash, not a dot; the group's attribute `name` has the channel's name.
 fn link_name(parent: &Group, name: &str, index: usize) -> String {
     let name: String =
         name.chars().map(|c| if c == '/' || c == '\0' || c.is_control() { '_' } else { c }).collect();
@@ -143,17 +145,18 @@ fn link_name(parent: &Group, name: &str, index: usize) -> String {
     name
 }
 
-/// What the folders' names begin with; six letters and digits follow.
+/// Beginning of the folders' names; six letters and digits follow.
 const PREFIX: &str = "dropcheck-";
 /// The only file in them.
 const FILE_NAME: &str = "curves.h5";
-/// No run needs its folder for a day: an older one is nobody's any more.
+/// No run needs its folder for a day, so an older one is abandoned.
 const STALE: Duration = Duration::from_hours(24);
 
-/// A folder that vanishes with its value.
+/// Makes a folder that is removed when its value is dropped.
 ///
 /// # Errors
-/// The system's, where the temporary folder takes none.
+///
+/// Returned by the system, if the temporary folder is not writable.
 fn scratch_folder() -> std::io::Result<TempDir> {
     static CLEARED: Once = Once::new();
     let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
@@ -161,8 +164,8 @@ fn scratch_folder() -> std::io::Result<TempDir> {
     Ok(folder)
 }
 
-/// Removes the folders beside `own` that are of the same owner, no links, not touched for so long, and hold
-/// nothing but the file.
+/// Removes the folders beside `own` that belong to the same owner, are no links, have not changed for
+/// `stale`, and hold nothing but the file.
 fn clear(own: &Path, stale: Duration) {
     let (Some(place), Ok(mine)) = (own.parent(), fs::symlink_metadata(own)) else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
@@ -175,7 +178,7 @@ fn clear(own: &Path, stale: Duration) {
             there.is_dir() && has_owner_of(there, &mine) && age.is_some_and(|age| age >= stale)
         };
         if is_named_so && entry.path() != own && entry.metadata().is_ok_and(|there| is_stale(&there)) {
-            // Of a file that is a link the link goes; a folder that holds more stays.
+            // Only the link is removed if the file is a link; a folder with other files stays.
             let _ = fs::remove_file(entry.path().join(FILE_NAME));
             let _ = fs::remove_dir(entry.path());
         }
@@ -188,7 +191,7 @@ fn has_owner_of(one: &fs::Metadata, other: &fs::Metadata) -> bool {
     one.uid() == other.uid()
 }
 
-/// Each user has a temporary folder of his own.
+/// Each user has a separate temporary folder.
 #[cfg(not(unix))]
 fn has_owner_of(_: &fs::Metadata, _: &fs::Metadata) -> bool {
     true
@@ -212,7 +215,7 @@ mod tests {
         let analysis = sample::analysis();
         let (_folder, file) = reopened(&analysis);
         let velocity = file.dataset("channels/A1/velocity").unwrap();
-        assert_eq!(velocity.read_raw::<f32>().unwrap(), singles(&analysis.curves.channels[0].velocity_m_s));
+        assert_eq!(velocity.read_raw::<f32>().unwrap(), to_f32s(&analysis.curves.channels[0].velocity_m_s));
         let rate: f64 = velocity.attr("sample_rate_hz").unwrap().read_scalar().unwrap();
         assert!((rate - 20_000.0).abs() < 1e-3);
         let start: f64 = velocity.attr("start_time_s").unwrap().read_scalar().unwrap();

@@ -1,28 +1,29 @@
-//! Curves to `curves.mcap`: JSON messages with schemas, one a sample, as Foxglove opens them.
+//! Writes curves as `curves.mcap`: JSON messages with schemas, one per sample, for Foxglove.
 
 use super::ReportError;
 use super::grid::{CurveSeries, channel_series, motion_series, named_events};
-use super::text::printable;
+use super::text::sanitize;
 use crate::data::Analysis;
-use crate::numerics::{nanoseconds, single};
+use crate::numerics::{nanoseconds, to_f32};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io::Cursor;
 
-/// Level of zstd: at the library's own, 3, the file of the fixtures' ANF-18 at 1e5 samples is 2 % larger.
+/// Level of zstd: at the library's default, 3, the file of the fixtures' ANF-18 at 1e5 samples is 2 % larger.
 const ZSTD_LEVEL: u32 = 1;
 
-/// The file as bytes; `log_time` is absolute where the recording's start is known, else from 0.
+/// The file as bytes; `log_time` is absolute if the recording's start is known, else from 0.
 ///
 /// # Errors
-/// [`ReportError::Mcap`] where the writer fails.
+///
+/// [`ReportError::Mcap`] if the writer fails.
 pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let options = WriteOptions::new()
         .compression(Some(Compression::Zstd))
         .compression_level(ZSTD_LEVEL)
-        // Threads of its own would each take part of a message at a time, and wait for one another.
+        // Separate threads would each take part of a message at a time, and wait for one another.
         .compression_threads(0)
         .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
     let mut file = CurvesFile {
@@ -50,9 +51,9 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     Ok(file.writer.into_inner().into_inner())
 }
 
-/// `/dropcheck/NAME` that no earlier channel has; letters that a message path cannot hold become `_`.
+/// A free topic `/dropcheck/NAME`; characters that are invalid in a message path become `_`.
 fn topic(name: &str, taken: &[String]) -> String {
-    let name: String = printable(name)
+    let name: String = sanitize(name)
         .chars()
         .map(|c| if c.is_alphanumeric() || c == '_' || c == '-' { c } else { '_' })
         .collect();
@@ -71,8 +72,8 @@ struct CurvesFile {
 }
 
 impl CurvesFile {
-    /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves
-    /// again. A unit that their names do not tell stands in the channel's metadata.
+    /// Declares a channel of JSON messages with a time stamp and these fields; an existing schema is used
+    /// again. The channel's metadata has a unit that the field names do not state.
     fn channel(&mut self, name: &str, topic: &str, fields: &[&str], unit: &str) -> Result<u16, ReportError> {
         let mut properties = serde_json::json!({"timestamp": {
             "type": "object", "title": "time",
@@ -115,9 +116,9 @@ impl CurvesFile {
         for (i, &time_s) in time_s.iter().enumerate() {
             self.begin(time_s);
             for CurveSeries { name, values, factor } in series {
-                // A value that is missing is left out: JSON has no number for it.
+                // A missing value is omitted: JSON has no number for it.
                 if let Some(value) = values.get(i).filter(|v| v.is_finite()) {
-                    for part in [",\"", name, "\":", digits.format(single(value * factor))] {
+                    for part in [",\"", name, "\":", digits.format(to_f32(value * factor))] {
                         self.buffer.push_str(part);
                     }
                 }
@@ -142,7 +143,7 @@ impl CurvesFile {
         Ok(())
     }
 
-    /// Time of a sample, ns; what lies before 1970, or before 0 in a recording without a start, is put at 0.
+    /// Time of a sample, ns; times before 1970, or before 0 in a recording without a start, become 0.
     fn stamp_ns(&self, time_s: f64) -> u64 {
         u64::try_from(self.start_ns.saturating_add(nanoseconds(time_s))).unwrap_or(0)
     }
@@ -167,8 +168,8 @@ mod tests {
             if message.channel.topic == "/dropcheck/A1" && message.sequence == 700 {
                 let truth = analysis.curves.channels[0].velocity_m_s[700];
                 // Single precision, printed so that it reads back to the same bits.
-                let read = single(json["velocity_m_s"].as_f64().unwrap());
-                assert_eq!(read.to_bits(), single(truth).to_bits());
+                let read = to_f32(json["velocity_m_s"].as_f64().unwrap());
+                assert_eq!(read.to_bits(), to_f32(truth).to_bits());
             }
             *counts.entry(message.channel.topic.clone()).or_default() += 1;
         }

@@ -1,5 +1,4 @@
-//! What a person is to read to a document of chapters: tables, facts and sentences, each once for every
-//! medium.
+//! Document for a reader: chapters of tables, facts and sentences, each written once for every medium.
 
 use super::rounding::MISSING;
 pub(crate) use super::table::{
@@ -8,124 +7,124 @@ pub(crate) use super::table::{
 use super::text::Style;
 use crate::data::{Letterhead, Photo};
 
-/// What is read from its first line to its last.
+/// A document in the order of reading.
 #[derive(Default)]
 pub(crate) struct ReportDocument {
-    /// What a page says besides its chapters.
+    /// Parts of a page around the chapters.
     pub(crate) page: Frame,
-    /// In the order of reading.
+    /// Chapters, in the order of reading.
     pub(crate) chapters: Vec<Chapter>,
 }
 
-/// What stands around the chapters of a page.
+/// Parts of a page around its chapters.
 #[derive(Default)]
 pub(crate) struct Frame {
-    /// Words of the browser's tab.
+    /// Title of the browser's tab.
     pub(crate) title: String,
-    /// What kind of report it is.
+    /// Kind of report.
     pub(crate) product: &'static str,
-    /// The heading of the whole.
+    /// Heading of the document.
     pub(crate) heading: String,
-    /// What it is made from.
+    /// Files that the report describes.
     pub(crate) about: String,
     /// Sentences at the foot.
     pub(crate) footer: &'static str,
-    /// What a site puts around it.
+    /// Letterhead of the site.
     pub(crate) letterhead: Letterhead,
-    /// What stands at the foot of each printed page beside its number.
+    /// Text at the foot of each printed page beside its number.
     pub(crate) foot: String,
-    /// The files beside a page that has a list of its chapters and of them; none on one that has no list.
+    /// Files beside a page that has a list of its chapters and of them; empty on a page without a list.
     pub(crate) files: &'static [&'static str],
-    /// Style besides that of all pages.
+    /// Style in addition to that of all pages.
     pub(crate) style: &'static str,
-    /// What runs in the page, and the JSON that it reads; nothing where they are empty.
+    /// Script of the page, and the JSON that it reads; both may be empty.
     pub(crate) script: &'static str,
     pub(crate) data: String,
 }
 
-/// What stands below a heading; none where its words are empty.
+/// Parts below a heading; the heading may be empty.
 pub(crate) struct Chapter {
     heading: Words,
-    /// Where alone it is shown.
-    only: Option<Medium>,
+    /// The only medium that shows the chapter.
+    only_on: Option<Medium>,
     passages: Vec<ChapterPart>,
 }
 
 impl Chapter {
-    /// Nothing yet below this heading.
+    /// An empty chapter with this heading.
     pub(crate) fn new(heading: impl Into<Words>) -> Self {
-        Self { heading: heading.into(), only: None, passages: Vec::new() }
+        Self { heading: heading.into(), only_on: None, passages: Vec::new() }
     }
 
-    /// On this medium alone.
-    pub(crate) fn only(self, medium: Medium) -> Self {
-        Self { only: Some(medium), ..self }
+    /// Restricts the chapter to one medium.
+    pub(crate) fn only_on(self, medium: Medium) -> Self {
+        Self { only_on: Some(medium), ..self }
     }
 
-    /// And then this.
-    pub(crate) fn with(mut self, passage: impl Into<ChapterPart>) -> Self {
+    /// Appends a part.
+    pub(crate) fn then(mut self, passage: impl Into<ChapterPart>) -> Self {
         self.passages.push(passage.into());
         self
     }
 
-    /// And then these, if any.
+    /// Appends these parts, if any.
     pub(crate) fn with_all(mut self, passages: impl IntoIterator<Item = ChapterPart>) -> Self {
         self.passages.extend(passages);
         self
     }
 
-    /// The heading, unless nothing would stand below it.
+    /// The heading, unless nothing would follow it.
     pub(crate) fn heading(&self, medium: Medium) -> Option<&str> {
         let words = self.heading.on(medium);
-        (!words.is_empty() && !self.shown(medium).is_empty()).then_some(words)
+        (!words.is_empty() && !self.parts_on(medium).is_empty()).then_some(words)
     }
 
-    /// What of it this medium shows; nothing where it shows none of it.
-    pub(crate) fn shown(&self, medium: Medium) -> Vec<&ChapterPart> {
-        let all = if self.only.is_none_or(|only| only == medium) { &self.passages[..] } else { &[] };
+    /// Parts that this medium shows; none if it does not show the chapter.
+    pub(crate) fn parts_on(&self, medium: Medium) -> Vec<&ChapterPart> {
+        let all = if self.only_on.is_none_or(|only| only == medium) { &self.passages[..] } else { &[] };
         all.iter().filter(|passage| passage.is_shown(medium)).collect()
     }
 }
 
-/// One thing below a heading.
+/// One part below a heading.
 pub(crate) struct ChapterPart {
-    /// Where alone it is shown.
+    /// The only medium that shows the part.
     pub(crate) only: Option<Medium>,
     pub(crate) content: PartContent,
 }
 
-/// What a passage may be.
+/// Kinds of parts.
 pub(crate) enum PartContent {
     /// Words in the given role.
     Sentence(SentenceRole, Words),
     /// A word in its colour, and what it means.
     Banner(Tone, String),
-    /// The numbers that a reader looks for first: name, value, what to know of it.
+    /// The headline numbers: name, value, remark.
     Figures(Vec<[String; 3]>),
-    /// A caption, and names with what they stand for.
+    /// A caption, and names with their values.
     Facts(String, Vec<Fact>),
     ReportTable(ReportTable),
-    /// The picture of this name; its room on paper as a class of the style.
+    /// The picture with this name; its room on paper as a class of the style.
     Picture(String, &'static str),
     /// Photographs of the test.
     Photographs(Vec<Photo>),
-    /// Sentences one below the other.
+    /// Sentences as a list.
     List(Vec<String>),
     /// Two columns where there is room.
     Beside([Vec<ChapterPart>; 2]),
 }
 
-/// What a sentence is for.
+/// Purpose of a sentence.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SentenceRole {
-    /// It names the whole.
+    /// Title of the document.
     Title,
-    /// It stands with the title.
+    /// Line below the title.
     Line,
-    /// It leads to what follows.
+    /// Introduction to the following parts.
     Lead,
     Text,
-    /// It explains what stands above it.
+    /// Explanation of the part above.
     Note,
 }
 
@@ -137,17 +136,17 @@ impl ChapterPart {
         PartContent::Sentence(role, words.into()).into()
     }
 
-    /// What names the whole.
+    /// Makes the title of the document.
     pub(crate) fn title(words: impl Into<Words>) -> Self {
         Self::sentence(SentenceRole::Title, words)
     }
 
-    /// What stands with the title.
+    /// Makes a line below the title.
     pub(crate) fn line(words: impl Into<Words>) -> Self {
         Self::sentence(SentenceRole::Line, words)
     }
 
-    /// What leads to the passages after it.
+    /// Makes an introduction to the parts after it.
     pub(crate) fn lead(words: impl Into<Words>) -> Self {
         Self::sentence(SentenceRole::Lead, words)
     }
@@ -157,7 +156,7 @@ impl ChapterPart {
         Self::sentence(SentenceRole::Text, words)
     }
 
-    /// What explains the passage before it.
+    /// Makes an explanation of the part before it.
     pub(crate) fn note(words: impl Into<Words>) -> Self {
         Self::sentence(SentenceRole::Note, words)
     }
@@ -172,12 +171,12 @@ impl ChapterPart {
         PartContent::Picture(name.to_owned(), room).into()
     }
 
-    /// On this medium alone.
-    pub(crate) fn only(self, medium: Medium) -> Self {
+    /// Restricts the part to one medium.
+    pub(crate) fn only_on(self, medium: Medium) -> Self {
         Self { only: Some(medium), ..self }
     }
 
-    /// Whether this medium shows it: no table without rows.
+    /// True if this medium shows the part: a table needs rows.
     pub(crate) fn is_shown(&self, medium: Medium) -> bool {
         let is_drawn = matches!(
             self.content,
@@ -217,11 +216,11 @@ impl From<ReportTable> for ChapterPart {
 /// A name and what it stands for.
 pub(crate) struct Fact {
     pub(crate) name: String,
-    /// Whether nobody stated it.
+    /// True if nobody stated the value.
     pub(crate) is_default: bool,
     pub(crate) kind: CellKind,
     pub(crate) value: String,
-    /// Its unit, or a few words on it.
+    /// Unit of the value, or a short remark.
     pub(crate) note: Tone,
 }
 
@@ -247,9 +246,9 @@ impl Fact {
         Self { kind: CellKind::Code, ..Self::number(name, value) }
     }
 
-    /// With its unit, or a few words on it.
+    /// Adds the unit, or a short remark.
     pub(crate) fn note(self, note: impl Into<String>) -> Self {
-        self.toned(Style::Dim, note)
+        self.tone(Style::Dim, note)
     }
 
     /// The words on its value, where it has one.
@@ -257,8 +256,8 @@ impl Fact {
         if self.value == MISSING { "" } else { &self.note.1 }
     }
 
-    /// With words in a colour.
-    pub(crate) fn toned(self, style: Style, note: impl Into<String>) -> Self {
+    /// Adds a remark in a colour.
+    pub(crate) fn tone(self, style: Style, note: impl Into<String>) -> Self {
         Self { note: Tone(style, note.into()), ..self }
     }
 }

@@ -1,24 +1,22 @@
-//! What a recording holds, and its sources one after the other, to the page that `inspect` writes before
-//! there is a cask file.
+//! Page that `inspect` writes before there is a cask file: the content of a recording and its sources.
 
 use super::acceleration_sources::{accelerations, is_time};
 use super::document::{Chapter, ChapterPart, Frame, ReportDocument, ReportTable, TableCell};
 use super::pictures::draw::Picture;
 use super::pictures::recorded;
 use super::rounding::{MISSING, plain};
-use super::text::{moment, printable, tail};
+use super::text::{moment, sanitize, tail};
 use super::{ReportError, as_html, json, listing};
 use crate::data::{Channel, ChannelLook, Extreme, ListedChannel, Listing};
 use serde::Serialize;
 
-/// The page; and the listing, by which the folder is known to be of which recording.
+/// Files of the folder; the listing records to which recording they belong.
 pub const FIRST_LOOK_NAMES: [&str; 2] = ["recording.html", "recording.json"];
 
-/// So many sources are drawn at most.
+/// Most sources that are drawn.
 const MOST_DRAWN: usize = 64;
 
-/// What a page may take besides scripts and tables, and the drawings of a source of it, bytes: below 3 MB in
-/// all.
+/// Bytes of a page for a source's drawings, besides scripts and tables: below 3 MB in all.
 const PAGE_BYTES: usize = 2_600_000;
 const DRAWING_BYTES: usize = 25_000;
 
@@ -31,10 +29,10 @@ const LEVELS: &str = "Level and noise: median and spread of the first samples, a
                       0.5 to 1.5 g from rest, an impact by a change of velocity of at least 1 m/s within \
                       25 ms.";
 
-/// The sources that a page draws: what can be read, changes, has times and is no clock; accelerations first,
-/// where it has no room for all.
+/// Sources that a page draws: readable ones that change and have times, except clocks; accelerations first,
+/// if the page has no room for all.
 #[must_use]
-pub fn drawn(listing: &Listing) -> Vec<&ListedChannel> {
+pub fn drawn_sources(listing: &Listing) -> Vec<&ListedChannel> {
     let changes = |c: &ListedChannel| c.range.is_none_or(|(low, high)| low < high) && c.samples != Some(1);
     let is_curve = |c: &ListedChannel| c.unreadable.is_none() && c.start_s.is_some() && !is_time(&c.source);
     let mut drawn: Vec<_> = listing.channels.iter().filter(|c| is_curve(c) && changes(c)).collect();
@@ -46,7 +44,7 @@ pub fn drawn(listing: &Listing) -> Vec<&ListedChannel> {
     drawn
 }
 
-/// A page as it grows, source by source.
+/// A page under construction, source by source.
 pub struct FirstLook<'a> {
     listing: &'a Listing,
     drawn: &'a [&'a ListedChannel],
@@ -54,10 +52,10 @@ pub struct FirstLook<'a> {
     pictures: Vec<Picture>,
 }
 
-/// A row of the table of what sources show.
+/// A row of the table of the sources' looks.
 struct ShownSource {
     name: String,
-    /// Where its curve stands on the page.
+    /// Position of its curve on the page.
     place: String,
     unit: String,
     look: Result<ChannelLook, String>,
@@ -89,15 +87,15 @@ impl ShownSource {
 }
 
 impl<'a> FirstLook<'a> {
-    /// Nothing is drawn yet of the sources that will be.
+    /// Prepares the page; no source is drawn yet.
     #[must_use]
-    pub fn of(listing: &'a Listing, drawn: &'a [&'a ListedChannel]) -> Self {
+    pub fn new(listing: &'a Listing, drawn: &'a [&'a ListedChannel]) -> Self {
         Self { listing, drawn, shown: Vec::new(), pictures: Vec::new() }
     }
 
-    /// Draws the source of this place among those drawn, or says why it cannot be read.
+    /// Draws the source at this index among those drawn, or states why it cannot be read.
     pub fn add(&mut self, number: usize, read: Result<(Channel, ChannelLook), String>) {
-        let (name, place) = (listing::named(self.drawn[number]), format!("source-{}", number + 1));
+        let (name, place) = (listing::source_words(self.drawn[number]), format!("source-{}", number + 1));
         let chart_bytes = PAGE_BYTES / self.drawn.len() - DRAWING_BYTES;
         let unit = self.drawn[number].unit.clone().unwrap_or_default();
         let look = read.map(|(channel, look)| {
@@ -107,12 +105,13 @@ impl<'a> FirstLook<'a> {
         self.shown.push(ShownSource { name, place: format!("#{place}"), unit, look });
     }
 
-    /// The files, of the recording of this SHA-256.
+    /// The files, for the recording with this SHA-256.
     ///
     /// # Errors
-    /// [`ReportError::Json`] where the writer fails.
+    ///
+    /// [`ReportError::Json`] if the writer fails.
     pub fn files(self, sha256: &str) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-        /// What `inspect --json` writes, and of which recording.
+        /// Content of `inspect --json`, with the name of the recording.
         #[derive(Serialize)]
         struct ListingFile<'a> {
             #[serde(flatten)]
@@ -128,19 +127,20 @@ impl<'a> FirstLook<'a> {
         let pictures = self.pictures.iter().map(|picture| ChapterPart::picture(&picture.name, "short"));
         let curves = Chapter::new("Curves and spectra").with_all(pictures);
         let mut chapters = listing::document(self.listing).chapters;
-        chapters.insert(0, Chapter::new("").with(ChapterPart::text(LEAD)));
-        // Behind what the container states and the sources; how they are stored and the findings follow.
-        chapters.splice(3..3, [self.what_they_show(), curves]);
+        chapters.insert(0, Chapter::new("").then(ChapterPart::text(LEAD)));
+        // These chapters follow the facts of the container and the sources; the storage and the findings come
+        // after them.
+        chapters.splice(3..3, [self.sources_chapter(), curves]);
         let name = self.listing.recording.rsplit(['/', '\\']).next().unwrap_or_default();
         ReportDocument {
             page: Frame {
                 title: format!("{name} – first look"),
                 product: "First look at a recording",
-                heading: printable(name),
-                about: listing::about(self.listing),
+                heading: sanitize(name),
+                about: listing::recording_words(self.listing),
                 foot: format!("{name} · recording {}", sha256.get(..16).unwrap_or_default()),
                 files: &FIRST_LOOK_NAMES[1..],
-                // Guesses are words, which a narrow screen would set one below the other.
+                // Guesses are words, which a narrow screen would break into single lines.
                 style: ".whole td:last-child { min-width: 15em; }",
                 ..Frame::default()
             },
@@ -148,8 +148,8 @@ impl<'a> FirstLook<'a> {
         }
     }
 
-    fn what_they_show(&self) -> Chapter {
-        let table = ReportTable::of(&self.shown)
+    fn sources_chapter(&self) -> Chapter {
+        let table = ReportTable::from_rows(&self.shown)
             .head("source", |row| TableCell { link: row.place.clone(), ..row.name.clone().into() })
             .number("smallest", |row| row.extreme(|look| look.smallest))
             .number("largest", |row| row.extreme(|look| look.largest))
@@ -161,8 +161,8 @@ impl<'a> FirstLook<'a> {
             "{drawn} of {listed} sources are drawn: those that change, have times and are no clock, at most \
              {MOST_DRAWN}."
         );
-        let chapter = Chapter::new("What they show").with(ChapterPart::text(all));
-        if self.shown.is_empty() { chapter } else { chapter.with(table).with(ChapterPart::note(LEVELS)) }
+        let chapter = Chapter::new("What they show").then(ChapterPart::text(all));
+        if self.shown.is_empty() { chapter } else { chapter.then(table).then(ChapterPart::note(LEVELS)) }
     }
 }
 
@@ -189,12 +189,12 @@ mod tests {
     fn a_page_of_as_many_long_sources_as_it_draws_stays_below_three_megabytes() {
         let sources = (0..70).map(|i| listed(&format!("/daq/a{i}.<b>"), "array", Some("g")));
         let listing = listing(sources.collect());
-        let drawn = drawn(&listing);
+        let drawn = drawn_sources(&listing);
         assert_eq!(drawn.len(), MOST_DRAWN);
         let samples: Vec<f64> = (0..100_000).map(|i| example::noise(i, 1)).collect();
-        let mut page = FirstLook::of(&listing, &drawn);
-        (0..drawn.len() - 1).for_each(|number| added(&mut page, number, &samples));
-        page.add(drawn.len() - 1, Err("its times go backwards".into()));
+        let mut page = FirstLook::new(&listing, &drawn_sources);
+        (0..drawn_sources.len() - 1).for_each(|number| added(&mut page, number, &samples));
+        page.add(drawn_sources.len() - 1, Err("its times go backwards".into()));
         let files = page.files("0123456789abcdef0").unwrap();
         let text = String::from_utf8(files[0].1.clone()).unwrap();
         assert!(text.len() < 3_000_000 && text.len() > 1_500_000, "{}", text.len());
@@ -221,6 +221,6 @@ mod tests {
             unreadable,
             listed("/daq/s1", "dataset", None),
         ]);
-        assert_eq!(drawn(&listing).iter().map(|c| &c.source[..]).collect::<Vec<_>>(), ["/daq/s1"]);
+        assert_eq!(drawn_sources(&listing).iter().map(|c| &c.source[..]).collect::<Vec<_>>(), ["/daq/s1"]);
     }
 }

@@ -1,33 +1,33 @@
-//! What stands first, on the terminal and at the head of the page: the verdict and its cause, the numbers,
-//! what limits them, and what the recording cannot check.
+//! The first screen, on the terminal and at the head of the page: verdict and cause, numbers, their limits,
+//! and the inputs that the recording cannot check.
 
 use super::reconstruction::{assumed, largest, weighty_assumptions};
-use super::record::{LIMIT_EXCEEDED, limits_said};
+use super::record::{LIMIT_EXCEEDED, limits_sentence};
 use super::rounding::{fixed, interval, pair, percent, significant};
 use super::text::{
-    Style, causes, counted, determined, distinct, dropped, grave, printable, styled, styled_lines,
+    Style, causes, dedup, drop_words, grave_findings, or_unknown, plural, sanitize, styled, styled_lines,
     true_minus, verdict_sentence, verdict_style, verdict_word, wrap,
 };
 use crate::data::{
-    Analysis, CaskFile, ClosureKind, DropFinding, DropResult, Estimate, Finding, FindingKind, LimitState,
-    ReconstructionRung, Rung, Untested,
+    Analysis, CaskFile, CheckKind, DropFinding, DropResult, Estimate, Finding, FindingKind, LimitState,
+    Method, Rung, Untested,
 };
 use std::path::Path;
 
 /// Columns that the name of a row takes.
 const NAME_WIDTH: usize = 16;
 
-/// Lines of the first screen, but where even its shortest words need more.
+/// Lines of the first screen, unless even its shortest words need more.
 const MOST_LINES: usize = 10;
 
-/// So many inputs that the recording cannot check are named with what a mistake in them does.
+/// Most uncheckable inputs that are named with the effect of a mistake.
 const MOST_WITH_EFFECT: usize = 3;
 
-/// A move below this share of the half-width is not worth a number.
+/// A change below this share of the half-width is stated without a number.
 const WORTH_A_NUMBER: f64 = 0.1;
 
-/// An input that the recording cannot check, with how far a mistake in it moves k and the speed; the first of
-/// a list in whole words.
+/// An input that the recording cannot check, with the change of k and the speed by a mistake in it; the first
+/// of a list in full words.
 fn with_effect(result: &DropResult, input: &Untested, is_first: bool) -> String {
     let is_worth = |by: f64, stated: Option<Estimate>| stated.is_some_and(|e| by > WORTH_A_NUMBER * e.u95);
     let k = input.moves.k.filter(|k| is_worth(*k, result.k)).map(|k| significant(k, 1));
@@ -41,30 +41,30 @@ fn with_effect(result: &DropResult, input: &Untested, is_first: bool) -> String 
     format!("{} ({}{moved}{moves})", input.what, input.by.replace(' ', "\u{a0}"))
 }
 
-/// The inputs that the recording cannot check, the largest effect first, and what would check them; `None`
-/// where all are checked.
+/// Inputs that the recording cannot check, the largest effect first, and the measures that would check them;
+/// `None` if all are checked.
 pub(super) fn not_checkable(result: &DropResult) -> Option<[String; 2]> {
     let all = &result.untested;
     let (first, others) = all.split_at(all.len().min(MOST_WITH_EFFECT));
-    let others = by_channels(others.iter().map(|input| &input.what[..]));
+    let others = group_by_channel(others.iter().map(|input| &input.what[..]));
     let first = first.iter().enumerate().map(|(i, input)| with_effect(result, input, i == 0));
-    let remedies = distinct(all.iter().map(|input| input.remedy));
+    let remedies = dedup(all.iter().map(|input| input.remedy));
     let named: Vec<String> = first.chain(others).collect();
     (!named.is_empty()).then(|| [named.join(", "), remedies.join("; ")])
 }
 
-/// How many inputs the recording cannot check, and the three of the largest effect.
+/// Counts the inputs that the recording cannot check, and names the three with the largest effect.
 fn largest_not_checkable(result: &DropResult, has_effects: bool) -> Option<String> {
     let all = &result.untested;
     let words =
         |(i, input)| if has_effects { with_effect(result, input, i == 0) } else { input.what.clone() };
     let named: Vec<String> = all.iter().take(MOST_WITH_EFFECT).enumerate().map(words).collect();
     let others = if all.len() > MOST_WITH_EFFECT { "; `--full` lists all" } else { "" };
-    (!all.is_empty()).then(|| format!("{}: {}{others}", counted(all.len(), "input"), named.join(", ")))
+    (!all.is_empty()).then(|| format!("{}: {}{others}", plural(all.len(), "input"), named.join(", ")))
 }
 
-/// "tilt of A1", "tilt of A2" and "section" to "tilt of A1, A2" and "section".
-fn by_channels<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+/// Combines "tilt of A1", "tilt of A2" and "section" to "tilt of A1, A2" and "section".
+fn group_by_channel<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut kinds: Vec<(&str, Vec<&str>)> = Vec::new();
     for name in names {
         let (kind, channel) = name.rsplit_once(" of ").unwrap_or((name, ""));
@@ -80,8 +80,8 @@ fn by_channels<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     kinds.into_iter().map(words).collect()
 }
 
-/// Measured beside predicted, in one sentence: the prediction is no second witness of what it takes from the
-/// recording.
+/// Compares measurement and prediction in one sentence: the prediction is not independent of inputs that come
+/// from the recording.
 fn compared(result: &DropResult, file: &CaskFile, is_short: bool) -> Option<String> {
     let c = result.comparison.as_ref()?;
     let predicted = pair(c.predicted, c.predicted_u95, "m/s");
@@ -89,13 +89,13 @@ fn compared(result: &DropResult, file: &CaskFile, is_short: bool) -> Option<Stri
     if is_short {
         return Some(format!("{predicted} by k: {agrees}"));
     }
-    let (by, percent) = (by_measured(result, file), percent(c.difference_percent));
+    let (by, percent) = (measured_inputs(result, file), percent(c.difference_percent));
     let built_in = built_in(result).map_or("", |_| ", partly built in");
     Some(format!("{predicted} {by}: {percent}, {agrees}{built_in}"))
 }
 
-/// What the prediction takes from the recording that it is held against: "by measured k, friction".
-pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
+/// Names the inputs of the prediction that come from the recording itself: "by measured k, friction".
+pub(super) fn measured_inputs(result: &DropResult, file: &CaskFile) -> String {
     let rung = result.model.as_ref().map_or(Rung::Rod, |model| model.rung);
     let is_open = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::OpenContact { .. }));
     let friction = if !file.has_open_friction() || rung < Rung::Friction {
@@ -109,12 +109,12 @@ pub(super) fn by_measured(result: &DropResult, file: &CaskFile) -> String {
     format!("by measured k{friction}{time}")
 }
 
-/// What makes measurement and prediction agree by itself, and by how much: a joint fit turns the cask by the
-/// impulse of the first impact, as the prediction does.
+/// Says how far measurement and prediction agree by construction: a joint fit turns the cask by the impulse
+/// of the first impact, as the prediction does.
 pub(super) fn built_in(result: &DropResult) -> Option<String> {
     result.comparison.filter(|comparison| comparison.agrees)?;
-    let choice = result.reconstruction.as_ref().filter(|c| c.rung == ReconstructionRung::Joint)?;
-    let tie = choice.closures.iter().find(|closure| closure.kind == ClosureKind::Turning)?;
+    let choice = result.reconstruction.as_ref().filter(|c| c.rung == Method::Joint)?;
+    let tie = choice.closures.iter().find(|closure| closure.kind == CheckKind::Turning)?;
     let (miss, in_u) = (true_minus(&tie.miss), fixed(tie.miss_in_u.abs(), 1));
     Some(format!("built in: the fit ties the rotation to the impulse ({miss}, {in_u} u without)"))
 }
@@ -122,20 +122,20 @@ pub(super) fn built_in(result: &DropResult) -> Option<String> {
 /// Whose speed the slap-down speed is.
 pub(super) const RIGID: &str = "of the rigid cask";
 
-/// Whether measured and predicted speed agree.
+/// Says if measured and predicted speed agree.
 pub(super) fn agreement(agrees: bool) -> &'static str {
     if agrees { "within both intervals" } else { "beyond both intervals" }
 }
 
-/// The speed of the corner that strikes where its ringing moves it off the interval of the rigid body's.
-pub(super) fn of_corner(result: &DropResult) -> Option<String> {
+/// Sentence on the speed of the corner that strikes, if its ringing moves it off the interval of the rigid
+/// body's.
+pub(super) fn corner_words(result: &DropResult) -> Option<String> {
     let (local, rigid) = result.slap_down.local_speed.zip(result.slap_down.speed)?;
     let is_apart = (local.value - rigid.value).abs() > rigid.u95;
     is_apart.then(|| interval(Some(&local)))
 }
 
-/// How a first screen is set: the column of its second lines, what it leaves out, and the lines that it may
-/// have.
+/// Layout of a first screen: the column of its second lines, the omitted parts, and the available lines.
 struct Draft {
     indent: usize,
     has_effects: bool,
@@ -145,7 +145,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The most words first; where one cause takes more than a screen, `--full` has it.
+    /// All drafts, the longest first; if one cause takes more than a screen, `--full` shows it.
     const ALL: [Self; 6] =
         [Self::LONGEST, Self::AT_ONCE, Self::WIDE, Self::SHORT, Self::ONE_CAUSE, Self::LAST];
     const LONGEST: Self = Self {
@@ -171,7 +171,7 @@ impl Draft {
     fn screen(&self, analysis: &Analysis, report: Option<&str>, width: usize) -> String {
         let (result, file) = (&analysis.result, &analysis.cask_file);
         let row = |name: &str, words: String| self.row(&format!("{name:<NAME_WIDTH$}"), &words, width);
-        let limits = limits_said(&result.limits, 3);
+        let limits = limits_sentence(&result.limits, 3);
         let (alarm, limits) = if result.exceeds_a_limit() { (limits, None) } else { (None, limits) };
         let alarm = alarm.map_or_else(String::new, |said| row(LIMIT_EXCEEDED, said));
         let speed = result.slap_down.speed.as_ref();
@@ -181,60 +181,60 @@ impl Draft {
             (predicted.map(|words| format!("; predicted {words}")), None)
         } else {
             (
-                of_corner(result).map(|corner| format!("{rigid}; corner {corner}")).or(Some(rigid.into())),
+                corner_words(result).map(|corner| format!("{rigid}; corner {corner}")).or(Some(rigid.into())),
                 predicted,
             )
         };
         let interval_by = assumed(result, file, self.is_short).unwrap_or_else(|| largest(&result.budget));
         let is_number = result.k.is_some() || speed.is_some();
         let rows = [
-            ("Slap-down speed", Some(determined(interval(speed)) + &beside.unwrap_or_default())),
-            ("Restitution k", Some(determined(interval(result.k.as_ref())))),
+            ("Slap-down speed", Some(or_unknown(interval(speed)) + &beside.unwrap_or_default())),
+            ("Restitution k", Some(or_unknown(interval(result.k.as_ref())))),
             ("Predicted speed", predicted),
             ("Interval (95 %)", Some(interval_by).filter(|words| is_number && !words.is_empty())),
             ("Limits", limits),
             ("Not checkable", largest_not_checkable(result, self.has_effects)),
             // The sentence of a verdict on both numbers names them.
-            ("Findings", grave(result).filter(|_| result.k.is_none() || speed.is_none())),
+            ("Findings", grave_findings(result).filter(|_| result.k.is_none() || speed.is_none())),
         ];
         let rows = rows.into_iter().filter_map(|(name, words)| Some(row(name, words?)));
         // A path is whole, however long.
-        let foot = report.map(|page| format!("{:<NAME_WIDTH$}{}\n", "Report", printable(page)));
+        let foot = report.map(|page| format!("{:<NAME_WIDTH$}{}\n", "Report", sanitize(page)));
         let foot = rows.chain(foot).collect::<String>();
         let kind = super::kind::words(result, file).map_or_else(String::new, |kind| wrap(&kind, width, 0));
         kind + &styled_lines(Style::Red, &alarm) + &self.verdict(analysis, width) + &foot
     }
 
-    /// The verdict on which recording, and its causes.
+    /// The verdict, the name of the recording, and the causes.
     fn verdict(&self, analysis: &Analysis, width: usize) -> String {
         let (result, file) = (&analysis.result, &analysis.cask_file);
         let word = verdict_word(result.verdict, result.k.or(result.slap_down.speed));
         let path = Path::new(&result.input.recording);
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let what = if self.is_short {
+        let heading = if self.is_short {
             format!("{name}.")
         } else {
-            format!("{name} ({}, {}).", file.cask.name, dropped(&file.drop))
+            format!("{name} ({}, {}).", file.cask.name, drop_words(&file.drop))
         };
         let causes = causes(result);
         let (said, others) = causes.split_at(self.causes.min(causes.len()));
         let others =
-            (!others.is_empty()).then(|| format!("{} more with `--full`.", counted(others.len(), "cause")));
-        let said = [vec![what, verdict_sentence(result)], said.to_vec(), others.into_iter().collect()];
+            (!others.is_empty()).then(|| format!("{} more with `--full`.", plural(others.len(), "cause")));
+        let said = [vec![heading, verdict_sentence(result)], said.to_vec(), others.into_iter().collect()];
         let said = self.row(&format!("{word}  "), &said.concat().join(" "), width);
         styled(verdict_style(result.verdict), word) + &said[word.len()..]
     }
 }
 
-/// The first screen: the most words that ten lines hold; `report` is where the page was written.
+/// The first screen: the longest draft within ten lines; `report` is the path of the page.
 pub fn first_screen(analysis: &Analysis, report: Option<&str>, width: usize) -> String {
     let drafts = Draft::ALL.iter().map(|draft| (draft, draft.screen(analysis, report, width)));
     let fits = |(draft, screen): &(&Draft, String)| screen.lines().count() <= draft.most_lines;
     drafts.into_iter().find(fits).map(|(_, screen)| screen).unwrap_or_default()
 }
 
-/// Why a formal report cannot rest on this result, beside its verdict; `None` where it can.
-pub fn not_strict(analysis: &Analysis) -> Option<String> {
+/// The reason why a formal report cannot rest on this result, beside its verdict; `None` if it can.
+pub fn why_not_strict(analysis: &Analysis) -> Option<String> {
     let result = &analysis.result;
     let open = result.limits.iter().filter(|limit| limit.state != LimitState::Kept).count();
     let weighty = weighty_assumptions(result, &analysis.cask_file);
@@ -244,6 +244,6 @@ pub fn not_strict(analysis: &Analysis) -> Option<String> {
         (open, "limit", " exceeded or undecided"),
     ];
     let reasons = reasons.iter().filter(|(count, ..)| *count > 0);
-    let reasons: Vec<String> = reasons.map(|(count, noun, what)| counted(*count, noun) + what).collect();
+    let reasons: Vec<String> = reasons.map(|(count, noun, what)| plural(*count, noun) + what).collect();
     (!reasons.is_empty()).then(|| reasons.join(", "))
 }

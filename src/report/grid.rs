@@ -1,20 +1,20 @@
-//! Curves on grids of their own to values at any time, and to `curves.csv`: one table on the finest channel's
-//! times, units in the header.
+//! Interpolates curves with different grids to any time, and writes `curves.csv`: one table on the finest
+//! channel's times, units in the header.
 
 use super::ReportError;
-use super::records::{finished, text_cell};
+use super::records::{finish, text_cell};
 use crate::data::{ChannelCurve, Curves, Events, MotionCurve, STANDARD_GRAVITY_M_S2};
-use crate::numerics::{as_count, as_f64, nanoseconds, single};
+use crate::numerics::{as_count, as_f64, nanoseconds, to_f32};
 use std::io::Write;
 
-/// One quantity of a curve: its name with its unit, its values, and what makes that unit of them.
+/// One quantity of a curve: its name with its unit, its values, and the factor to that unit.
 pub(super) struct CurveSeries<'a> {
     pub(super) name: &'static str,
     pub(super) values: &'a [f64],
     pub(super) factor: f64,
 }
 
-/// What a table shows of a channel.
+/// Columns of a channel.
 pub(super) fn channel_series(curve: &ChannelCurve) -> [CurveSeries<'_>; 3] {
     [
         ("raw_g", &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
@@ -24,7 +24,7 @@ pub(super) fn channel_series(curve: &ChannelCurve) -> [CurveSeries<'_>; 3] {
     .map(|(name, values, factor)| CurveSeries { name, values, factor })
 }
 
-/// What a table shows of the motion.
+/// Columns of the motion.
 pub(super) fn motion_series(motion: &MotionCurve) -> [CurveSeries<'_>; 7] {
     [
         ("angle_deg", &motion.angle_rad, 180.0 / std::f64::consts::PI),
@@ -38,7 +38,7 @@ pub(super) fn motion_series(motion: &MotionCurve) -> [CurveSeries<'_>; 7] {
     .map(|(name, values, factor)| CurveSeries { name, values, factor })
 }
 
-/// The events by name, s; `None` where one was not found.
+/// The events by name, s; `None` for an event that was not found.
 pub(super) fn named_events(events: &Events) -> [(&'static str, Option<f64>); 4] {
     [
         ("release", events.release_s),
@@ -48,14 +48,14 @@ pub(super) fn named_events(events: &Events) -> [(&'static str, Option<f64>); 4] 
     ]
 }
 
-/// Step of a uniform time vector, s; `None` where it has fewer than two points or does not rise.
+/// Step of a uniform time vector, s; `None` if it has fewer than two points or does not rise.
 pub(super) fn step_s(time_s: &[f64]) -> Option<f64> {
     let (first, last) = (time_s.first()?, time_s.last()?);
     let step = (last - first) / as_f64(time_s.len().checked_sub(1)?);
     (step.is_finite() && step > 0.0).then_some(step)
 }
 
-/// The times of the finest channel, carried on over the span of every curve of the motion and its channels.
+/// The times of the finest channel, extended over the span of every curve of the motion and its channels.
 pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let times = || {
         curves
@@ -76,22 +76,21 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let before = ((finest[0] - from) / step).round();
     let rows = before + 1.0 + ((to - finest[0]) / step).round();
     let held: usize = all().map(<[f64]>::len).sum();
-    // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times
-    // serve.
+    // Curves far apart would need empty rows: then the times of the finest channel alone are used.
     if !(rows.is_finite() && rows <= 4.0 * as_f64(held) + 4.0) {
         return finest.to_vec();
     }
     (0..as_count(rows)).map(|i| finest[0] + (as_f64(i) - before) * step).collect()
 }
 
-/// The grid of a curve's points.
+/// A uniform grid of a curve's points.
 pub(super) struct Grid {
     start_s: f64,
     step_s: f64,
     last: f64,
 }
 
-/// A place on a grid: behind which point, and which part of a step.
+/// A position on a grid: the index of the point before it, and the fraction of a step.
 #[derive(Clone, Copy)]
 pub(super) struct GridPlace {
     below: usize,
@@ -99,14 +98,14 @@ pub(super) struct GridPlace {
 }
 
 impl Grid {
-    /// The grid of these times; `None` where they are none.
+    /// The grid of these times; `None` if they form none.
     pub(super) fn new(time_s: &[f64]) -> Option<Self> {
         Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, last: as_f64(time_s.len() - 1) })
     }
 
-    /// The place of `time_s`; `None` outside the curve.
+    /// The position of `time_s`; `None` outside the curve.
     pub(super) fn place(&self, time_s: f64) -> Option<GridPlace> {
-        /// Places that differ from a grid point by less are on it: the rounding of times, in steps.
+        /// Positions that differ from a grid point by less are on it: the rounding of times, in steps.
         const ON_GRID: f64 = 1e-3;
         let place = (time_s - self.start_s) / self.step_s;
         if !(place > -ON_GRID && place < self.last + ON_GRID) {
@@ -126,8 +125,8 @@ impl Grid {
 }
 
 impl GridPlace {
-    /// The value there, between two points on a line; `None` where it is not finite.
-    pub(super) fn of(self, values: &[f64]) -> Option<f64> {
+    /// The value there, linear between two points; `None` if it is not finite.
+    pub(super) fn interpolate(self, values: &[f64]) -> Option<f64> {
         let below = *values.get(self.below)?;
         let value = if self.weight > 0.0 {
             below * (1.0 - self.weight) + values.get(self.below + 1)? * self.weight
@@ -141,7 +140,8 @@ impl GridPlace {
 /// The table; a cell outside its curve is empty.
 ///
 /// # Errors
-/// [`ReportError::Csv`] where the writer fails.
+///
+/// [`ReportError::Csv`] if the writer fails.
 pub(super) fn table_bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
     let groups = groups(curves);
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -151,16 +151,16 @@ pub(super) fn table_bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
         writer.write_field(text_cell(&format!("{of}{}", series.name)))?;
     }
     writer.write_record(None::<&[u8]>)?;
-    // A number needs no quotes, and is put behind the head without being looked at for what would.
-    let (mut table, mut digits) = (finished(writer)?, zmij::Buffer::new());
+    // A number needs no quotes, so it is appended to the head without a search for special characters.
+    let (mut table, mut digits) = (finish(writer)?, zmij::Buffer::new());
     for time_s in common_time_s(curves) {
         put_nanoseconds(&mut table, time_s);
         for CurveGroup { grid, series, .. } in &groups {
             let place = grid.place(time_s);
             for CurveSeries { values, factor, .. } in series {
                 table.push(b',');
-                if let Some(value) = place.and_then(|place| place.of(values)) {
-                    table.extend_from_slice(digits.format(single(value * factor)).as_bytes());
+                if let Some(value) = place.and_then(|place| place.interpolate(values)) {
+                    table.extend_from_slice(digits.format(to_f32(value * factor)).as_bytes());
                 }
             }
         }
@@ -169,10 +169,11 @@ pub(super) fn table_bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
     Ok(table)
 }
 
-/// A CSV of this program as a German spreadsheet reads it: semicolons between cells, decimal commas.
+/// Converts a CSV of this program for a German spreadsheet: semicolons between cells, decimal commas.
 ///
 /// # Errors
-/// [`ReportError::Csv`] where the writer fails.
+///
+/// [`ReportError::Csv`] if the writer fails.
 pub fn in_german(table: &[u8]) -> Result<Vec<u8>, ReportError> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(table);
     let mut writer = csv::WriterBuilder::new().delimiter(b';').from_writer(Vec::new());
@@ -182,12 +183,12 @@ pub fn in_german(table: &[u8]) -> Result<Vec<u8>, ReportError> {
             row?.iter().map(|cell| if is_head { cell.to_owned() } else { cell.replace('.', ",") }),
         )?;
     }
-    finished(writer)
+    finish(writer)
 }
 
 /// Columns of one grid: a channel's or the motion's.
 struct CurveGroup<'a> {
-    /// What their names begin with.
+    /// Beginning of their names.
     of: String,
     grid: Grid,
     series: Vec<CurveSeries<'a>>,
@@ -210,7 +211,8 @@ fn groups(curves: &Curves) -> Vec<CurveGroup<'_>> {
     channels.chain(motion).chain(others).flatten().collect()
 }
 
-/// A time to the nanosecond, by whole numbers: of ten cells of a row it is the one that would take longest.
+/// Writes a time to the nanosecond, by whole numbers: among ten cells of a row it would otherwise be the
+/// slowest.
 fn put_nanoseconds(table: &mut Vec<u8>, time_s: f64) {
     let time_ns = nanoseconds(time_s);
     let (sign, time_ns) = (if time_ns < 0 { "-" } else { "" }, time_ns.unsigned_abs());
@@ -274,7 +276,7 @@ mod tests {
     fn a_grid_has_no_place_outside_its_curve() {
         let curve = curve(1.0, 0.1, 11);
         let grid = Grid::new(&curve.time_s).unwrap();
-        let at = |time_s| grid.place(time_s)?.of(&curve.velocity_m_s);
+        let at = |time_s| grid.place(time_s)?.interpolate(&curve.velocity_m_s);
         assert_eq!(at(0.99), None);
         assert_eq!(at(2.01), None);
         // A line is read exactly but for round-off.
@@ -309,7 +311,7 @@ mod tests {
         for (i, row) in rows[1..].iter().enumerate().step_by(97) {
             // Single precision, printed so that it reads back to the same bits.
             let velocity: f32 = row[3].parse().unwrap();
-            assert_eq!(velocity.to_bits(), single(curves.channels[0].velocity_m_s[i]).to_bits(), "row {i}");
+            assert_eq!(velocity.to_bits(), to_f32(curves.channels[0].velocity_m_s[i]).to_bits(), "row {i}");
         }
     }
 

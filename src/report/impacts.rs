@@ -1,10 +1,10 @@
-//! Both impacts to the chapter that tabulates them, in short on a terminal, one table per impact on a page;
-//! and what holds of the prototype of a scale model to a table.
+//! Chapter on both impacts, short on a terminal, with one table per impact on a page; and the table of the
+//! prototype of a scale model.
 
 use super::document::{Chapter, ChapterPart, ReportTable};
 use super::rounding::{MISSING, fixed, interval, pair, plain};
-use super::shocks::what_if;
-use super::text::{distinct, reasons};
+use super::shocks::filter_table;
+use super::text::{dedup, reasons};
 use crate::data::{CaskFile, DropResult, Estimate, ImpactTable, QuantityRow, STANDARD_GRAVITY_M_S2};
 
 /// A number of an impact: its name, unit and factor to it.
@@ -13,7 +13,7 @@ struct ImpactRow(&'static str, &'static str, f64, fn(&ImpactTable) -> Option<Est
 impl ImpactRow {
     fn words(&self, impact: &ImpactTable) -> String {
         let Self(_, unit, factor, number) = self;
-        scaled(number(impact), *factor, unit)
+        scaled_words(number(impact), *factor, unit)
     }
 }
 
@@ -37,40 +37,40 @@ const ROWS: [ImpactRow; 14] = [
 ];
 
 fn in_g(estimate: Option<Estimate>) -> String {
-    scaled(estimate, G, "")
+    scaled_words(estimate, G, "")
 }
 
-fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
+fn scaled_words(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
     estimate.map_or_else(|| MISSING.to_owned(), |e| pair(factor * e.value, factor * e.u95, unit))
 }
 
-/// A note for each reason why quantities at these places are missing.
-pub(super) fn not_determined(result: &DropResult, places: &[&str]) -> impl Iterator<Item = ChapterPart> {
+/// A note for each reason why quantities at these paths are missing.
+pub(super) fn missing_notes(result: &DropResult, places: &[&str]) -> impl Iterator<Item = ChapterPart> {
     let note = |reason| ChapterPart::note(format!("{MISSING} not determined: {reason}"));
     reasons(result, places).into_iter().map(note)
 }
 
-/// The chapter; nothing where neither impact is told.
+/// The chapter; empty if neither impact is determined.
 pub(super) fn impacts(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Both impacts, ± 95 %");
     let [first, second] = &result.impacts;
     if first.numbers.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
         return chapter;
     }
-    let table = ReportTable::of(&ROWS)
+    let table = ReportTable::from_rows(&ROWS)
         .caption("The rigid body, free of ringing; impulse, energy and force with the stated mass")
         .head("Quantity", |row| row.0)
         .number("First impact", |row| row.words(first))
         .number("Second impact", |row| row.words(second));
     chapter
-        .with(ChapterPart::text(filter_words(result)))
-        .with(table)
-        .with(what_if(result, in_g))
-        .with_all(not_determined(result, &["impacts[0]", "impacts[1]"]))
+        .then(ChapterPart::text(filter_words(result)))
+        .then(table)
+        .then(filter_table(result, in_g))
+        .with_all(missing_notes(result, &["impacts[0]", "impacts[1]"]))
         .with_all(energy_words(result).map(ChapterPart::text))
 }
 
-/// Which low-pass, and where it overshoots.
+/// Names the low-pass, and the readings in which it overshoots.
 fn filter_words(result: &DropResult) -> String {
     let peaks = || result.impacts.iter().flat_map(|i| &i.channels);
     let low_pass = peaks().next().map_or_else(String::new, |peak| {
@@ -89,7 +89,7 @@ fn filter_words(result: &DropResult) -> String {
             plain(peak.cutoff_hz, 4)
         )
     });
-    let above = distinct(peaks().filter(|p| p.is_above_raw).map(|p| p.name.as_str()));
+    let above = dedup(peaks().filter(|p| p.is_above_raw).map(|p| p.name.as_str()));
     if above.is_empty() {
         return low_pass;
     }
@@ -99,7 +99,7 @@ fn filter_words(result: &DropResult) -> String {
     )
 }
 
-/// What is left for the second end, measured beside predicted as Fig. 8 of [P] has it, and the amplification.
+/// Energy that remains for the second end, measured and predicted as in Fig. 8 of [P], and the amplification.
 fn energy_words(result: &DropResult) -> Option<String> {
     let amplified = interval(Some(&result.amplification?));
     let left = result.impacts[1].numbers.energy_ratio.map(|ratio| {
@@ -131,7 +131,7 @@ pub(super) fn prototype(result: &DropResult, file: &CaskFile) -> Chapter {
         add(name, [&result.impacts, &prototype.impacts].map(|of| words(&of[i])));
     }
     rows.retain(|[_, model, _]| model != MISSING);
-    let table = ReportTable::of(&rows)
+    let table = ReportTable::from_rows(&rows)
         .caption("The same materials, the same drop height: velocities, angles and k are equal.")
         .head("Quantity", |row| row[0].clone())
         .number(format!("Model, 1:{}", plain(1.0 / scale, 3)), |row| row[1].clone())
@@ -146,5 +146,5 @@ pub(super) fn prototype(result: &DropResult, file: &CaskFile) -> Chapter {
         g * flight_s * (1.0 / scale - 1.0),
         1.0 / scale
     );
-    chapter.with(table).with(ChapterPart::note(longer))
+    chapter.then(table).then(ChapterPart::note(longer))
 }

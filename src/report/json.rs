@@ -1,26 +1,29 @@
-//! Results and listings to JSON: pretty, keys in the contract's order, never a number that is not one.
+//! Writes results and listings as JSON: pretty, keys in the documented order, never a value that is not a
+//! number.
 
 use super::ReportError;
-use super::text::turns;
+use super::text::steers_line;
 
-/// A result, a listing or the like as a file: two spaces of indentation and a line feed at the end.
+/// Writes a result, a listing or the like as a file: two spaces of indentation and a line feed at the end.
 ///
 /// # Errors
-/// [`ReportError::Json`] where the writer fails.
+///
+/// [`ReportError::Json`] if the writer fails.
 pub fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
-    Ok((bare(serde_json::to_string_pretty(value)?) + "\n").into_bytes())
+    Ok((escape(serde_json::to_string_pretty(value)?) + "\n").into_bytes())
 }
 
-/// The JSON of anything in a single line, without its end.
+/// Writes any value as JSON in a single line, without a line end.
 ///
 /// # Errors
-/// [`ReportError::Json`] where the writer fails.
-pub fn in_a_line<T: serde::Serialize>(value: &T) -> Result<String, ReportError> {
-    Ok(bare(serde_json::to_string(value)?))
+///
+/// [`ReportError::Json`] if the writer fails.
+pub fn to_line<T: serde::Serialize>(value: &T) -> Result<String, ReportError> {
+    Ok(escape(serde_json::to_string(value)?))
 }
 
-/// JSON with those characters escaped that a terminal would obey.
-fn bare(text: String) -> String {
+/// Escapes the characters in JSON that a terminal would obey.
+fn escape(text: String) -> String {
     if !text.contains(steers) {
         return text;
     }
@@ -28,10 +31,10 @@ fn bare(text: String) -> String {
     text.chars().map(escaped).collect()
 }
 
-/// Whether JSON may hold it bare and a terminal would obey it: controls beyond ASCII, line ends and
-/// directions of Unicode.
+/// True for characters that JSON may contain unescaped although a terminal would obey them: controls beyond
+/// ASCII, line ends and directions of Unicode.
 fn steers(c: char) -> bool {
-    turns(c) || ('\u{7f}'..='\u{9f}').contains(&c)
+    steers_line(c) || ('\u{7f}'..='\u{9f}').contains(&c)
 }
 
 #[cfg(test)]

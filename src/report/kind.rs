@@ -1,15 +1,15 @@
-//! A drop without a slap-down to the kind of drop that its angle makes it, and why none was to be expected.
+//! Kind of a drop without a slap-down, by its angle, and the reason why none was to be expected.
 
 use super::rounding::{interval, plain};
 use crate::data::{CaskFile, DropResult};
 
-/// A flat drop is at most so steep, degrees: as far as a release is usually off.
+/// Largest inclination of a flat drop, degrees: the usual error of a release.
 const FLAT_DEG: f64 = 2.0;
-/// The lever of the target's force about the centre of gravity that turns a cask hardly, as a share of the
-/// distance between them: 6° of inclination.
+/// Largest lever of the target's force about the centre of gravity that hardly turns a cask, as a share of
+/// the distance between them: 6° of inclination.
 const SMALL_LEVER: f64 = 0.1;
 
-/// "Flat drop: …"; `None` where a slap-down was found, or was to be expected.
+/// The kind of the drop, "Flat drop: …"; `None` if a slap-down was found, or was to be expected.
 pub(super) fn words(result: &DropResult, file: &CaskFile) -> Option<String> {
     let (cask, drop) = (&file.cask, &file.drop);
     let (angle_deg, (sin, cos)) = (drop.angle_rad.to_degrees(), drop.angle_rad.sin_cos());

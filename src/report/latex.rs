@@ -1,9 +1,9 @@
-//! A result to a table for LaTeX: what a paper or a test report quotes of it.
+//! Table of a result for LaTeX, with the values that a paper or a test report quotes.
 
 use super::rounding::{MISSING, interval};
 use crate::data::{DropResult, Estimate, QuantityRow};
 
-/// `results.tex`: a `tabular` of two columns, to be taken in with `\input`; needs no package.
+/// Writes `results.tex`: a `tabular` of two columns, to be included with `\input`; needs no package.
 pub(super) fn table(result: &DropResult) -> Vec<u8> {
     let own = |impact: &'static str, rows: Vec<QuantityRow>| {
         rows.into_iter().map(move |row| (format!("{impact}: {}", row.name), row.value))

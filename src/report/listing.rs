@@ -1,4 +1,4 @@
-//! What a recording holds to the document that `inspect` shows.
+//! Document with the content of a recording that `inspect` shows.
 
 use super::analysis::quality;
 use super::document::{Chapter, ChapterPart, Medium, ReportDocument, ReportTable, TableShape, Words};
@@ -6,15 +6,14 @@ use super::rounding::{MISSING, plain};
 use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
 
-/// The table, with SGR colours that the caller strips where no terminal shows it.
+/// The table, with SGR colours that the caller strips if no terminal shows it.
 pub fn table(listing: &Listing, width: usize) -> String {
     super::as_text::text(&document(listing), width)
 }
 
-/// Chapters of what the container states, the sources, how they are stored, and what is wrong with the file,
-/// where anything is.
+/// Chapters on the facts of the container, the sources, their storage, and damage of the file, if any.
 pub(super) fn document(listing: &Listing) -> ReportDocument {
-    let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
+    let counts: Vec<String> = listing.counts.iter().map(|(name, count)| plural(name, *count)).collect();
     let counts = (!counts.is_empty()).then(|| ChapterPart::line(counts.join(", ")));
     let facts = listing
         .facts
@@ -24,9 +23,9 @@ pub(super) fn document(listing: &Listing) -> ReportDocument {
         let reason = channel.unreadable.as_ref()?;
         Some(ChapterPart::text(format!("{} cannot be read: {reason}", channel.source)))
     });
-    let title = ChapterPart::title(about(listing)).only(Medium::Terminal);
+    let title = ChapterPart::title(recording_words(listing)).only_on(Medium::Terminal);
     let mut chapters = vec![
-        Chapter::new("").with(title).with_all(counts).with_all(facts),
+        Chapter::new("").then(title).with_all(counts).with_all(facts),
         Chapter::new("Sources").with_all(sources(&listing.channels)).with_all(unreadable),
         Chapter::new("Stored as").with_all(encodings(&listing.channels).into_iter().map(ChapterPart::text)),
     ];
@@ -37,28 +36,28 @@ pub(super) fn document(listing: &Listing) -> ReportDocument {
 }
 
 /// The recording, its format and its size.
-pub(super) fn about(listing: &Listing) -> String {
+pub(super) fn recording_words(listing: &Listing) -> String {
     format!("{} · {} · {}", tail(&listing.recording, 50), json_word(listing.format), size(listing.bytes))
 }
 
 /// "3 chunks", "1 chunk".
-fn counted(name: &str, count: u64) -> String {
+fn plural(name: &str, count: u64) -> String {
     let name = name.replace('_', " ");
     let name = if count == 1 { name.strip_suffix('s').unwrap_or(&name) } else { &name };
     format!("{count} {name}")
 }
 
-/// A source with the rows of it that are meant.
-pub(super) fn named(listed: &ListedChannel) -> String {
+/// A source with the selected rows.
+pub(super) fn source_words(listed: &ListedChannel) -> String {
     let rows = listed.rows.as_ref().map_or_else(String::new, |rows| format!(" ({rows})"));
     format!("{}{rows}", listed.source)
 }
 
-/// Columns that are said in one sentence where all sources share what they hold.
+/// Columns that become one sentence if all sources have the same value.
 const SHARED: [&str; 3] = ["start", "length", "gaps"];
 
-/// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic
-/// or group.
+/// Sources up to this many columns leave room for the rest of the table; longer ones go below their topic or
+/// group.
 const WIDEST_SOURCE: usize = 32;
 
 fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
@@ -69,17 +68,17 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     let is_long = longest > WIDEST_SOURCE;
     let known = |words: Option<String>| words.unwrap_or_else(|| MISSING.to_owned());
     let seconds = |t: Option<f64>| known(t.map(|t| format!("{} s", plain(t, 3))));
-    let mut table: ReportTable = ReportTable::of(channels)
+    let mut table: ReportTable = ReportTable::from_rows(channels)
         .head("source", |c| {
-            let named = named(c);
+            let named = source_words(c);
             let short = if is_long { format!("  {}", split(&named).1) } else { named.clone() };
-            Words::or(named, short)
+            Words::with_short(named, short)
         })
         .number("samples", |c| known(c.samples.or(c.messages).map(|n| n.to_string())))
         .number("rate", |c| known(c.sample_rate_hz.map(rate)))
         .text("unit", |c| match &c.unit {
             Some(unit) => Words::from(unit.clone()),
-            None => Words::or("not stated", MISSING),
+            None => Words::with_short("not stated", MISSING),
         })
         .number("start", |c| seconds(c.start_s))
         .number("length", |c| seconds(c.duration_s))
@@ -87,8 +86,8 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
         .text("range", |c| {
             known(c.range.map(|(low, high)| format!("{} … {}", plain(low, 3), plain(high, 3))))
         })
-        .only(Medium::Terminal)
-        .most(usize::MAX, 300, "recording.json has all")
+        .only_on(Medium::Terminal)
+        .limit_rows(usize::MAX, 300, "recording.json has all")
         .into();
     if is_long {
         table.shape = TableShape::Groups(channels.iter().map(|c| split(&c.source).0.to_owned()).collect());
@@ -111,7 +110,7 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     [table.into()].into_iter().chain(common).collect()
 }
 
-/// A source as the topic or group that others share, and the rest of its path with the mark that joins them.
+/// Splits a source into the topic or group that others share, and the rest of its path with the separator.
 fn split(source: &str) -> (&str, &str) {
     if source.starts_with('{') {
         return ("of several MCAP channels on one topic", source);
@@ -131,7 +130,7 @@ fn rate(rate_hz: f64) -> String {
     }
 }
 
-/// How the sources are stored, each way once.
+/// Lists the ways in which the sources are stored, each once.
 fn encodings(channels: &[ListedChannel]) -> Vec<String> {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for channel in channels.iter().filter(|c| !c.encoding.is_empty()) {
@@ -177,7 +176,7 @@ pub(super) mod tests {
             gaps: Some(0),
             range: Some((-512.3, 498.1)),
             encoding: "protobuf dropcheck.AccelerationBlock".into(),
-            ..ListedChannel::named(source, kind)
+            ..ListedChannel::new(source, kind)
         }
     }
 

@@ -1,4 +1,4 @@
-//! An analysis to bytes: table, JSON, HTML, pictures, curves. Nothing here writes a report's file.
+//! Files of an analysis as bytes: table, JSON, HTML, pictures, curves. Nothing here writes a report's file.
 
 mod acceleration_sources;
 mod analysis;
@@ -50,22 +50,22 @@ pub use campaign::{
 };
 pub use check::{CHECK_NAMES, CheckedSetup, check_files, table as check_table};
 #[cfg(feature = "native")]
-pub(crate) use complaint::{in_lines, told};
+pub(crate) use complaint::{in_lines, message_text};
 pub use complaint::{message, sentence};
-pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn};
-pub use first_screen::{first_screen, not_strict};
+pub use first_look::{FIRST_LOOK_NAMES, FirstLook, drawn_sources};
+pub use first_screen::{first_screen, why_not_strict};
 pub use grid::in_german;
-pub use json::{in_a_line, pretty as pretty_json};
+pub use json::{pretty as pretty_json, to_line};
 pub use listing::table as listing_table;
 pub use pictures::setup_picture;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::{cask_file as cask_file_template, cask_file_with_list, sensor_list};
-pub use text::printable;
+pub use text::sanitize;
 
 use crate::data::{Analysis, ChannelCurve};
 use crate::numerics::{as_f64, spectrum::magnitude};
 
-/// Why a part of the report could not be made.
+/// Reason why a part of the report could not be made.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReportError {
     /// The JSON writer failed.
@@ -89,13 +89,13 @@ pub enum ReportError {
     Scratch {
         /// The folder for temporary files.
         folder: String,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
 
-/// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over what is shown
-/// of it.
+/// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over the range
+/// shown.
 fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     let (Some(first_s), Some(last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
         return (Vec::new(), Vec::new());
@@ -104,14 +104,14 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     magnitude(curve.raw_m_s2.iter().copied(), sample_rate_hz)
 }
 
-/// All tables of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
-/// where no terminal shows it.
+/// Formats all tables of an analysis in lines of at most `width` columns, with SGR colours that the caller
+/// strips if no terminal shows it.
 pub fn table(analysis: &Analysis, width: usize) -> String {
     as_text::full_text(&analysis::document(analysis), width)
 }
 
-/// The names of the files of a report, in the order of [`files`]; the last one is there where a channel takes
-/// no part in the motion.
+/// Names of the files of a report, in the order of [`files`]; the last one exists if a channel takes no part
+/// in the motion.
 pub const FILE_NAMES: &[&str] = &[
     "report.html",
     "result.json",
@@ -140,10 +140,11 @@ fn file_names(analysis: &Analysis) -> &'static [&'static str] {
     &FILE_NAMES[..FILE_NAMES.len() - is_last]
 }
 
-/// Every file of a report by name, in the order in which a reader meets them.
+/// Every file of a report by name, in the order for a reader.
 ///
 /// # Errors
-/// [`ReportError`] where one of them cannot be made; then none is returned.
+///
+/// [`ReportError`] if one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let (binary, ((curves_csv, spectra), pictures)) = rayon::join(
         || binary_curves(analysis),

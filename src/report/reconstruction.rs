@@ -1,36 +1,37 @@
-//! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
+//! Chapters on the reconstruction of the motion from the channels, and on the uncertainty of its numbers.
 
 use super::document::{Chapter, ChapterPart, PartContent, ReportTable, TableCell};
 use super::record::{Assumption, assumption};
 use super::rounding::{MISSING, fixed, interval, optional, optional_fixed, significant};
-use super::text::{distinct, rung_words, sentence, taken_mark, true_minus, yes};
-use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
+use super::text::{chosen_mark, dedup, rung_words, sentence, true_minus, yes_no};
+use crate::data::{CaskFile, Contribution, DropResult, FlightFit, Method, MethodChoice};
 
-/// Moves of the joint fit that are listed; the smaller ones say nothing.
+/// Most corrections of the joint fit in the list; smaller ones are insignificant.
 const MOST_MOVES: usize = 10;
 
-/// The rung taken and why, the other rungs, the closures and the joint fit.
+/// Chapter on the selected method and its reason, the other methods, the consistency checks and the joint
+/// fit.
 pub(super) fn reconstruction(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("How the motion was reconstructed");
     let Some(choice) = &result.reconstruction else { return chapter };
-    let rungs = ReportTable::of(&choice.candidates)
+    let rungs = ReportTable::from_rows(&choice.candidates)
         .caption(
             "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken \
              that noise and tolerances explain and whose answer the next would neither change by more than \
              the narrower interval nor know better by a tenth.",
         )
-        .chosen(|c| c.rung == choice.rung)
-        .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), taken_mark(c.rung == choice.rung)))
+        .mark_chosen(|c| c.rung == choice.rung)
+        .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), chosen_mark(c.rung == choice.rung)))
         .number("Slap-down speed", |c| interval(c.speed.as_ref()))
         .number("k", |c| interval(c.k.as_ref()))
         .text("What it leaves", |c| true_minus(&c.residual))
-        .text("Explained", |c| yes(c.consistent));
+        .text("Explained", |c| yes_no(c.consistent));
     let lead = ChapterPart::lead(sentence(&choice.reason));
-    chapter.with(lead).with(rungs).with(closures(choice)).with_all(joint(choice))
+    chapter.then(lead).then(rungs).then(closures(choice)).with_all(joint_fit_parts(choice))
 }
 
-fn closures(choice: &ReconstructionChoice) -> ReportTable {
-    ReportTable::of(&choice.closures)
+fn closures(choice: &MethodChoice) -> ReportTable {
+    ReportTable::from_rows(&choice.closures)
         .caption(
             "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard \
              uncertainties (u) of all inputs \
@@ -40,14 +41,14 @@ fn closures(choice: &ReconstructionChoice) -> ReportTable {
         .number("Missed by", |c| true_minus(&c.miss))
         .number("in u", |c| fixed(c.miss_in_u, 1))
         .number("with the others met, in u", |c| fixed(c.beside_others_in_u, 1))
-        .if_any(choice.closures.len() > 1)
+        .show_if(choice.closures.len() > 1)
         .into()
 }
 
-/// χ² of the joint fit and what it moved.
-fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
+/// Parts on χ² of the joint fit and its corrections.
+fn joint_fit_parts(choice: &MethodChoice) -> Vec<ChapterPart> {
     let Some((chi_square, degrees)) = choice.chi_square else { return Vec::new() };
-    let used = if choice.rung == ReconstructionRung::Joint {
+    let used = if choice.rung == Method::Joint {
         "Its motion is the one reported."
     } else {
         "It serves as a check: the numbers of this report are those of the reconstruction taken."
@@ -60,12 +61,12 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
         if degrees == 1 { "" } else { "s" },
         if choice.adjustments.is_empty() { still } else { "" }
     );
-    let moved = ReportTable::of(&choice.adjustments)
+    let moved = ReportTable::from_rows(&choice.adjustments)
         .caption(
             "What the joint fit moves, the largest first. Left: the input's standard uncertainty after \
                   the fit over the one before.",
         )
-        .most(MOST_MOVES, MOST_MOVES, "each moved by less.")
+        .limit_rows(MOST_MOVES, MOST_MOVES, "each moved by less.")
         .head("Input", |a| &a.input[..])
         .number("Standard uncertainty u", |a| &a.standard_uncertainty[..])
         .number("Moved by, in u", |a| fixed(a.moved_in_u, 2))
@@ -73,11 +74,11 @@ fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
     vec![ChapterPart::text(sentence), moved.into()]
 }
 
-/// The fit of the free-flight window: plateaus, modes, candidates.
+/// Chapter on the fit of the free-flight window: plateaus, modes, candidates.
 pub(super) fn flight(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Fit of the flight");
     let Some(fit) = &result.flight else { return chapter };
-    let modes = ReportTable::of(&fit.modes)
+    let modes = ReportTable::from_rows(&fit.modes)
         .caption(if fit.modes.is_empty() {
             "Bending modes taken: none, nothing rings"
         } else {
@@ -91,17 +92,17 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         0 => MISSING,
         _ => "free",
     };
-    let candidates = ReportTable::of(&fit.candidates)
+    let candidates = ReportTable::from_rows(&fit.candidates)
         .caption(
             "Candidates that were tried. Criterion: BIC and, for a drift, −2 ln of the odds of its shifts",
         )
-        .chosen(|c| c.taken)
-        .text("Modes", |c| format!("{}{}", c.modes, taken_mark(c.taken)))
+        .mark_chosen(|c| c.taken)
+        .text("Modes", |c| format!("{}{}", c.modes, chosen_mark(c.taken)))
         .text("Phases", |c| phases(c.driven, c.modes))
-        .text("Drift", |c| yes(c.drift))
+        .text("Drift", |c| yes_no(c.drift))
         .number("Criterion", |c| fixed(c.bic, 1))
         .number("Residual, m/s", |c| significant(c.residual_m_s, 2));
-    let plateaus = ReportTable::of(&fit.plateaus)
+    let plateaus = ReportTable::from_rows(&fit.plateaus)
         .caption("Plateaus")
         .head("Channel", |p| &p.channel[..])
         .number("Velocity step, m/s", |p| fixed(p.velocity_step_m_s, 3))
@@ -109,14 +110,14 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         .number("Zero shift, m/s²", |p| significant(p.zero_shift_m_s2, 2))
         .number("Residual, m/s", |p| significant(p.residual_m_s, 2));
     chapter
-        .with(ChapterPart::lead(flight_sentence(fit)))
-        .with(PartContent::Beside([vec![plateaus.into()], vec![modes.into(), candidates.into()]]))
+        .then(ChapterPart::lead(flight_sentence(fit)))
+        .then(PartContent::Beside([vec![plateaus.into()], vec![modes.into(), candidates.into()]]))
 }
 
 fn flight_sentence(fit: &FlightFit) -> String {
     let drift = if fit.drift { ", with a drift (zero shift)" } else { ", without drift" };
     let lowest = fit.candidates.iter().map(|c| c.bic).fold(f64::INFINITY, f64::min);
-    // A simpler one that does as well stands before that of the lowest criterion, all others behind it.
+    // An equally good simpler fit comes before that of the lowest criterion, all others after it.
     let why = match fit.candidates.iter().position(|c| c.taken) {
         Some(i) if fit.candidates[i].bic <= lowest => "is that of the fit with the lowest criterion",
         Some(0) => {
@@ -133,13 +134,13 @@ fn flight_sentence(fit: &FlightFit) -> String {
     )
 }
 
-/// Twice the root of the sum of squares of what the inputs contribute; `None` where one of them is not known.
+/// Twice the root of the sum of squares of the inputs' contributions; `None` if one of them is not known.
 fn total(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Option<f64> {
     let squares: Option<f64> = budget.iter().map(|c| change(c).map(|x| x * x)).sum();
     squares.map(|s| 2.0 * s.sqrt())
 }
 
-/// What each input contributes to the intervals, largest first, and what they come to.
+/// Chapter on the contribution of each input to the intervals, largest first, and the total.
 pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     let budget = &result.budget;
     let chapter = Chapter::new("Uncertainty");
@@ -149,14 +150,14 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     let sum = |change: fn(&Contribution) -> Option<f64>, decimals| {
         format!("± {}", optional_fixed(total(budget, change), decimals))
     };
-    // The last row is that of their sum.
+    // The last row is the total.
     let rows: Vec<Option<&Contribution>> = budget.iter().map(Some).chain([None]).collect();
     let all = "Interval (95 %): twice the root of the sum of squares";
-    let table = ReportTable::of(&rows)
+    let table = ReportTable::from_rows(&rows)
         .class("")
-        .chosen(Option::is_none)
+        .mark_chosen(Option::is_none)
         .head("Input", |c| c.map_or(all, |c| &c.input[..]))
-        .text("Known from", |c| c.map_or_else(|| "".into(), |c| known_from(c, result, file)))
+        .text("Known from", |c| c.map_or_else(|| "".into(), |c| source_cell(c, result, file)))
         .number("Standard uncertainty", |c| c.map_or("", |c| &c.standard_uncertainty[..]))
         .number("Slap-down speed, m/s", |c| {
             c.map_or_else(|| sum(|c| c.speed_m_s, 3), |c| optional_fixed(c.speed_m_s, 3))
@@ -167,7 +168,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
          interval is twice their root. {}",
         largest(budget)
     );
-    let untested = ReportTable::of(&result.untested)
+    let untested = ReportTable::from_rows(&result.untested)
         .class("")
         .caption(
             "What nothing in this recording tests: a mistake that moves k or the speed by two half-widths \
@@ -180,14 +181,14 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .number("moves the slap-down speed by, m/s", |i| optional(i.moves.slap_down_speed_m_s, 2))
         .number("and k by", |i| optional(i.moves.k, 2))
         .text("What would test it", |i| i.remedy);
-    chapter.with(ChapterPart::lead(lead)).with(table).with(untested)
+    chapter.then(ChapterPart::lead(lead)).then(table).then(untested)
 }
 
-/// A formal report must not rest on an assumption that carries more of the variance, percent.
+/// A formal report must not rest on an assumption with more than this share of the variance, percent.
 const WEIGHS_PERCENT: f64 = 10.0;
 
-/// What is assumed, each with the percent that it carries of the variance of the speed, or of k where there
-/// is no speed; the largest first.
+/// Lists the assumptions, each with its percentage of the variance of the speed, or of k if there is no
+/// speed; the largest first.
 fn assumptions(result: &DropResult, file: &CaskFile) -> Vec<(Assumption, f64)> {
     let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
     let mut all: Vec<(Assumption, f64)> = Vec::new();
@@ -202,13 +203,13 @@ fn assumptions(result: &DropResult, file: &CaskFile) -> Vec<(Assumption, f64)> {
     all
 }
 
-/// How many assumptions a formal report must not rest on.
+/// Counts the assumptions on which a formal report must not rest.
 pub(super) fn weighty_assumptions(result: &DropResult, file: &CaskFile) -> usize {
     assumptions(result, file).iter().filter(|(_, percent)| *percent > WEIGHS_PERCENT).count()
 }
 
-/// "assumes …; state yours in `[tolerance]`": what the intervals rest on that nobody stated, in short by its
-/// names alone; `None` where all of weight is stated.
+/// Sentence "assumes …; state yours in `[tolerance]`": the assumptions behind the intervals, in short by
+/// their names alone; `None` if all that matter are stated.
 pub(super) fn assumed(result: &DropResult, file: &CaskFile, is_short: bool) -> Option<String> {
     let is_heavy = |percent: f64| percent > WEIGHS_PERCENT;
     let mut named = assumptions(result, file);
@@ -218,22 +219,22 @@ pub(super) fn assumed(result: &DropResult, file: &CaskFile, is_short: bool) -> O
         Some(_) => " of the variance",
         None => " of k's variance",
     };
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     for (assumed, percent) in &named {
         let words = if is_short { assumed.name } else { &assumed.words };
-        said.push(if is_heavy(*percent) {
+        sentences.push(if is_heavy(*percent) {
             format!("{words} ({percent:.0} %{})", std::mem::take(&mut of_what))
         } else {
             words.to_owned()
         });
     }
-    let tables = distinct(named.iter().map(|(assumed, _)| format!("`{}`", assumed.table))).join(", ");
+    let tables = dedup(named.iter().map(|(assumed, _)| format!("`{}`", assumed.table))).join(", ");
     let place = if is_short { String::new() } else { format!(" in {tables}") };
-    (!said.is_empty()).then(|| format!("assumes {}; state yours{place}", said.join(", ")))
+    (!sentences.is_empty()).then(|| format!("assumes {}; state yours{place}", sentences.join(", ")))
 }
 
-/// The inputs whose changes of a quantity are known, with the percent of its variance that each carries; none
-/// where nothing changes it.
+/// Inputs whose changes of a quantity are known, with the percentage of its variance from each; empty if
+/// nothing changes it.
 fn shares(all: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Vec<(&Contribution, f64)> {
     let square = |c: &Contribution| change(c).map(|x| x * x);
     let sum: f64 = all.iter().filter_map(square).sum();
@@ -241,7 +242,7 @@ fn shares(all: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -
     known.filter_map(|c| Some((c, 100.0 * square(c)? / sum))).collect()
 }
 
-/// Which input weighs most, in the speed and in k.
+/// Names the input that contributes most to the speed and to k.
 pub(super) fn largest(budget: &[Contribution]) -> String {
     let words = |change: fn(&Contribution) -> Option<f64>| {
         let (largest, percent) = shares(budget, change).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -255,13 +256,13 @@ pub(super) fn largest(budget: &[Contribution]) -> String {
     }
 }
 
-/// Whether the recording tells an input's uncertainty, the cask file states it, or it is a default.
-fn known_from(input: &Contribution, result: &DropResult, file: &CaskFile) -> TableCell {
+/// Source of an input's uncertainty: the recording, the cask file, or a default.
+fn source_cell(input: &Contribution, result: &DropResult, file: &CaskFile) -> TableCell {
     let is_closure =
         result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input.input));
     match input.tolerance {
         _ if is_closure => "closure".into(),
-        Some(_) if assumption(file, input).is_some() => TableCell::marked("", "default"),
+        Some(_) if assumption(file, input).is_some() => TableCell::with_mark("", "default"),
         Some(_) => "cask file".into(),
         None if input.input.is_empty() => MISSING.into(),
         None => "recording".into(),
@@ -273,7 +274,7 @@ mod tests {
     use super::super::document::{Medium, ReportDocument};
     use super::super::{as_html, sample};
     use super::*;
-    use crate::data::FlightModelScore;
+    use crate::data::FlightScore;
 
     fn page(chapter: Chapter) -> String {
         as_html::page(&ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }, &[])
@@ -312,7 +313,7 @@ mod tests {
         let known = |input: &str| {
             let own = analysis.result.budget.iter().find(|own| own.input == input).cloned();
             let own = own.unwrap_or_else(|| contribution(input, None, 0.0));
-            known_from(&own, &analysis.result, &analysis.cask_file)
+            source_cell(&own, &analysis.result, &analysis.cask_file)
         };
         let from = |input: &str| known(input).words.on(Medium::Page).to_owned();
         assert_eq!(known("calibration of A2").mark, "default");
@@ -339,7 +340,7 @@ mod tests {
 
     #[test]
     fn the_number_of_modes_is_explained_by_what_decided_it() {
-        let score = |modes, bic, taken| FlightModelScore {
+        let score = |modes, bic, taken| FlightScore {
             modes,
             drift: false,
             driven: false,
@@ -347,20 +348,20 @@ mod tests {
             bic,
             residual_m_s: 0.01,
         };
-        let said = |scores: [(f64, bool); 3]| {
+        let sentences = |scores: [(f64, bool); 3]| {
             let candidates =
                 (1..).zip(scores).map(|(modes, (bic, taken))| score(modes, bic, taken)).collect();
             flight_sentence(&FlightFit { candidates, ..FlightFit::default() })
         };
-        let lowest = said([(-9.0, true), (-8.0, false), (-7.0, false)]);
+        let lowest = sentences([(-9.0, true), (-8.0, false), (-7.0, false)]);
         assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
         // A simpler one that does as well stands first.
-        let smallest = said([(-7.0, true), (-9.0, false), (-8.0, false)]);
+        let smallest = sentences([(-7.0, true), (-9.0, false), (-8.0, false)]);
         assert!(smallest.contains("smallest fit that gives the same velocity steps"), "{smallest}");
         // The motion contradicts the first.
-        let other = said([(-9.0, false), (-8.0, true), (-7.0, false)]);
+        let other = sentences([(-9.0, false), (-8.0, true), (-7.0, false)]);
         assert!(other.ends_with("among those that the motion does not contradict."), "{other}");
-        let lowest = said([(-7.0, false), (-9.0, true), (-8.0, false)]);
+        let lowest = sentences([(-7.0, false), (-9.0, true), (-8.0, false)]);
         assert!(lowest.ends_with("is that of the fit with the lowest criterion."), "{lowest}");
     }
 }

@@ -1,9 +1,9 @@
-//! What a cask file says of the test to the head of its report, its sensors and other channels, its settings,
+//! Head of the report from the test record in the cask file, its sensors and other channels, its settings,
 //! its photographs and its lines to sign.
 
 use super::document::{Chapter, ChapterPart, Fact, PartContent, ReportTable, TableCell};
 use super::rounding::{MISSING, interval, optional, optional_fixed, plain, significant};
-use super::text::{Style, determined, json_word};
+use super::text::{Style, json_word, or_unknown};
 use super::words::contact_words;
 use crate::data::keys::quantity_words;
 use crate::data::{
@@ -11,22 +11,21 @@ use crate::data::{
     Photo, Program, Setting, SpectralLine, TOLERANCES, TestRecord,
 };
 
-/// The heading of the report: the test's number and title, and of the cask and the drop what is not stated.
+/// Heading of the report: the test's number and title, or cask and drop if they are not stated.
 pub(super) fn heading(test: &TestRecord, cask: &str, is_slap_down: bool) -> String {
     let usual = if is_slap_down { "slap-down drop test" } else { "drop test" };
     let title = test.title.as_deref().unwrap_or(usual);
     format!("{}: {title}", test.id.as_deref().unwrap_or(cask))
 }
 
-/// "2026-11-22, 18:04 +01:00" of a date as RFC 3339 writes it.
+/// Formats "2026-11-22, 18:04 +01:00" from a date in the form of RFC 3339.
 fn date_words(date: &str) -> String {
     let Some((day, time)) = date.split_once(['T', 't', ' ']) else { return date.to_owned() };
     let zone = time.find(['Z', 'z', '+', '-']).map_or("", |at| &time[at..]);
     format!("{day}, {} {zone}", time.get(..5).unwrap_or(time)).trim_end().to_owned()
 }
 
-/// Who tested what, where and when, and against which limits; what the cask file should say of it and does
-/// not, in so many words.
+/// Chapter on persons, specimen, place, date and limits; it names entries that the cask file lacks.
 pub(super) fn head(result: &DropResult) -> Chapter {
     let test = &result.test;
     let date = test.date.as_deref().map(date_words);
@@ -48,29 +47,29 @@ pub(super) fn head(result: &DropResult) -> Chapter {
     let stated = words.into_iter().filter_map(|(name, words)| Some(Fact::words(name, words?)));
     let more = test.more.iter().map(|(name, words)| Fact::words(name, words));
     let part = |i: usize| move |row: &String| row.splitn(3, ',').nth(i).unwrap_or(MISSING).trim().to_owned();
-    let revisions = ReportTable::of(&test.revisions)
+    let revisions = ReportTable::from_rows(&test.revisions)
         .caption("Revisions of this report")
         .head("Date", part(0))
         .text("Program", part(1))
         .text("What changed", part(2));
-    Chapter::new("The test").with(ChapterPart::facts("", stated.chain(more).collect())).with(revisions)
+    Chapter::new("The test").then(ChapterPart::facts("", stated.chain(more).collect())).then(revisions)
 }
 
-/// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
+/// Formats "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
 pub(super) fn program(result: &DropResult) -> String {
     let program = result.program.as_ref();
     let words = program.map_or_else(|| format!("dropcheck {}", result.version), Program::words);
     result.analysed.as_ref().map_or_else(|| words.clone(), |when| format!("{words}, {when}"))
 }
 
-/// What was seen otherwise beside the result.
+/// Chapter on the independent observations beside the result.
 pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     let agrees = |seen: &ObservedBeside| match seen.e_n {
         None => MISSING,
         Some(e_n) if e_n.abs() <= 1.0 => "yes",
         Some(_) => "no",
     };
-    let table = ReportTable::of(all)
+    let table = ReportTable::from_rows(all)
         .class("")
         .caption("E_n: the difference over both half-widths together; within ±1 they agree.")
         .head("Quantity", |seen| quantity_words(seen.name))
@@ -79,7 +78,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
         .number("Result", |seen| interval(seen.result.as_ref()))
         .number("E_n", |seen| optional_fixed(seen.e_n, 2))
         .text("Agree", agrees);
-    Chapter::new("Observed otherwise").with(table)
+    Chapter::new("Observed otherwise").then(table)
 }
 
 /// The word for a limit that is exceeded.
@@ -93,35 +92,35 @@ const LIMITS_CAPTION: &str = "Exceeded: the whole interval lies beyond the custo
                               Deceleration (at the centre of gravity), force, crush, energy: the larger of \
                               both impacts'.";
 
-/// The limits that are exceeded, then those undecided, at most so many in full, then the count of those kept
-/// and the rule that decided; `None` without limits.
-pub(super) fn limits_said(all: &[Limit], most: usize) -> Option<String> {
+/// Lists the limits that are exceeded, then those undecided, up to `most` in full, then the number of those
+/// kept and the rule that decided; `None` without limits.
+pub(super) fn limits_sentence(all: &[Limit], most: usize) -> Option<String> {
     let words = |limit: &Limit| {
         let bounds = [limit.least.map(|of| ("at least", of)), limit.most.map(|of| ("at most", of))];
         let bounds = bounds.into_iter().flatten().map(|(word, of)| format!("{word} {}", plain(of, 6)));
         let bounds = bounds.collect::<Vec<_>>().join(", ");
         let unit = limit.measured.map_or("", |of| of.unit).trim_matches('1');
-        let measured = determined(interval(limit.measured.as_ref()));
+        let measured = or_unknown(interval(limit.measured.as_ref()));
         format!("{} {measured} ({})", quantity_words(limit.name), format!("{bounds} {unit}").trim_end())
     };
     let in_state = |state| all.iter().filter(move |limit| limit.state == state);
     let undecided = in_state(LimitState::Undecided).map(|limit| format!("undecided: {}", words(limit)));
-    let mut said: Vec<String> = in_state(LimitState::Exceeded).map(words).chain(undecided).collect();
-    let (more, kept) = (said.len().saturating_sub(most), in_state(LimitState::Kept).count());
-    said.truncate(most);
-    said.extend((more > 0).then(|| format!("{more} more (`--full`)")));
-    said.extend((kept > 0).then(|| format!("{kept} kept")));
-    (!said.is_empty()).then(|| format!("{}. {GUARD_BAND}.", said.join("; ")))
+    let mut sentences: Vec<String> = in_state(LimitState::Exceeded).map(words).chain(undecided).collect();
+    let (more, kept) = (sentences.len().saturating_sub(most), in_state(LimitState::Kept).count());
+    sentences.truncate(most);
+    sentences.extend((more > 0).then(|| format!("{more} more (`--full`)")));
+    sentences.extend((kept > 0).then(|| format!("{kept} kept")));
+    (!sentences.is_empty()).then(|| format!("{}. {GUARD_BAND}.", sentences.join("; ")))
 }
 
-/// What was measured beside the customer's limits.
+/// Chapter on the measured values and the customer's limits.
 pub(super) fn limits(all: &[Limit]) -> Chapter {
     let state = |row: &Limit| {
         let style = [Style::Green, Style::Red, Style::Yellow][row.state as usize];
-        TableCell::toned(style, json_word(row.state))
+        TableCell::tone(style, json_word(row.state))
     };
     let bound = |bound: Option<f64>| bound.map_or_else(|| MISSING.to_owned(), |bound| plain(bound, 6));
-    let table = ReportTable::of(all)
+    let table = ReportTable::from_rows(all)
         .class("")
         .caption(format!("{GUARD_BAND}. {LIMITS_CAPTION}"))
         .head("Quantity", |row| quantity_words(row.name))
@@ -129,7 +128,7 @@ pub(super) fn limits(all: &[Limit]) -> Chapter {
         .number("Least", |row| bound(row.least))
         .number("Most", |row| bound(row.most))
         .text("Limit", state);
-    Chapter::new("Limits").with(table)
+    Chapter::new("Limits").then(table)
 }
 
 /// The settings that the chapter has already.
@@ -145,8 +144,8 @@ pub(super) const TOLD: [&str; 9] = [
     "contact law of the first end",
 ];
 
-/// The cask, the drop and the contact; what is a default is marked.
-pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
+/// Chapter on the cask, the drop and the contact, with defaults marked.
+pub(super) fn test_chapter(file: &CaskFile, heading: &str) -> Chapter {
     let (cask, drop) = (&file.cask, &file.drop);
     let fact = |name: &str, key: &str, value: String, unit: &str| Fact {
         is_default: file.defaults.iter().any(|d| d == key),
@@ -182,16 +181,16 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
         let lasts_ms = plain(1e3 * drop.contact_duration_s, 5);
         of_drop.push(fact("First impact lasts", "contact.duration_s", lasts_ms, "ms"));
     }
-    Chapter::new(heading).with(PartContent::Beside([
+    Chapter::new(heading).then(PartContent::Beside([
         vec![ChapterPart::facts(format!("Cask {}", cask.name), of_cask)],
         vec![ChapterPart::facts("Drop and contact", of_drop)],
     ]))
 }
 
-/// Which sensor stands where, in which direction it reads, and by which papers.
+/// Table of the sensors: place, direction of reading, and calibration papers.
 pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
     let stated = |words: &Option<String>| words.clone().unwrap_or_else(|| MISSING.to_owned());
-    ReportTable::of(&file.channels)
+    ReportTable::from_rows(&file.channels)
         .class("")
         .caption(
             "Sensors: places from the first end along the axis and off it, the sign of a reading away \
@@ -205,18 +204,18 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
         .text("Serial", |s| stated(&s.sensor.serial))
         .text("Certificate", |s| stated(&s.sensor.certificate))
         .text("Calibrated", |s| stated(&s.sensor.calibrated))
-        .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * file.calibration_of(&s.name), 3)))
+        .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * file.scale_half_width(&s.name), 3)))
         .into()
 }
 
-/// The photographs that the cask file names, as far as they were read.
+/// The photographs that the cask file names, if they could be read.
 pub(super) fn photographs(test: &TestRecord) -> impl Iterator<Item = Photo> {
     test.photos.iter().filter(|photo| !photo.bytes.is_empty()).cloned()
 }
 
 /// Lines for a pen.
 pub(crate) fn signatures<S: AsRef<str>>(who: &[S]) -> ChapterPart {
-    ReportTable::of(who)
+    ReportTable::from_rows(who)
         .class("signatures")
         .head("", |who| who.as_ref().to_owned())
         .text("name", |_| "")
@@ -225,25 +224,25 @@ pub(crate) fn signatures<S: AsRef<str>>(who: &[S]) -> ChapterPart {
         .into()
 }
 
-/// Whether the cask file leaves this key of `[tolerance]` to its default.
+/// True if the cask file leaves this key of `[tolerance]` to its default.
 fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
 }
 
-/// What the numbers rest on in place of an input that nobody stated.
+/// Value assumed for an input that nobody stated.
 #[derive(PartialEq)]
 pub(super) struct Assumption {
     /// "drop angle".
     pub(super) name: &'static str,
     /// "drop angle ± 0.4°".
     pub(super) words: String,
-    /// The table of the cask file in which it is stated.
+    /// Table of the cask file that states the input.
     pub(super) table: &'static str,
-    /// Whether the input has no usual value: it counts however little it weighs.
+    /// True if the input has no usual value: it counts even with a small contribution.
     pub(super) is_unknown: bool,
 }
 
-/// What is assumed of an input of the budget; `None` where the cask file states it.
+/// Assumption on an input of the budget; `None` if the cask file states it.
 pub(super) fn assumption(file: &CaskFile, input: &Contribution) -> Option<Assumption> {
     let (key, cask, known) = (input.tolerance?, &file.cask, &file.tolerances);
     let is_left_out = |key: &str| file.defaults.iter().any(|default| default == key);
@@ -265,11 +264,11 @@ pub(super) fn assumption(file: &CaskFile, input: &Contribution) -> Option<Assump
             unknown("[tolerance]", format!("impulse ratio up to {}", plain(most, 4)))
         }
         _ if is_default(file, key) => {
-            // A length is known to so many millimetres, whatever its share of the cask is.
+            // The uncertainty of a length is in millimetres, whatever its share of the cask is.
             let (value, unit) = if key.ends_with("_m") {
-                (1e3 * row.in_file(*known, cask), " mm")
+                (1e3 * row.value_in_file(*known, cask), " mm")
             } else {
-                row.shown(*known)
+                row.displayed_value(*known)
             };
             let words = format!("{} ± {}{unit}", row.name, plain(value, 3));
             Some(Assumption { name, words, table: "[tolerance]", is_unknown: false })
@@ -278,10 +277,10 @@ pub(super) fn assumption(file: &CaskFile, input: &Contribution) -> Option<Assump
     }
 }
 
-/// The tolerances, and the corrections that are switched off; without what `said` says already.
-pub(super) fn of_cask_file(file: &CaskFile, said: &[Setting]) -> Vec<Setting> {
+/// The tolerances, and the corrections that are switched off; without those that `said` already lists.
+pub(super) fn cask_file_settings(file: &CaskFile, said: &[Setting]) -> Vec<Setting> {
     let tolerances = TOLERANCES.iter().map(|tolerance| {
-        let (value, unit) = tolerance.shown(file.tolerances);
+        let (value, unit) = tolerance.displayed_value(file.tolerances);
         Setting {
             name: format!("tolerance of {}", tolerance.name),
             value: format!("± {}{unit} (95 %)", plain(value, 3)),
@@ -289,7 +288,7 @@ pub(super) fn of_cask_file(file: &CaskFile, said: &[Setting]) -> Vec<Setting> {
         }
     });
     let mut made = file.corrections;
-    let off = made.by_key().into_iter().filter(|(_, made)| !**made).map(|(name, _)| Setting {
+    let off = made.switches().into_iter().filter(|(_, made)| !**made).map(|(name, _)| Setting {
         name: format!("correction {name}"),
         value: "switched off".into(),
         origin: "cask file".into(),
@@ -305,7 +304,7 @@ const CAPTION: &str = "As recorded, each in its unit: but for angular-rate senso
                        it; smallest and largest of the whole recording. The strongest line is that of the \
                        curve's spectrum.";
 
-/// What each of them reads, and their curves; empty where there are none.
+/// Chapter on the readings of the other channels, with their curves; empty if there are none.
 pub(super) fn others(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Other channels");
     if result.other_channels.is_empty() {
@@ -315,7 +314,7 @@ pub(super) fn others(result: &DropResult) -> Chapter {
     let at_ms = |extreme: Option<Extreme>| optional_fixed(extreme.map(|e| 1e3 * e.time_s), 2);
     let line = |line: SpectralLine| format!("{} Hz", significant(line.frequency_hz, 3));
     let codes = |other: &OtherSummary| -> Vec<String> { other.findings.iter().map(json_word).collect() };
-    let table = ReportTable::of(&result.other_channels)
+    let table = ReportTable::from_rows(&result.other_channels)
         .class("")
         .caption(CAPTION)
         .head("Channel", |c| &c.name[..])
@@ -331,7 +330,7 @@ pub(super) fn others(result: &DropResult) -> Chapter {
         .number("Strongest line", |c| c.strongest_line.map_or_else(|| MISSING.to_owned(), line))
         .text("Serial", |c| c.sensor.serial.clone().unwrap_or_else(|| MISSING.to_owned()))
         .code("Findings", |c| if c.findings.is_empty() { MISSING.to_owned() } else { codes(c).join(" ") });
-    chapter.with(table).with(ChapterPart::picture("other_channels", ""))
+    chapter.then(table).then(ChapterPart::picture("other_channels", ""))
 }
 
 #[cfg(test)]
@@ -341,12 +340,12 @@ mod tests {
 
     #[test]
     fn tolerances_have_their_unit_and_their_origin() {
-        let settings = of_cask_file(&sample::cask_file(), &[]);
-        let said = |name: &str| settings.iter().find(|s| s.name == name).expect(name);
-        assert_eq!(said("tolerance of drop angle").value, "± 0.4° (95 %)");
-        assert_eq!(said("tolerance of drop angle").origin, "cask file");
-        assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
-        assert_eq!(said("tolerance of inertia").origin, "default");
+        let settings = cask_file_settings(&sample::cask_file(), &[]);
+        let sentences = |name: &str| settings.iter().find(|s| s.name == name).expect(name);
+        assert_eq!(sentences("tolerance of drop angle").value, "± 0.4° (95 %)");
+        assert_eq!(sentences("tolerance of drop angle").origin, "cask file");
+        assert_eq!(sentences("tolerance of position of a sensor").value, "± 10 mm (95 %)");
+        assert_eq!(sentences("tolerance of inertia").origin, "default");
         assert_eq!(settings.len(), TOLERANCES.len());
     }
 
@@ -354,10 +353,10 @@ mod tests {
     fn only_a_correction_that_is_off_is_said_and_only_once() {
         let mut file = sample::cask_file();
         file.corrections.hum = false;
-        let settings = of_cask_file(&file, &[]);
+        let settings = cask_file_settings(&file, &[]);
         let off: Vec<&str> =
             settings.iter().map(|s| s.name.as_str()).filter(|n| n.starts_with("correction")).collect();
         assert_eq!(off, ["correction hum"]);
-        assert_eq!(of_cask_file(&file, &settings), []);
+        assert_eq!(cask_file_settings(&file, &settings), []);
     }
 }

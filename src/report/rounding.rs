@@ -1,17 +1,17 @@
-//! Numbers to text with the digits that their uncertainty carries.
+//! Formats numbers with the digits that their uncertainty justifies.
 
 use crate::data::Estimate;
 
-/// Shown where a quantity could not be had.
+/// Shown for a quantity that is not determined.
 pub(super) const MISSING: &str = "–";
 
 /// Significant digits of a half-width, and so of the value beside it: two (JCGM 100:2008, 7.2.6).
 const INTERVAL_DIGITS: usize = 2;
 
-/// Digits of a value whose interval is unknown or nil.
+/// Digits of a value whose interval is unknown or zero.
 const BARE_DIGITS: usize = 4;
 
-/// "23.90 ± 0.31 m/s", or the dash of a missing quantity. Seconds are told in ms.
+/// Formats "23.90 ± 0.31 m/s", or the dash of a missing quantity. Seconds are shown in ms.
 pub(super) fn interval(estimate: Option<&Estimate>) -> String {
     let Some(estimate) = estimate.filter(|e| e.value.is_finite()) else { return MISSING.to_owned() };
     let (factor, unit) = match estimate.unit {
@@ -22,7 +22,7 @@ pub(super) fn interval(estimate: Option<&Estimate>) -> String {
     };
     let (value, u95) = (estimate.value * factor, estimate.u95 * factor);
     let text = if u95.is_finite() && u95 > 0.0 {
-        let decimals = decimals_of(u95, INTERVAL_DIGITS);
+        let decimals = count_decimals(u95, INTERVAL_DIGITS);
         format!("{} ± {} {unit}", fixed(value, decimals), fixed(u95, decimals))
     } else {
         let u95 = if u95.is_finite() { "0" } else { "unknown" };
@@ -31,12 +31,12 @@ pub(super) fn interval(estimate: Option<&Estimate>) -> String {
     text.trim_end().to_owned()
 }
 
-/// `value ± u95 unit` for a pair that is no [`Estimate`].
+/// Formats `value ± u95 unit` for a pair without an [`Estimate`].
 pub(super) fn pair(value: f64, u95: f64, unit: &'static str) -> String {
     interval(Some(&Estimate::new(value, u95, unit)))
 }
 
-/// `value` with `digits` significant digits, no exponent within 1e-4 to 1e7.
+/// Formats `value` with `digits` significant digits, no exponent within 1e-4 to 1e7.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -44,10 +44,10 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         return format!("{value:.*e}", digits.saturating_sub(1)).replace('-', "−");
     }
-    fixed(value, decimals_of(value, digits))
+    fixed(value, count_decimals(value, digits))
 }
 
-/// `value` with `digits` significant digits and without the zeros at its end: for settings and sizes.
+/// Formats `value` with `digits` significant digits and without the zeros at its end: for settings and sizes.
 pub(crate) fn plain(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     if text.contains('.') && !text.contains('e') {
@@ -56,12 +56,12 @@ pub(crate) fn plain(value: f64, digits: usize) -> String {
     text
 }
 
-/// An optional number with `digits` significant digits, or the dash.
+/// Formats an optional number with `digits` significant digits, or the dash.
 pub(crate) fn optional(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| MISSING.to_owned(), |value| significant(value, digits))
 }
 
-/// An optional number with fixed decimals, or the dash.
+/// Formats an optional number with fixed decimals, or the dash.
 pub(crate) fn optional_fixed(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| MISSING.to_owned(), |value| fixed(value, decimals))
 }
@@ -75,7 +75,7 @@ pub(super) fn percent(value: impl Into<Option<f64>>) -> String {
     }
 }
 
-/// `value` with `decimals`, a true minus sign, and no minus before a zero; or the dash.
+/// Formats `value` with `decimals`, a true minus sign, and no minus before a zero; or the dash.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -88,8 +88,8 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Decimals that show `digits` significant digits of `value` after it is rounded to them.
-fn decimals_of(value: f64, digits: usize) -> usize {
+/// Number of decimals that show `digits` significant digits of `value` after it is rounded to them.
+fn count_decimals(value: f64, digits: usize) -> usize {
     // The exponent is read from the rounded text, so that 0.0996 counts as 0.10.
     let text = format!("{:.*e}", digits.saturating_sub(1), value.abs());
     let exponent: i32 = text.split('e').nth(1).and_then(|e| e.parse().ok()).unwrap_or(0);

@@ -4,7 +4,7 @@ use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
     CogVelocity, Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
-    Extreme, Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, IssueCode,
+    Extreme, Finding, FirstImpact, FlightFit, FlightRegime, FlightScore, ImpactTable, Input, IssueCode,
     LazyCurves, Mode, ModelCandidate, ModelChoice, MotionCurve, OtherCurve, OtherSummary, Plateau,
     Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, SpectralLine, Unit, Verdict,
 };
@@ -27,7 +27,7 @@ pub(super) fn analysis() -> Analysis {
     }
 }
 
-/// The same with a strain gauge that takes no part in the motion.
+/// The analysis with a strain gauge that takes no part in the motion.
 pub(super) fn with_other() -> Analysis {
     let mut analysis = analysis();
     let extreme = |value, time_s| Some(Extreme { value, time_s });
@@ -90,7 +90,7 @@ fn estimate(value: f64, u95: f64, unit: &'static str) -> Option<Estimate> {
 
 /// The first impact with a number, and the second without any.
 fn impacts() -> [ImpactTable; 2] {
-    let [mut first, second] = [End::First, End::Second].map(ImpactTable::unknown);
+    let [mut first, second] = [End::First, End::Second].map(ImpactTable::empty);
     first.numbers.crush = estimate(0.0315, 0.0008, "m");
     first.numbers.energy_absorbed = estimate(1.06e5, 2.0e4, "J");
     [first, second]
@@ -100,7 +100,7 @@ fn result() -> DropResult {
     DropResult {
         schema: "dropcheck.result/1",
         version: "0.1.0",
-        program: Some(Program { commit: Some("0123abc"), sha256: Some("89ab".into()), ..Program::this() }),
+        program: Some(Program { commit: Some("0123abc"), sha256: Some("89ab".into()), ..Program::current() }),
         command: vec!["analyze".into()],
         analysed: Some("2026-11-24T02:00:00Z".into()),
         amplification: Some(Estimate::new(1.55, 0.03, "1")),
@@ -163,9 +163,9 @@ fn result() -> DropResult {
         events: Events {
             release_s: None,
             fall_end_s: None,
-            first_contact: Some(At::exactly(CONTACT_S)),
-            separation: Some(At::exactly(SEPARATION_S)),
-            slap_down: Some(At::exactly(SLAP_DOWN_S)),
+            first_contact: Some(At::exact(CONTACT_S)),
+            separation: Some(At::exact(SEPARATION_S)),
+            slap_down: Some(At::exact(SLAP_DOWN_S)),
         },
         channels: vec![
             summary("A1", End::First, "/daq/a1.samples"),
@@ -243,9 +243,9 @@ fn quality() -> Vec<Finding> {
             message: "A1 stands at ±500 g in 42 samples of the first impact; the rebound velocity may read \
                       low by up to 0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out"
                 .into(),
-            ..clipped.on("A1").between(0.152_1, 0.152_4)
+            ..clipped.tag("A1").span(0.152_1, 0.152_4)
         },
-        ChannelFinding::OffsetTakenOff { mean_m_s2: 0.31, is_large: false }.on("A2"),
+        ChannelFinding::OffsetTakenOff { mean_m_s2: 0.31, is_large: false }.tag("A2"),
     ]
 }
 
@@ -280,7 +280,7 @@ fn flight() -> FlightFit {
         late_mismatch_m_s: None,
         early_mismatch_m_s: None,
     };
-    let score = |modes, drift, bic, residual_m_s| FlightModelScore {
+    let score = |modes, drift, bic, residual_m_s| FlightScore {
         modes,
         drift,
         driven: false,
@@ -323,7 +323,7 @@ pub(super) fn cask_file() -> CaskFile {
     let channel = |name: &str, end, source: &str, position_m| ChannelSpec {
         unit: Some(Unit::G),
         full_scale: Some(500.0),
-        ..ChannelSpec::plain(name, end, source, position_m)
+        ..ChannelSpec::new(name, end, source, position_m)
     };
     let cask = Cask {
         name: "ANF-18".into(),
@@ -335,7 +335,7 @@ pub(super) fn cask_file() -> CaskFile {
         inertia_kg_m2: 11_540.0,
         is_body: true,
     };
-    let drop = Drop { impact_velocity_m_s: IMPACT_VELOCITY_M_S, ..Drop::of_height(9.0, 15.0 * PI / 180.0) };
+    let drop = Drop { impact_velocity_m_s: IMPACT_VELOCITY_M_S, ..Drop::from_height(9.0, 15.0 * PI / 180.0) };
     CaskFile {
         path: "anf18.toml".into(),
         sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
@@ -349,7 +349,7 @@ pub(super) fn cask_file() -> CaskFile {
             // The sample states the tolerance of its angle, and no other.
             .chain(crate::data::TOLERANCES[1..].iter().map(|t| format!("tolerance.{}", t.key)))
             .collect(),
-        ..CaskFile::plain(cask, drop, Contact::Rough)
+        ..CaskFile::new(cask, drop, Contact::Rough)
     }
 }
 

@@ -1,22 +1,21 @@
 //! The reconstruction and the budget of the hand-made ANF-18 drop, for the tests of this module only.
 
 use crate::data::{
-    Adjustment, Closure, ClosureKind, Contribution, Estimate, ReconstructionCandidate, ReconstructionChoice,
-    ReconstructionRung, Untested, UntestedMoves,
+    Adjustment, CheckKind, Consistency, Contribution, Estimate, Method, MethodCandidate, MethodChoice,
+    Untested, UntestedMoves,
 };
 
-/// The flight fit taken, the joint fit beside it.
-pub(super) fn choice() -> ReconstructionChoice {
-    let candidate =
-        |rung, speed: (f64, f64), k: (f64, f64), consistent, residual: &str| ReconstructionCandidate {
-            rung,
-            speed: Some(Estimate::new(speed.0, speed.1, "m/s")),
-            k: Some(Estimate::new(k.0, k.1, "1")),
-            consistent,
-            residual: residual.into(),
-        };
-    ReconstructionChoice {
-        rung: ReconstructionRung::Flight,
+/// Flight fit selected, joint fit beside it.
+pub(super) fn choice() -> MethodChoice {
+    let candidate = |rung, speed: (f64, f64), k: (f64, f64), consistent, residual: &str| MethodCandidate {
+        rung,
+        speed: Some(Estimate::new(speed.0, speed.1, "m/s")),
+        k: Some(Estimate::new(k.0, k.1, "1")),
+        consistent,
+        residual: residual.into(),
+    };
+    MethodChoice {
+        rung: Method::Flight,
         reason:
             "Taken: planar motion with modes and drift fitted to the flight; the joint fit of all inputs \
                  within their tolerances would change the speed by +0.02 m/s and k by -0.001, within the \
@@ -24,20 +23,14 @@ pub(super) fn choice() -> ReconstructionChoice {
                 .into(),
         candidates: vec![
             candidate(
-                ReconstructionRung::Flight,
+                Method::Flight,
                 (20.56, 0.11),
                 (0.5588, 0.0102),
                 true,
                 "0.032 m/s about 1 mode; rotation against the impulse of the first impact off by -0.8 % of ω \
                  (0.4 u)",
             ),
-            candidate(
-                ReconstructionRung::Joint,
-                (20.58, 0.10),
-                (0.5578, 0.0098),
-                true,
-                "χ² = 0.2 for 2 observables",
-            ),
+            candidate(Method::Joint, (20.58, 0.10), (0.5578, 0.0098), true, "χ² = 0.2 for 2 observables"),
         ],
         closures: closures(),
         chi_square: Some((0.22, 2)),
@@ -50,8 +43,8 @@ pub(super) fn choice() -> ReconstructionChoice {
     }
 }
 
-fn closures() -> Vec<Closure> {
-    let closure = |name: &str, kind, miss: &str, miss_in_u, beside_others_in_u| Closure {
+fn closures() -> Vec<Consistency> {
+    let closure = |name: &str, kind, miss: &str, miss_in_u, beside_others_in_u| Consistency {
         name: name.into(),
         kind,
         channel: None,
@@ -60,10 +53,10 @@ fn closures() -> Vec<Closure> {
         beside_others_in_u,
     };
     vec![
-        closure("height of the second end at slap-down", ClosureKind::Height, "+5 mm", 0.22, 0.03),
+        closure("height of the second end at slap-down", CheckKind::Height, "+5 mm", 0.22, 0.03),
         closure(
             "rotation against the impulse of the first impact",
-            ClosureKind::Turning,
+            CheckKind::Turning,
             "-0.8 % of ω",
             -0.41,
             -0.10,

@@ -36,8 +36,8 @@ pub(super) fn study() -> Study {
     MADE.clone()
 }
 
-/// Two sweeps, with a contact law and k of its own.
-pub(super) fn swept() -> Study {
+/// Two sweeps, with another contact law and k.
+pub(super) fn sweep_study() -> Study {
     static MADE: LazyLock<Study> = LazyLock::new(|| {
         let base = request();
         let request = StudyRequest {
@@ -54,8 +54,8 @@ pub(super) fn swept() -> Study {
     MADE.clone()
 }
 
-/// One case of a blow so short that the body says what every richer model says.
-pub(super) fn single() -> Study {
+/// One case with an impact so short that the body gives the result of every richer model.
+pub(super) fn single_study() -> Study {
     let mut file = sample::cask_file();
     (file.drop.contact_duration_s, file.contact_duration_s) = (2e-4, Some(2e-4));
     crate::study(&file, &StudyRequest { contacts: vec![Contact::Rough], ks: vec![1.0], ..request() })
@@ -65,10 +65,10 @@ pub(super) fn single() -> Study {
 pub(super) fn without_slap_down() -> Study {
     let mut study = study();
     for row in &mut study.rows {
-        row.prediction = never(&row.prediction);
+        row.prediction = without_second_impact(&row.prediction);
     }
     for step in study.ladders.iter_mut().flat_map(|ladder| &mut ladder.steps) {
-        step.prediction = never(&step.prediction);
+        step.prediction = without_second_impact(&step.prediction);
         step.change_percent = None;
     }
     for curve in study.curves.iter_mut().chain(&mut study.sections) {
@@ -89,7 +89,7 @@ pub(super) fn without_slap_down() -> Study {
     study
 }
 
-fn never(prediction: &Prediction) -> Prediction {
+fn without_second_impact(prediction: &Prediction) -> Prediction {
     Prediction {
         slap_down_speed_m_s: None,
         vertical_velocity_m_s: None,

@@ -1,5 +1,4 @@
-//! What single channels read in the impacts to a table, and the choice of the low-pass to a table of what
-//! each would have made of the first impact.
+//! Table of the readings of single channels in the impacts, and table of the first impact with each low-pass.
 
 use super::document::{Chapter, ChapterPart, ReportTable};
 use super::rounding::{optional, optional_fixed, pair};
@@ -14,10 +13,10 @@ const CAPTION: &str = "At the report's low-pass, and unfiltered. An acceleration
 const RESULTANT: &str = "Resultant: the magnitude of the vector of a mounting block's three sensors, each \
                          through the low-pass; so of the changes of velocity and displacement.";
 
-/// The chapter; empty where no channel shows an impact.
+/// The chapter; empty if no channel shows an impact.
 pub(super) fn shocks(result: &DropResult) -> Chapter {
     let millis = |seconds: Option<f64>| seconds.map(|s| 1e3 * s);
-    let table = ReportTable::of(&result.shocks)
+    let table = ReportTable::from_rows(&result.shocks)
         .class("")
         .caption(CAPTION)
         .head("Channel", |s| &s.channel[..])
@@ -31,18 +30,18 @@ pub(super) fn shocks(result: &DropResult) -> Chapter {
         .number("Displacement, mm", |s| optional_fixed(millis(s.displacement_m), 1));
     let has_resultant = result.shocks.iter().any(|shock| !shock.components.is_empty());
     Chapter::new("Shocks of every channel")
-        .with(table)
+        .then(table)
         .with_all(has_resultant.then(|| ChapterPart::note(RESULTANT)))
 }
 
-/// A peak in the shock's unit, with its interval where that is known, m/s².
+/// A peak in the shock's unit, with its interval if it is known, m/s².
 fn with_interval(shock: &Shock, peak: Option<f64>, known: Option<Estimate>) -> String {
     let in_unit = |(known, unit): (Estimate, f64)| pair(known.value / unit, known.u95 / unit, "");
     known.zip(shock.unit_m_s2).map_or_else(|| optional(peak, 4), in_unit)
 }
 
-/// What each low-pass makes of the first impact, and of the decelerations of both.
-pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> String) -> ReportTable {
+/// Table of the first impact's peaks, and the decelerations in both impacts, for each low-pass.
+pub(super) fn filter_table(result: &DropResult, scaled_g: fn(Option<Estimate>) -> String) -> ReportTable {
     let impact = |i: usize, filter: &FilteredPeak| {
         let own = &result.impacts[i].rigid_body_deceleration;
         own.others.iter().find(|other| other.filter == filter.name)
@@ -50,7 +49,7 @@ pub(super) fn what_if(result: &DropResult, scaled_g: fn(Option<Estimate>) -> Str
     let cell = |i: usize, number: fn(&RigidBodyDeceleration) -> Option<Estimate>| {
         move |filter: &FilteredPeak| scaled_g(impact(i, filter).and_then(number))
     };
-    ReportTable::of(&result.filters)
+    ReportTable::from_rows(&result.filters)
         .caption(
             "What another low-pass would make of it: peak and length of the first end's transverse channel \
              in the first impact, and the decelerations of the rigid body's centre of gravity S and struck \

@@ -1,17 +1,17 @@
-//! The calculation beside the test to its chapter: ratings, and numbers of both.
+//! Chapter on the calculation beside the test: ratings, and numbers of both.
 
 use super::document::{Chapter, ChapterPart, ReportTable};
 use super::rounding::{fixed, pair, percent};
 use super::text::json_word;
 use crate::data::{CalculatedNumber, DropResult};
 
-/// The chapter; empty where the cask file names no calculation.
+/// The chapter; empty if the cask file names no calculation.
 pub(super) fn simulation(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Calculation beside the test");
     let Some(file) = &result.input.simulation else { return chapter };
     let Some(first) = result.simulation.first() else {
         let words = format!("The calculation {file} is not rated; the findings say why.");
-        return chapter.with(ChapterPart::text(words));
+        return chapter.then(ChapterPart::text(words));
     };
     let caption = format!(
         "Ratings by ISO/TS 18571 of {file}, from first contact to the end of the shorter curve, both through \
@@ -21,7 +21,7 @@ pub(super) fn simulation(result: &DropResult) -> Chapter {
         "The times of the calculation are shifted by {} ms to the measured first contact.",
         fixed(1e3 * first.shift_s, 3)
     );
-    let ratings = ReportTable::of(&result.simulation)
+    let ratings = ReportTable::from_rows(&result.simulation)
         .caption(caption)
         .head("Channel", |row| &row.channel[..])
         .text("Quantity", |row| json_word(row.quantity))
@@ -35,7 +35,7 @@ pub(super) fn simulation(result: &DropResult) -> Chapter {
         Some(u95) => pair(number.measured, u95, number.unit),
         None => format!("{} {}", fixed(number.measured, 2), number.unit),
     };
-    let numbers = ReportTable::of(&result.calculated)
+    let numbers = ReportTable::from_rows(&result.calculated)
         .caption(
             "Filtered curves of both. Pulse: above a tenth of the peak. The second pulse of the calculation \
              is sought from the middle of the measured flight on; the change of velocity is that from the \
@@ -45,5 +45,5 @@ pub(super) fn simulation(result: &DropResult) -> Chapter {
         .number("Measured", measured)
         .number("Calculated", |number| fixed(number.calculated, 2))
         .number("Difference", |number| fixed(number.calculated - number.measured, 2));
-    chapter.with(ratings).with(ChapterPart::note(shift)).with(numbers)
+    chapter.then(ratings).then(ChapterPart::note(shift)).then(numbers)
 }

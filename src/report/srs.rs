@@ -1,24 +1,24 @@
 //! Curves to `srs.csv`: shock response and pseudo-velocity of each channel that returns to rest.
 
 use super::ReportError;
-use super::records::{finished, text_cell};
+use super::records::{finish, text_cell};
 use crate::data::{
     Analysis, ChannelFinding, DropResult, Finding, FindingKind, STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2,
 };
 use crate::numerics::shock_response::shock_response;
-use crate::numerics::{as_count, as_f64, robust, single};
+use crate::numerics::{as_count, as_f64, robust, to_f32};
 use rayon::prelude::*;
 
 /// Q of the oscillators: 5 % of critical damping.
 const QUALITY: f64 = 10.0;
-/// Natural frequencies: twelve an octave from this one, Hz, to this share of the sample rate, where the
+/// Natural frequencies: twelve per octave from this one, Hz, to this share of the sample rate, at which the
 /// samples still show a cycle's largest value to 5 %.
 const LOWEST_HZ: f64 = 5.0;
 const PER_OCTAVE: f64 = 12.0;
 const HIGHEST_SHARE: f64 = 0.1;
-/// A channel is at rest again, or rings about it, where its mean over so long at its end, s, is no more than
-/// gravity and half as much beside it, g, and what a ringing of a period or more leaves of its RMS, √2/π: a
-/// level beyond that would be the spectrum at low frequencies.
+/// A channel is at rest again, or rings about its rest level, if its mean over this time at its end, s, is
+/// within half of gravity above g, g, and within the residual of a ringing of a period or more, √2/π of its
+/// RMS: a level beyond that would be the spectrum at low frequencies.
 const END_S: f64 = 0.025;
 const MOST_LEVEL_G: f64 = 1.5;
 const MOST_OF_RINGING: f64 = 0.45;
@@ -33,11 +33,12 @@ struct AccelerationCourse<'a> {
 /// The table, channel by channel.
 ///
 /// # Errors
-/// [`ReportError::Csv`] where the writer fails.
+///
+/// [`ReportError::Csv`] if the writer fails.
 pub(super) fn table_bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(["channel", "frequency_hz", "acceleration", "pseudo_velocity_m_s"])?;
-    let mut table = finished(writer)?;
+    let mut table = finish(writer)?;
     let rows = |course: &AccelerationCourse| {
         unit_m_s2(&analysis.result, course).map(|unit_m_s2| spectrum(course, unit_m_s2))
     };
@@ -46,7 +47,7 @@ pub(super) fn table_bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     Ok(table)
 }
 
-/// Every channel of acceleration, counted from the free fall.
+/// Every acceleration channel, relative to the free fall.
 fn courses(analysis: &Analysis) -> Vec<AccelerationCourse<'_>> {
     let rate_hz = |time_s: &[f64]| Some(as_f64(time_s.len().checked_sub(1)?) / (time_s.last()? - time_s[0]));
     let in_motion = analysis.curves.channels.iter().filter_map(|curve| {
@@ -65,7 +66,7 @@ fn courses(analysis: &Analysis) -> Vec<AccelerationCourse<'_>> {
     in_motion.chain(others).collect()
 }
 
-/// m/s² per unit of the channel's shocks, where it shows all of them whole and returns to rest.
+/// m/s² per unit of the channel's shocks, if it shows all of them completely and returns to rest.
 fn unit_m_s2(result: &DropResult, course: &AccelerationCourse) -> Option<f64> {
     let mut own = result.shocks.iter().filter(|shock| shock.channel == course.channel).peekable();
     let unit_m_s2 = own.peek()?.unit_m_s2?;
@@ -91,8 +92,8 @@ fn spectrum(course: &AccelerationCourse, unit_m_s2: f64) -> Result<Vec<u8>, Repo
     let (name, mut rows) = (text_cell(course.channel), csv::Writer::from_writer(Vec::new()));
     for found in shock_response(&course.force_m_s2, course.sample_rate_hz, &frequencies_hz, QUALITY) {
         let numbers = [found.frequency_hz, found.acceleration / unit_m_s2, found.pseudo_velocity];
-        let cells = numbers.map(|number| zmij::Buffer::new().format(single(number)).to_owned());
+        let cells = numbers.map(|number| zmij::Buffer::new().format(to_f32(number)).to_owned());
         rows.write_record([&name].into_iter().chain(&cells))?;
     }
-    finished(rows)
+    finish(rows)
 }

@@ -1,41 +1,41 @@
-//! Rows of anything to a table: a head beside what makes its cells, column by column.
+//! Tables from rows of any type: a head and a function for its cells, column by column.
 
 use super::text::Style;
 
-/// Columns of cells, and how they are shown.
+/// Columns of cells, and their layout.
 #[derive(Default)]
 pub(crate) struct ReportTable {
     pub(crate) caption: String,
-    /// Of the page's style; "whole" keeps a table on one sheet.
+    /// Class in the page's style; "whole" keeps a table on one sheet.
     pub(crate) class: &'static str,
     pub(crate) columns: Vec<ReportColumn>,
-    /// Of each row whether it is the one that was taken.
+    /// True for the row that was selected.
     pub(crate) chosen: Vec<bool>,
-    /// Rows that a terminal and a page show at most, and where all are.
+    /// Most rows on a terminal and on a page, and the place that shows all.
     pub(crate) most: Option<(usize, usize, &'static str)>,
     pub(crate) shape: TableShape,
 }
 
-/// How a terminal shows the rows.
+/// Arrangement of the rows on a terminal.
 #[derive(Default, PartialEq)]
 pub(crate) enum TableShape {
-    /// Beside one another, cells too wide wrapped.
+    /// Cells beside one another, wrapped if they are too wide.
     #[default]
     Columns,
-    /// Beside one another, closer together where they would not fit otherwise.
+    /// Cells beside one another, closer together if they would not fit otherwise.
     Fitting,
-    /// As [`TableShape::Columns`], each row below the name of the group it belongs to.
+    /// As [`TableShape::Columns`], each row below the name of the group to which it belongs.
     Groups(Vec<String>),
     /// The last cell of a row below the others.
     Items,
-    /// The same with air between the rows.
+    /// As `Items`, with air between the rows.
     ApartItems,
 }
 
-/// What the cells of a column hold.
+/// Kind of content in a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CellKind {
-    /// What the row is about.
+    /// Subject of the row.
     Head,
     Text,
     /// Set to the right.
@@ -52,7 +52,7 @@ pub(crate) enum CellKind {
 pub(crate) struct ReportColumn {
     pub(crate) head: Words,
     pub(crate) kind: CellKind,
-    /// Where alone it is shown.
+    /// The only medium that shows the column.
     only: Option<Medium>,
     pub(crate) cells: Vec<TableCell>,
 }
@@ -61,10 +61,10 @@ pub(crate) struct ReportColumn {
 #[derive(Default)]
 pub(crate) struct TableCell {
     pub(crate) words: Words,
-    /// A word set off from the others, such as "default".
+    /// A word set apart from the others, such as "default".
     pub(crate) mark: &'static str,
     pub(crate) style: Option<Style>,
-    /// Where the words lead on a page; nowhere where it is empty.
+    /// Target of a link on a page; empty for none.
     pub(crate) link: String,
 }
 
@@ -76,28 +76,28 @@ impl<T: Into<Words>> From<T> for TableCell {
 
 impl TableCell {
     /// Words with one that is set off.
-    pub(crate) fn marked(words: impl Into<Words>, mark: &'static str) -> Self {
+    pub(crate) fn with_mark(words: impl Into<Words>, mark: &'static str) -> Self {
         Self { mark, ..words.into().into() }
     }
 
     /// Words in a colour.
-    pub(crate) fn toned(style: Style, words: impl Into<Words>) -> Self {
+    pub(crate) fn tone(style: Style, words: impl Into<Words>) -> Self {
         Self { style: Some(style), ..words.into().into() }
     }
 }
 
 impl ReportTable {
-    /// A table of these rows without a column yet.
-    pub(crate) fn of<R>(rows: &[R]) -> TableRows<'_, R> {
+    /// A table for these rows, still without columns.
+    pub(crate) fn from_rows<R>(rows: &[R]) -> TableRows<'_, R> {
         TableRows { rows, table: Self { class: "whole", chosen: vec![false; rows.len()], ..Self::default() } }
     }
 
     /// The columns that a medium shows.
-    pub(crate) fn shown(&self, medium: Medium) -> Vec<&ReportColumn> {
+    pub(crate) fn columns_on(&self, medium: Medium) -> Vec<&ReportColumn> {
         self.columns.iter().filter(|column| column.only.is_none_or(|only| only == medium)).collect()
     }
 
-    /// How many rows a medium shows, and a sentence on those that it leaves out.
+    /// Number of rows that a medium shows, and a sentence on the omitted ones.
     pub(crate) fn rows(&self, medium: Medium) -> (usize, Option<String>) {
         let all = self.chosen.len();
         match self.most {
@@ -129,7 +129,7 @@ impl<'a, R> TableRows<'a, R> {
         self
     }
 
-    /// What the row is about.
+    /// Adds the column with the subject of the row.
     pub(crate) fn head<C: Into<TableCell>>(self, head: impl Into<Words>, cell: impl Fn(&'a R) -> C) -> Self {
         self.column(CellKind::Head, head, cell)
     }
@@ -149,7 +149,7 @@ impl<'a, R> TableRows<'a, R> {
     }
 
     /// Words that stay on a line.
-    pub(crate) fn soft<C: Into<TableCell>>(self, head: impl Into<Words>, cell: impl Fn(&'a R) -> C) -> Self {
+    pub(crate) fn line<C: Into<TableCell>>(self, head: impl Into<Words>, cell: impl Fn(&'a R) -> C) -> Self {
         self.column(CellKind::Soft, head, cell)
     }
 
@@ -164,46 +164,46 @@ impl<'a, R> TableRows<'a, R> {
     }
 
     /// The column set last on this medium alone.
-    pub(crate) fn only(mut self, medium: impl Into<Option<Medium>>) -> Self {
+    pub(crate) fn only_on(mut self, medium: impl Into<Option<Medium>>) -> Self {
         if let Some(column) = self.table.columns.last_mut() {
             column.only = medium.into();
         }
         self
     }
 
-    /// The column set last only where there is something to show.
-    pub(crate) fn if_any(mut self, any: bool) -> Self {
+    /// Shows the last column only if there is something to show.
+    pub(crate) fn show_if(mut self, any: bool) -> Self {
         if !any {
             self.table.columns.pop();
         }
         self
     }
 
-    /// What it shows.
+    /// Sets the caption.
     pub(crate) fn caption(mut self, caption: impl Into<String>) -> Self {
         self.table.caption = caption.into();
         self
     }
 
-    /// Of the page's style.
+    /// Sets the class in the page's style.
     pub(crate) fn class(mut self, class: &'static str) -> Self {
         self.table.class = class;
         self
     }
 
-    /// The rows that were taken.
-    pub(crate) fn chosen(mut self, chosen: impl Fn(&'a R) -> bool) -> Self {
+    /// Marks the selected rows.
+    pub(crate) fn mark_chosen(mut self, chosen: impl Fn(&'a R) -> bool) -> Self {
         self.table.chosen = self.rows.iter().map(chosen).collect();
         self
     }
 
-    /// The rows that a terminal and a page show at most, and where all are.
-    pub(crate) fn most(mut self, terminal: usize, page: usize, others: &'static str) -> Self {
+    /// Sets the most rows on a terminal and on a page, and the place that shows all.
+    pub(crate) fn limit_rows(mut self, terminal: usize, page: usize, others: &'static str) -> Self {
         self.table.most = Some((terminal, page, others));
         self
     }
 
-    /// How a terminal shows the rows.
+    /// Sets the arrangement of the rows on a terminal.
     pub(crate) fn shape(mut self, shape: TableShape) -> Self {
         self.table.shape = shape;
         self
@@ -216,7 +216,7 @@ impl<R> From<TableRows<'_, R>> for ReportTable {
     }
 }
 
-/// Where a document is read.
+/// Medium on which a document is read.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Medium {
     /// 80 columns, with colours.
@@ -228,7 +228,7 @@ pub(crate) enum Medium {
     Markdown,
 }
 
-/// Words, and shorter ones for where a line has no room for them: a terminal, and a table in Markdown.
+/// Words, and shorter ones for lines without room for them: a terminal, and a table in Markdown.
 #[derive(Clone, Default, PartialEq)]
 pub(crate) struct Words {
     full: String,
@@ -237,11 +237,11 @@ pub(crate) struct Words {
 
 impl Words {
     /// `full` on a page, `short` elsewhere.
-    pub(crate) fn or(full: impl Into<String>, short: impl Into<String>) -> Self {
+    pub(crate) fn with_short(full: impl Into<String>, short: impl Into<String>) -> Self {
         Self { full: full.into(), short: Some(short.into()) }
     }
 
-    /// Those of the medium.
+    /// The text for a medium.
     pub(crate) fn on(&self, medium: Medium) -> &str {
         match &self.short {
             Some(short) if medium != Medium::Page => short,

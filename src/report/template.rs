@@ -1,26 +1,27 @@
-//! What a recording holds to a commented cask file to fill in.
+//! Writes a commented cask file to fill in, from the content of a recording.
 
 use super::acceleration_sources::{self, VOLTAGES, has_word, is_time};
 use super::rounding::{plain, significant};
-use super::text::{is_hidden, lines, printable};
+use super::text::{is_hidden, lines, sanitize};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, RowsOf, Severity, Source, acceleration_unit_m_s2};
 
-/// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value,
-/// forgotten, would pass for a known one.
+/// The cask file, valid TOML; values that only the user knows are nan or "FILL IN": a likely value,
+/// forgotten, would look like a known one.
 ///
 /// # Errors
-/// Where nothing that looks like an acceleration can be read.
+///
+/// Returned if nothing that looks like an acceleration can be read.
 pub fn cask_file(listing: &Listing) -> miette::Result<String> {
     let mut taken = acceleration_sources::accelerations(listing);
     let beyond = taken.len().saturating_sub(MOST_CHANNELS);
     taken.truncate(MOST_CHANNELS);
     if taken.is_empty() {
-        return Err(acceleration_sources::none(listing));
+        return Err(acceleration_sources::no_acceleration(listing));
     }
     let mut out = head(listing);
     for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
-        out.push(format!("# Of the recording: {}", printable(&issue.message)));
+        out.push(format!("# Of the recording: {}", sanitize(&issue.message)));
     }
     for (i, listed) in taken.iter().enumerate() {
         channel(&mut out, i, listed);
@@ -35,7 +36,7 @@ pub fn cask_file(listing: &Listing) -> miette::Result<String> {
     let mut also = |why: &str, sources: Vec<String>| {
         if !sources.is_empty() {
             out.extend([String::new(), format!("# Also in the recording, but it {why}:")]);
-            out.extend(sources.into_iter().map(|source| format!("#   {}", printable(&source))));
+            out.extend(sources.into_iter().map(|source| format!("#   {}", sanitize(&source))));
         }
     };
     also("cannot be read", unreadable.into_iter().map(acceleration_sources::reason).collect());
@@ -53,14 +54,16 @@ pub fn cask_file(listing: &Listing) -> miette::Result<String> {
 const LIST: &str = "name source end plane_m around_deg direction unit full_scale polarity serial certificate \
                     calibrated file";
 
-/// A sensor list with a row a source, to be filled in: accelerations first, all others with `end = "none"`.
+/// A sensor list with one row per source, to be filled in: accelerations first, all others with `end =
+/// "none"`.
 ///
 /// # Errors
-/// Where nothing that looks like an acceleration can be read.
+///
+/// Returned if nothing that looks like an acceleration can be read.
 pub fn sensor_list(listing: &Listing) -> miette::Result<Vec<u8>> {
     let accelerations = acceleration_sources::accelerations(listing);
     if accelerations.is_empty() {
-        return Err(acceleration_sources::none(listing));
+        return Err(acceleration_sources::no_acceleration(listing));
     }
     let is_other = |c: &&ListedChannel| c.unreadable.is_none() && is_shown(c);
     let is_taken = |c: &&ListedChannel| accelerations.iter().any(|taken| taken.source == c.source);
@@ -75,13 +78,13 @@ pub fn sensor_list(listing: &Listing) -> miette::Result<Vec<u8>> {
     let labels: Vec<String> = rows.iter().map(|(listed, _)| label(listed).0).collect();
     for ((listed, end), short) in rows.into_iter().zip(&labels) {
         let is_alone = labels.iter().filter(|other| *other == short).count() == 1;
-        let name = if is_alone { short.clone() } else { super::listing::named(listed) };
+        let name = if is_alone { short.clone() } else { super::listing::source_words(listed) };
         let source = match listed.origin() {
             Source::Path(path) => path,
             source @ Source::TopicField { .. } => source_value(&source),
         };
         let picked =
-            |rows: &RowsOf| format!("{{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is));
+            |rows: &RowsOf| format!("{{ column = {}, is = {} }}", quote(&rows.column), quote(&rows.is));
         let mut cells = vec![name, source, end.to_owned()];
         cells.resize(LIST.split(' ').count(), String::new());
         cells[6] = if listed.unit.is_none() { label(listed).1 } else { String::new() };
@@ -91,8 +94,7 @@ pub fn sensor_list(listing: &Listing) -> miette::Result<Vec<u8>> {
     writer.into_inner().map_err(|error| fault(error.into_error().into()))
 }
 
-/// What the recording calls a channel, the last part of its source, and the unit that stands in brackets
-/// behind it.
+/// Name of a channel from the last part of its source, and the unit in brackets after it.
 fn label(listed: &ListedChannel) -> (String, String) {
     let last = listed.source.rsplit('/').next().unwrap_or(&listed.source);
     let split = last.split_once(['[', '(']).filter(|(name, _)| !name.trim().is_empty());
@@ -104,29 +106,29 @@ fn label(listed: &ListedChannel) -> (String, String) {
 /// The cask file to fill in beside a sensor list of this name.
 pub fn cask_file_with_list(listing: &Listing, list: &str) -> String {
     let mut out = head(listing);
-    // A key of no table stands before all tables.
-    out.insert(3, entry(&format!("sensors = {}", quoted(list)), "a row a channel, in this folder"));
+    // A key outside the tables comes before all tables.
+    out.insert(3, entry(&format!("sensors = {}", quote(list)), "a row a channel, in this folder"));
     out.insert(4, String::new());
     lines(out)
 }
 
-/// What stands above the channels that are no accelerations.
+/// Heading of the channels that are no accelerations.
 const OTHERS: &str = "# Also in the recording, but it does not move or does not look like an acceleration in \
                       the plane of\n# the drop. Without the marks it is shown and judged beside the motion.";
 
-/// Whether a source that is no acceleration may be a channel.
+/// True if a source that is no acceleration may be a channel.
 fn is_shown(listed: &ListedChannel) -> bool {
     let has_samples = listed.samples.is_none_or(|samples| samples > 1);
     listed.kind != "topic" && has_samples && acceleration_sources::is_quantity(&listed.source)
 }
 
-/// The lines of a channel that takes no part in the motion, behind marks.
+/// The lines of a channel that takes no part in the motion, commented out.
 fn other_channel(listed: &ListedChannel) -> Vec<String> {
     let source = &listed.source[..];
     let name = listed.rows.as_ref().map_or_else(|| source.to_owned(), |rows| format!("{source} {}", rows.is));
     let mut out = vec![
         "# [[channel]]".to_owned(),
-        format!("# name = {}", quoted(&name)),
+        format!("# name = {}", quote(&name)),
         entry("# end = \"none\"", &facts(listed)),
         format!("# source = {}", source_value(&listed.origin())),
     ];
@@ -134,14 +136,14 @@ fn other_channel(listed: &ListedChannel) -> Vec<String> {
         out.push(entry(&format!("# unit = \"{FILL_IN}\""), "the recording does not say"));
     }
     if let Some(rows) = &listed.rows {
-        out.push(format!("# where = {{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is)));
+        out.push(format!("# where = {{ column = {}, is = {} }}", quote(&rows.column), quote(&rows.is)));
     }
     out
 }
 
 fn head(listing: &Listing) -> Vec<String> {
     let mut out = vec![
-        format!("# Cask file for {}", printable(&listing.recording)),
+        format!("# Cask file for {}", sanitize(&listing.recording)),
         format!(
             "# \"{FILL_IN}\" and nan stand for what only you know; a line with one of them is refused until \
              you replace it."
@@ -156,7 +158,7 @@ fn head(listing: &Listing) -> Vec<String> {
         out.extend(table.keys.iter().map(|key| {
             let is_for_all = (table.name, key.name) == ("recording", "time");
             match time.filter(|_| is_for_all && listing.channels.iter().all(|c| c.time.is_none())) {
-                Some(time) => entry(&format!("# time = {}", quoted(&time.source)), key.remark),
+                Some(time) => entry(&format!("# time = {}", quote(&time.source)), key.remark),
                 None => key_line(key),
             }
         }));
@@ -176,7 +178,7 @@ fn entry(text: &str, remark: &str) -> String {
     format!("{text:<27}{remark}").trim_end().to_owned()
 }
 
-/// The line of a key: asked for where only the user knows it, else behind a mark that makes it a remark.
+/// The line of a key: requested if only the user knows it, else commented out.
 fn key_line(key: &Key) -> String {
     if !key.is_asked {
         return entry(&format!("# {} = {}", key.name, key.example), key.remark);
@@ -188,7 +190,7 @@ fn key_line(key: &Key) -> String {
     entry(&format!("{} = nan", key.name), &format!("{FILL_IN}{colon}{}", key.remark))
 }
 
-/// The line of a key that takes one of two words: the one that the source's name holds, else to be filled in.
+/// The line of a key with one of two words: the one in the source's name, else to be filled in.
 fn word_line(key: &Key, source: &str, words: [&str; 2]) -> String {
     let held = words.map(|word| has_word(source, word));
     match words.iter().zip(held).find(|(_, is_held)| *is_held).filter(|_| held != [true; 2]) {
@@ -218,13 +220,13 @@ fn channel(out: &mut Vec<String>, index: usize, listed: &ListedChannel) {
                     "no rate or times were found; or name the times below and take this line out";
                 entry("sample_rate_hz = nan", &format!("{FILL_IN}: {NONE}"))
             }
-            // They stand beside the unit and the coupling that need them.
+            // They go with the unit and the coupling that need them.
             "sensitivity" | "time_constant_s" => continue,
             "time" if let Some(time) = &listed.time => {
-                entry(&format!("# time = {}", quoted(time)), key.remark)
+                entry(&format!("# time = {}", quote(time)), key.remark)
             }
             "where" if let Some(rows) = &listed.rows => {
-                format!("where = {{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is))
+                format!("where = {{ column = {}, is = {} }}", quote(&rows.column), quote(&rows.is))
             }
             _ => key_line(key),
         };
@@ -236,14 +238,14 @@ fn channel(out: &mut Vec<String>, index: usize, listed: &ListedChannel) {
 fn unit(told: Option<&str>, key: &Key) -> Vec<String> {
     match told {
         Some(unit) if acceleration_unit_m_s2(unit).is_some() => {
-            vec![entry(&format!("# unit = {}", quoted(unit)), key.remark)]
+            vec![entry(&format!("# unit = {}", quote(unit)), key.remark)]
         }
         Some(unit) if VOLTAGES.contains(&unit) => vec![
-            entry(&format!("unit = {}", quoted(unit)), "as the recording says"),
+            entry(&format!("unit = {}", quote(unit)), "as the recording says"),
             entry("sensitivity = nan", &format!("{FILL_IN}: mV per g")),
         ],
         told => {
-            let quoted = |unit| format!("the recording says {:?}", printable(unit));
+            let quoted = |unit| format!("the recording says {:?}", sanitize(unit));
             let says = told.map_or_else(|| "the recording does not say".to_owned(), quoted);
             let remark = format!("\"g\", \"m/s^2\", \"V\" or \"mV\"; {says}");
             let sensitivity = entry("# sensitivity = 10.0", "mV per g, with \"V\" and \"mV\"");
@@ -260,22 +262,22 @@ fn facts(listed: &ListedChannel) -> String {
         listed.range.map(|(low, high)| format!("{} to {} {unit}", significant(low, 3), significant(high, 3))),
         Some(listed.encoding.clone()),
     ];
-    printable(&facts.into_iter().flatten().collect::<Vec<String>>().join(", "))
+    sanitize(&facts.into_iter().flatten().collect::<Vec<String>>().join(", "))
 }
 
 /// A source as TOML.
 fn source_value(source: &Source) -> String {
     match source {
-        Source::Path(path) => quoted(path),
+        Source::Path(path) => quote(path),
         Source::TopicField { topic, field, channel } => {
             let channel = channel.map_or_else(String::new, |channel| format!(", channel = {channel}"));
-            format!("{{ topic = {}, field = {}{channel} }}", quoted(topic), quoted(field))
+            format!("{{ topic = {}, field = {}{channel} }}", quote(topic), quote(field))
         }
     }
 }
 
 /// A TOML basic string.
-fn quoted(text: &str) -> String {
+fn quote(text: &str) -> String {
     let escaped = text.chars().map(|c| match c {
         '"' | '\\' => format!("\\{c}"),
         c if is_hidden(c) => format!("\\u{:04X}", u32::from(c)),
@@ -401,7 +403,7 @@ mod tests {
         for tolerance in &TOLERANCES {
             let shown = stated[tolerance.key].as_float().expect(tolerance.key);
             assert!(
-                (shown - tolerance.in_file(Tolerances::default(), &cask)).abs() < 1e-9,
+                (shown - tolerance.value_in_file(Tolerances::default(), &cask)).abs() < 1e-9,
                 "{}",
                 tolerance.key
             );

@@ -1,13 +1,10 @@
-//! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR
-//! codes.
+//! Makes words from files safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
 use super::rounding::{MISSING, plain};
-use crate::data::{
-    Drop, DropResult, Effect, Estimate, Finding, MissingQuantity, ReconstructionRung, Severity, Verdict,
-};
+use crate::data::{Drop, DropResult, Effect, Estimate, Finding, Method, MissingQuantity, Severity, Verdict};
 
-/// Each of `items` once, in the order of first appearance.
-pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+/// Keeps each of `items` once, in the order of first appearance.
+pub(super) fn dedup<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut found = Vec::new();
     for item in items {
         if !found.contains(&item) {
@@ -30,12 +27,12 @@ pub(super) fn styled_lines(style: Style, text: &str) -> String {
 #[cfg(test)]
 pub(super) const WIDTH: usize = 80;
 
-/// An SGR colour (ECMA-48, 8.3.117); whoever prints strips it where no terminal reads it.
+/// An SGR colour (ECMA-48, 8.3.117); the caller strips it if no terminal reads it.
 #[derive(Clone, Copy)]
 pub(crate) enum Style {
     /// A heading.
     Bold,
-    /// What matters less.
+    /// Text of less importance.
     Dim,
     /// Good.
     Green,
@@ -45,7 +42,7 @@ pub(crate) enum Style {
     Red,
 }
 
-/// `text` between the codes of `style`.
+/// Puts `text` between the codes of `style`.
 pub(super) fn styled(style: Style, text: &str) -> String {
     let code = match style {
         Style::Bold => "1",
@@ -57,8 +54,8 @@ pub(super) fn styled(style: Style, text: &str) -> String {
     format!("\u{1b}[{code}m{text}\u{1b}[0m")
 }
 
-/// `text` without control and direction characters, which a file could use to write elsewhere on a terminal.
-pub fn printable(text: &str) -> String {
+/// Removes control and direction characters, which a file could use to write elsewhere on a terminal.
+pub fn sanitize(text: &str) -> String {
     text.chars()
         .filter_map(|c| match c {
             '\t' | '\n' | '\r' | '\u{2028}' | '\u{2029}' => Some(' '),
@@ -67,24 +64,24 @@ pub fn printable(text: &str) -> String {
         .collect()
 }
 
-/// Whether a character steers a terminal or the direction of reading, or is none that XML 1.0 knows.
+/// True if a character steers a terminal or the direction of reading, or is not allowed in XML 1.0.
 pub(super) fn is_hidden(c: char) -> bool {
-    turns(c) || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
+    steers_line(c) || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
-/// Whether a character ends a line or steers the direction of reading.
-pub(super) fn turns(c: char) -> bool {
+/// True if a character ends a line or steers the direction of reading.
+pub(super) fn steers_line(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// What stands behind a number.
+/// Units that may follow a number.
 const UNITS: [&str; 19] = [
     "%", "°", "m", "mm", "s", "ms", "g", "kg", "kN", "MN", "kJ", "Hz", "kHz", "m/s", "m/s²", "rad/s", "°/s",
     "°C", "V",
 ];
 
-/// Whether no line ends between these words: a number, its interval and its unit belong together.
-fn is_one(before: &str, word: &str) -> bool {
+/// True if no line may end between these words: a number, its interval and its unit belong together.
+fn belong_together(before: &str, word: &str) -> bool {
     let unit = word.trim_end_matches(['.', ',', ';', ':', ')']);
     let last = before.rsplit('\u{a0}').next().unwrap_or_default();
     let is_number = last.trim_start_matches(['(', '−', '+', '-']).starts_with(|c: char| c.is_ascii_digit())
@@ -92,14 +89,14 @@ fn is_one(before: &str, word: &str) -> bool {
     before.ends_with('±') || word.starts_with('±') || (is_number && UNITS.contains(&unit))
 }
 
-/// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays
-/// whole, and so does what a no-break space joins, and a number with its unit.
+/// Breaks `text` between words to `width` columns, each line after `indent` spaces; a longer word stays
+/// whole, as do words joined by a no-break space, and a number with its unit.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
-    let text = printable(text);
+    let text = sanitize(text);
     let mut words: Vec<String> = Vec::new();
     for word in text.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty()) {
-        match words.last_mut().filter(|before| is_one(before, word)) {
+        match words.last_mut().filter(|before| belong_together(before, word)) {
             Some(before) => before.extend(["\u{a0}", word]),
             None => words.push(word.to_owned()),
         }
@@ -117,10 +114,10 @@ pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     lines(broken.into_iter().map(|line| format!("{pad}{}", line.replace('\u{a0}', " "))))
 }
 
-/// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells
-/// most.
+/// The last `width` characters of `text`, after an ellipsis if some are omitted: the end of a path is most
+/// informative.
 pub(super) fn tail(text: &str, width: usize) -> String {
-    let text = printable(text);
+    let text = sanitize(text);
     let length = text.chars().count();
     if length <= width {
         return text;
@@ -130,11 +127,11 @@ pub(super) fn tail(text: &str, width: usize) -> String {
 }
 
 /// "1 note", "3 notes".
-pub(super) fn counted(count: usize, noun: &str) -> String {
+pub(super) fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The verdict as capital words; an error may leave a number, k or the slap-down speed or both.
+/// The verdict in capital words; an error may leave one number valid, k or the slap-down speed, or both.
 pub(super) fn verdict_word(verdict: Verdict, number: Option<Estimate>) -> &'static str {
     match verdict {
         Verdict::Pass => "DATA SOUND",
@@ -153,25 +150,25 @@ pub(super) fn verdict_style(verdict: Verdict) -> Style {
     }
 }
 
-/// "2 errors (`clipped` A1), 1 warning (`gap` A2)"; `None` without either.
-pub(super) fn grave(result: &DropResult) -> Option<String> {
+/// Counts the findings as "2 errors (`clipped` A1), 1 warning (`gap` A2)"; `None` without either.
+pub(super) fn grave_findings(result: &DropResult) -> Option<String> {
     let place = |f: &Finding| match &f.channel {
         Some(channel) => format!("`{}` {channel}", json_word(f.code)),
         None => format!("`{}`", json_word(f.code)),
     };
     let of_severity = |severity| {
         let all: Vec<&Finding> = result.quality.iter().filter(|f| f.severity == severity).collect();
-        let places = distinct(all.iter().map(|f| place(f))).join(", ");
-        (!all.is_empty()).then(|| format!("{} ({places})", counted(all.len(), &json_word(severity))))
+        let places = dedup(all.iter().map(|f| place(f))).join(", ");
+        (!all.is_empty()).then(|| format!("{} ({places})", plural(all.len(), &json_word(severity))))
     };
     let all: Vec<String> = [Severity::Error, Severity::Warning].into_iter().filter_map(of_severity).collect();
     (!all.is_empty()).then(|| all.join(", "))
 }
 
-/// What is determined and what is not, or what is to be read first.
+/// Sentence on the quantities that are determined and those that are not, or on the findings to read first.
 pub(super) fn verdict_sentence(result: &DropResult) -> String {
     match (result.k, result.slap_down.speed) {
-        (Some(_), Some(_)) => grave(result)
+        (Some(_), Some(_)) => grave_findings(result)
             .map_or_else(|| "No check found a problem.".to_owned(), |all| format!("Before use, read {all}.")),
         (Some(_), None) => "k is valid, the slap-down speed is not determined.".into(),
         (None, Some(_)) => "The slap-down speed is valid, k is not determined.".into(),
@@ -179,15 +176,16 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
     }
 }
 
-/// Why k and the slap-down speed are not determined, else the gravest finding; then what would explain them.
+/// Reasons why k and the slap-down speed are not determined, else the most severe finding; then the mistakes
+/// that would explain them.
 pub(super) fn causes(result: &DropResult) -> Vec<String> {
     let (hints, others): (Vec<&Finding>, Vec<&Finding>) =
         result.quality.iter().filter(|f| f.severity > Severity::Note).partition(|f| f.effect == Effect::Hint);
-    let mut said: Vec<String> =
+    let mut counts: Vec<String> =
         reasons(result, &["k", "slap_down.speed"]).into_iter().map(sentence).collect();
-    let first = others.first().filter(|_| said.is_empty() && hints.is_empty());
-    said.extend(first.into_iter().chain(&hints).map(|found| sentence(&found.with_channel())));
-    said
+    let first = others.first().filter(|_| counts.is_empty() && hints.is_empty());
+    counts.extend(first.into_iter().chain(&hints).map(|found| sentence(&found.with_channel())));
+    counts
 }
 
 /// A word as the result's JSON writes it, such as "`ends_early`", "mcap" or "warning".
@@ -212,8 +210,8 @@ pub(super) fn moment(time_s: f64) -> String {
     format!("{} ms", plain(time_s * 1e3, 7))
 }
 
-/// `text` with a true minus sign before each number that has a hyphen for one; what stands between backticks
-/// is to be pasted and stays.
+/// Replaces the hyphen before each number by a true minus sign; text between backticks can be pasted and
+/// stays.
 pub(super) fn true_minus(text: &str) -> String {
     let (mut before, mut is_code) = (' ', false);
     let behind = text.chars().skip(1).chain([' ']);
@@ -226,31 +224,31 @@ pub(super) fn true_minus(text: &str) -> String {
     text.chars().zip(behind).map(letter).collect()
 }
 
-/// A number as it stands alone, where a dash would say nothing.
-pub(super) fn determined(number: String) -> String {
+/// A number that stands alone, where a dash would be meaningless.
+pub(super) fn or_unknown(number: String) -> String {
     if number == MISSING { "not determined".to_owned() } else { number }
 }
 
 /// "9 m at 15°".
-pub(super) fn dropped(drop: &Drop) -> String {
+pub(super) fn drop_words(drop: &Drop) -> String {
     format!("{} m at {}°", plain(drop.height_m, 5), plain(drop.angle_rad.to_degrees(), 5))
 }
 
-/// A rung of the reconstruction as a table names it.
-pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
+/// Name of a reconstruction method in a table.
+pub(super) fn rung_words(rung: Method) -> &'static str {
     match rung {
-        ReconstructionRung::Flight => "planar motion, flight fitted with modes and drift",
-        ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
+        Method::Flight => "planar motion, flight fitted with modes and drift",
+        Method::Joint => "joint fit of all inputs within their tolerances",
     }
 }
 
-/// What stands behind the name of the row that was taken.
-pub(super) fn taken_mark(is_taken: bool) -> &'static str {
+/// Mark after the name of the selected row.
+pub(super) fn chosen_mark(is_taken: bool) -> &'static str {
     if is_taken { " (taken)" } else { "" }
 }
 
 /// "yes" or "no".
-pub(super) fn yes(so: bool) -> &'static str {
+pub(super) fn yes_no(so: bool) -> &'static str {
     if so { "yes" } else { "no" }
 }
 
@@ -260,20 +258,20 @@ pub(super) fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }
 
-/// A reason as a sentence: a capital and a full stop.
+/// Turns a reason into a sentence: a capital and a full stop.
 pub(super) fn sentence(reason: &str) -> String {
-    let reason = true_minus(&printable(reason));
+    let reason = true_minus(&sanitize(reason));
     let words = capital(reason.trim().trim_end_matches('.'));
     if words.is_empty() { words } else { words + "." }
 }
 
-/// Why the quantities that stand at these places of the result, or in them, are missing: each reason once.
+/// Reasons why the quantities at or below these paths of the result are missing, each once.
 pub(super) fn reasons<'a>(result: &'a DropResult, places: &[&str]) -> Vec<&'a str> {
     let is_meant = |missing: &&MissingQuantity| {
         places.iter().any(|place| missing.quantity.starts_with(place))
             && !missing.quantity.contains(".channels[")
     };
-    distinct(result.missing.iter().filter(is_meant).map(|missing| &missing.words[..]))
+    dedup(result.missing.iter().filter(is_meant).map(|missing| &missing.words[..]))
 }
 
 #[cfg(test)]
@@ -283,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_name_cannot_move_the_cursor() {
-        assert_eq!(printable("A1\u{1b}[2J\u{7}\nB\u{202e}"), "A1[2J B");
+        assert_eq!(sanitize("A1\u{1b}[2J\u{7}\nB\u{202e}"), "A1[2J B");
     }
 
     #[test]

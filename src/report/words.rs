@@ -1,31 +1,31 @@
-//! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
+//! Words for contact laws, criteria, bands and inputs of a study, which table, page and pictures share.
 
 use super::rounding::{MISSING, fixed, plain};
 use super::text::json_word;
 use crate::data::{Contact, Criterion, FlightRegime, Rung, SweepVariable, Uncertain};
 
-/// Rows of a table of cases on a terminal and on a page, and where all are.
+/// Most rows of a table of cases on a terminal and on a page, and the place that shows all.
 pub(super) const MOST_ROWS: usize = 16;
 pub(super) const MOST_ON_PAGE: usize = 48;
 pub(super) const OTHERS: &str = "see prediction.json.";
 
-/// What marks a prediction whose first end stays on the target.
-const KEPT_MARK: &str = "†";
+/// Mark of a prediction whose first end stays on the target.
+const REGIME_MARK: &str = "†";
 
-/// What the mark means.
-pub(super) const KEPT_SENTENCE: &str =
+/// Meaning of that mark.
+pub(super) const REGIME_SENTENCE: &str =
     "† the first end stays on the target until the second strikes; in all other cases it flies.";
 
-/// What marks a prediction whose cask turns over, and what that means.
-pub(super) const OVER_MARK: &str = "§";
+/// Mark of a prediction whose cask turns over, and its meaning.
+pub(super) const TURNOVER_MARK: &str = "§";
 pub(super) const OVER_SENTENCE: &str =
     "§ the cask turns over (a somersault) before the second end strikes: no slap-down of a drop test.";
 
 /// The mark, where it applies.
-pub(super) fn kept_mark(regime: FlightRegime) -> &'static str {
+pub(super) fn regime_mark(regime: FlightRegime) -> &'static str {
     match regime {
         FlightRegime::Free => "",
-        FlightRegime::Contact | FlightRegime::Mixed => KEPT_MARK,
+        FlightRegime::Contact | FlightRegime::Mixed => REGIME_MARK,
     }
 }
 
@@ -42,7 +42,7 @@ pub(super) fn case_words(contact: Contact, k: f64) -> String {
     format!("{}, k = {}", contact_words(contact), plain(k, 3))
 }
 
-/// What is largest, for a person.
+/// Name of the largest quantity for a reader.
 pub(super) fn criterion_words(criterion: Criterion) -> &'static str {
     match criterion {
         Criterion::Speed => "slap-down speed",
@@ -51,7 +51,7 @@ pub(super) fn criterion_words(criterion: Criterion) -> &'static str {
     }
 }
 
-/// The same in a narrow column.
+/// Short name for a narrow column.
 pub(super) fn criterion_short(criterion: Criterion) -> &'static str {
     match criterion {
         Criterion::Speed => "speed",
@@ -76,7 +76,7 @@ pub(super) fn degrees(angle_deg: f64) -> String {
     fixed(angle_deg, 1).trim_end_matches(".0").to_owned()
 }
 
-/// "3.5–28, 61–70", or the dash where there is none.
+/// Formats "3.5–28, 61–70", or the dash if there are none.
 pub(super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
     let band = |(from, to): &(f64, f64)| {
         let (from, to) = (degrees(*from), degrees(*to));
@@ -86,7 +86,7 @@ pub(super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
     if bands.is_empty() { MISSING.to_owned() } else { bands.join(", ") }
 }
 
-/// The band that holds `angle_deg`, with an ellipsis where there are others.
+/// The band that holds `angle_deg`, with an ellipsis if there are others.
 pub(super) fn band_around_words(bands_deg: &[(f64, f64)], angle_deg: f64) -> String {
     let off = |band: &(f64, f64)| (band.0 - angle_deg).max(angle_deg - band.1);
     let Some(nearest) = bands_deg.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else {
@@ -96,7 +96,7 @@ pub(super) fn band_around_words(bands_deg: &[(f64, f64)], angle_deg: f64) -> Str
     format!("{}{dots}", bands_words(&[*nearest]))
 }
 
-/// What a sweep varies, with its unit.
+/// Name of a sweep's variable, with its unit.
 pub(super) fn variable_words(variable: SweepVariable) -> &'static str {
     match variable {
         SweepVariable::Angle => "drop angle, °",
@@ -107,13 +107,13 @@ pub(super) fn variable_words(variable: SweepVariable) -> &'static str {
     }
 }
 
-/// A range, or its one value where both ends are the same.
+/// A range, or its one value if both ends are equal.
 pub(super) fn range_words((from, to): (f64, f64)) -> String {
     let (from, to) = (plain(from, 3), plain(to, 3));
     if from == to { from } else { format!("{from} to {to}") }
 }
 
-/// A range that is drawn from evenly, or its one value, with its unit.
+/// A range of uniform draws, or its one value, with its unit.
 fn spread_words(range: (f64, f64), unit: &str) -> String {
     let evenly = if range.0 < range.1 { " (uniform)" } else { "" };
     format!("{}{unit}{evenly}", range_words(range))
@@ -144,7 +144,7 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
     )
 }
 
-/// How long the first contact lasts in the draws.
+/// Says how long the first contact lasts in the draws.
 pub(super) fn contact_length_words((from_s, to_s): (f64, f64)) -> String {
     if to_s > 0.0 {
         format!("first contact {}", spread_words((1e3 * from_s, 1e3 * to_s), " ms"))
@@ -153,7 +153,7 @@ pub(super) fn contact_length_words((from_s, to_s): (f64, f64)) -> String {
     }
 }
 
-/// A rung of the ladder in a narrow column.
+/// Name of a model in a narrow column.
 pub(super) fn rung_short(rung: Rung) -> String {
     json_word(rung).replace('_', " ")
 }

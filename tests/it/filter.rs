@@ -1,13 +1,12 @@
 //! The filter to its errors, held by bounds that theory gives.
 
-use dropcheck::stages::ZeroPhaseLowPass;
+use dropcheck::stages::LowPass;
 use std::f64::consts::{PI, SQRT_2};
 
 #[test]
 fn the_filter_keeps_thirteen_digits_of_sines() {
     for design in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
-        let filter =
-            ZeroPhaseLowPass::with_design_hz(design, 1.0).expect("a design frequency below the rate's half");
+        let filter = LowPass::with_design_hz(design, 1.0).expect("a design frequency below the rate's half");
         // e^(−R 2π f t) = 1e-16 after 5.9 / (R f), R = sin 45°; half as much again where the frequency axis
         // is warped.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of samples")]

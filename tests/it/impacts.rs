@@ -82,8 +82,7 @@ fn truth(
             }
         };
         let samples: Vec<f64> = (0..count).map(at).collect();
-        let filter =
-            stages::ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / GRID_S).expect("below half the rate");
+        let filter = stages::LowPass::with_cutoff_hz(cutoff_hz, 1.0 / GRID_S).expect("below half the rate");
         filter.apply(&samples).into_iter().fold(f64::MIN, f64::max)
     };
     let arm = if end == 0 { cask.cog_m } else { cask.length_m - cask.cog_m };
@@ -163,7 +162,7 @@ fn channel_pulses(
         let count = ((until_s + 2.0 * beyond_s - touch_s) / grid_s) as usize;
         let times_s: Vec<f64> = (0..count).map(|i| from_s + i as f64 * grid_s).collect();
         let raw = synth::specific_force_m_s2(scene, motion, channel, &times_s);
-        let filter = stages::ZeroPhaseLowPass::with_cutoff_hz(peak.cutoff_hz, 1.0 / grid_s);
+        let filter = stages::LowPass::with_cutoff_hz(peak.cutoff_hz, 1.0 / grid_s);
         let filtered = filter.expect("below half the rate").apply(&raw);
         let largest = |values: &[f64]| {
             let within = (0..count).filter(|&i| (touch_s..until_s).contains(&times_s[i]));

@@ -56,7 +56,8 @@ fn bodies() -> impl Strategy<Value = Body> {
 fn drops() -> impl Strategy<Value = Drop> {
     let angle_deg = prop_oneof![8 => 0.0..90.0_f64, 1 => Just(0.0), 1 => Just(90.0)];
     let height_m = prop_oneof![Just(9.0), 0.05..20.0_f64];
-    (angle_deg, height_m).prop_map(|(angle_deg, height_m)| Drop::of_height(height_m, angle_deg.to_radians()))
+    (angle_deg, height_m)
+        .prop_map(|(angle_deg, height_m)| Drop::from_height(height_m, angle_deg.to_radians()))
 }
 
 /// k with its ends. A rebound below 0.3 mm/s counts as rest, whatever the rung: k below that of the slowest

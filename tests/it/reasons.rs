@@ -92,14 +92,14 @@ fn hold(result: &DropResult, name: &str) -> Vec<[String; 2]> {
             assert!(missing.reason.is_some(), "{name}: {missing:?}");
             continue;
         };
-        assert!(!took.effect.takes().is_empty(), "{name}: {missing:?} by {took:?}");
+        assert!(!took.effect.parts().is_empty(), "{name}: {missing:?} by {took:?}");
         let code = |word: Value| word.as_str().expect("a code").to_owned();
         let beside =
-            result.quality.iter().filter(|f| f.severity > Severity::Note && !f.takes(ResultPart::Motion));
+            result.quality.iter().filter(|f| f.severity > Severity::Note && !f.removes(ResultPart::Motion));
         let pair = |other: &dropcheck::data::Finding| {
             [took, other].map(|f| code(serde_json::to_value(f.code).expect("a code")))
         };
-        pairs.extend(beside.filter(|f| f.effect.takes().is_empty()).map(pair));
+        pairs.extend(beside.filter(|f| f.effect.parts().is_empty()).map(pair));
     }
     pairs
 }

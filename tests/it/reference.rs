@@ -3,7 +3,7 @@
 use crate::run::{number, read_json};
 use dropcheck::data::{Body, BodyModel, Contact, Drop};
 use dropcheck::predict::predict;
-use dropcheck::stages::ZeroPhaseLowPass;
+use dropcheck::stages::LowPass;
 use dropcheck::stages::magnitude;
 use serde_json::Value;
 use std::path::Path;
@@ -40,7 +40,11 @@ fn body(value: &Value) -> Body {
 }
 
 fn drop_at(angle_deg: f64, impact_velocity_m_s: f64) -> Drop {
-    Drop { impact_velocity_m_s, impact_velocity_given: true, ..Drop::of_height(9.0, angle_deg.to_radians()) }
+    Drop {
+        impact_velocity_m_s,
+        impact_velocity_given: true,
+        ..Drop::from_height(9.0, angle_deg.to_radians())
+    }
 }
 
 /// A uniform thin rod.
@@ -164,7 +168,7 @@ fn filters_agree_with_scipy() {
     for case in list(&reference("filters.json"), "cases") {
         let stored = |key: &str| number(case, &format!("/{key}")).expect(key);
         let (cfc, rate_hz) = (stored("cfc"), stored("rate_hz"));
-        let low_pass = ZeroPhaseLowPass::with_cfc(cfc, rate_hz).expect("a filter");
+        let low_pass = LowPass::with_cfc(cfc, rate_hz).expect("a filter");
         let signal = sampled(0.2, rate_hz, |t| {
             let pulse = 1000.0 * (-((t - 0.1) / 0.002).powi(2)).exp();
             pulse + 50.0 * (TAU * 20.0 * t).sin() + 30.0 * (TAU * 900.0 * t).sin()

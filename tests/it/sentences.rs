@@ -3,8 +3,7 @@
 
 use crate::run::{analyze, dropcheck, fixture, fixtures, read_json, words};
 use dropcheck::data::{
-    Analysis, Contribution, DropResult, Estimate, FlightModelScore, ModelCandidate, ReconstructionCandidate,
-    Verdict,
+    Analysis, Contribution, DropResult, Estimate, FlightScore, MethodCandidate, ModelCandidate, Verdict,
 };
 use dropcheck::lab::campaign;
 use dropcheck::lab::data::SceneNumber;
@@ -102,7 +101,7 @@ fn hold_flight(result: &DropResult, text: &str, name: &str) -> Option<&'static s
     assert!(taken.bic > lowest.bic, "{name}: {said:.120}");
     if said.starts_with("smallest fit that gives the same velocity steps as the one with the lowest") {
         // Modes, each with two phases a channel where these are free, and drifts.
-        let size = |of: &FlightModelScore| (of.modes + usize::from(of.modes > 0 && !of.driven), of.drift);
+        let size = |of: &FlightScore| (of.modes + usize::from(of.modes > 0 && !of.driven), of.drift);
         let (own, other) = (size(taken), size(lowest));
         assert!(own.0 < other.0 || (!own.1 && other.1), "{name}: {taken:?} is not smaller than {lowest:?}");
         return Some("smallest");
@@ -123,9 +122,7 @@ fn hold_reconstruction(result: &DropResult, text: &str, name: &str) -> Option<()
         (Some(a), Some(b)) => (a.value - b.value).abs() <= a.u95.min(b.u95) && b.u95 > 0.9 * a.u95,
         (a, b) => a.is_none() && b.is_none(),
     };
-    let stays = |a: &ReconstructionCandidate, b: &ReconstructionCandidate| {
-        within(a.speed, b.speed) && within(a.k, b.k)
-    };
+    let stays = |a: &MethodCandidate, b: &MethodCandidate| within(a.speed, b.speed) && within(a.k, b.k);
     let first = (0..all.len()).find(|&i| all[i].consistent && all[i + 1..].iter().all(|b| stays(&all[i], b)));
     // Where a finding takes the numbers away the table has none to hold the rung to.
     let is_told = all.iter().any(|candidate| candidate.k.is_some());
@@ -136,8 +133,8 @@ fn hold_reconstruction(result: &DropResult, text: &str, name: &str) -> Option<()
         // Of "level of A1" and "level of A11" it is the longer one.
         let named = choice.closures.iter().filter(|closure| said.starts_with(&closure.name));
         let worst = named.max_by_key(|closure| closure.name.len()).expect("a closure");
-        let most_in_u = choice.closures.iter().map(dropcheck::data::Closure::most_in_u);
-        assert!(most_in_u.max_by(f64::total_cmp) <= Some(worst.most_in_u()), "{name}: {said:.200}");
+        let most_in_u = choice.closures.iter().map(dropcheck::data::Consistency::largest_residual);
+        assert!(most_in_u.max_by(f64::total_cmp) <= Some(worst.largest_residual()), "{name}: {said:.200}");
     }
     let moved = choice.adjustments.iter().map(|input| input.moved_in_u.abs());
     assert!(moved.is_sorted_by(|a, b| a >= b), "{name}: what the joint fit moves, the largest first");

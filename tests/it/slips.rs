@@ -2,7 +2,7 @@
 
 use crate::run::fixture;
 use dropcheck::data::{
-    Axis, CaskFile, Channel, Closure, ClosureKind, Finding, IssueCode, Recording, Samples, Severity,
+    Axis, CaskFile, Channel, CheckKind, Consistency, Finding, IssueCode, Recording, Samples, Severity,
     Tolerances, Verdict,
 };
 use dropcheck::lab::data::{SceneFile, SimulatedMotion};
@@ -270,7 +270,7 @@ fn sound(seeds: Range<u64>, count: usize) -> impl Iterator<Item = (SceneFile, Si
 
 #[test]
 fn the_second_impact_tells_a_length_off_by_5_percent_where_an_axial_channel_is_there() {
-    let is_told = |c: &Closure| c.kind == ClosureKind::SecondTurning;
+    let is_told = |c: &Consistency| c.kind == CheckKind::SecondTurning;
     let (mut told, mut found, mut held, mut withheld) = (0, 0, 0, 0);
     for (file, motion) in sound(0..100, 20) {
         let recording = synth::record(&file.scene, &motion);

@@ -70,7 +70,7 @@ impl Case {
     }
 
     fn drop(&self) -> Drop {
-        Drop::of_height(9.0, self.angle_deg.to_radians())
+        Drop::from_height(9.0, self.angle_deg.to_radians())
     }
 
     /// What becomes of the drop whose first contact lasts so long.

@@ -45,7 +45,7 @@ fn the_limits_of_ways_are_those_that_the_quick_trial_keeps() {
     let limits = methods::limits(&methods::ways(&REQUEST), &[], &[], None);
     let is_of_ways = |limit: &&TrialLimit| methods::WAYS.iter().any(|family| limit.name.starts_with(family));
     let of_ways: Vec<&TrialLimit> = limits.iter().filter(is_of_ways).collect();
-    assert!(of_ways.len() == 11 && of_ways.iter().all(|limit| limit.is_kept()), "{of_ways:?}");
+    assert!(of_ways.len() == 11 && of_ways.iter().all(|limit| limit.is_met()), "{of_ways:?}");
 }
 
 /// The page of the recorded full run.

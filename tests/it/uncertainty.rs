@@ -2,7 +2,7 @@
 //! committed recording.
 
 use crate::run::{fixture, truth};
-use dropcheck::data::{AssumedFriction, Contact, End, ReconstructionRung, Recording, Samples, Verdict};
+use dropcheck::data::{AssumedFriction, Contact, End, Method, Recording, Samples, Verdict};
 use dropcheck::{ingest, stages};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -16,7 +16,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
-    let event = stages::Changes::of(&recording.channels)
+    let event = stages::Changes::new(&recording.channels)
         .locate(file.drop.transverse_velocity_m_s())
         .expect("an impact");
     let reach = stages::Reach::of(&file.cask, &file.drop);
@@ -37,13 +37,13 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         stood_in: None,
         second: None,
     };
-    let integrated = stages::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
+    let integrated = stages::Integrated::new(&signals, result.events.first_contact_s().expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
     let ladder = stages::ladder(&measured, &moved).expect("quantities");
-    let linear = ladder.choice.candidates.iter().find(|c| c.rung == ReconstructionRung::Flight).expect("one");
+    let linear = ladder.choice.candidates.iter().find(|c| c.rung == Method::Flight).expect("one");
     let mut chance = ChaCha8Rng::seed_from_u64(4);
     let mut drawn = || {
-        let inputs = ladder.drawn(|| StandardNormal.sample(&mut chance));
+        let inputs = ladder.draw_inputs(|| StandardNormal.sample(&mut chance));
         let motion = moved(&inputs.flight, &inputs.events, &inputs.setup).expect("a motion");
         let (x, z) = motion.second_end_m_s.expect("a slap-down");
         [x.hypot(z), motion.rebound_m_s / inputs.setup.impact_velocity_m_s]
@@ -144,8 +144,8 @@ fn every_rung_speaks_and_the_budget_adds_up() {
     let recording = dropcheck::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     let choice = result.reconstruction.expect("a reconstruction");
-    let rungs: Vec<ReconstructionRung> = choice.candidates.iter().map(|c| c.rung).collect();
-    assert_eq!(rungs, ReconstructionRung::ALL);
+    let rungs: Vec<Method> = choice.candidates.iter().map(|c| c.rung).collect();
+    assert_eq!(rungs, Method::ALL);
     let squares: f64 = result.budget.iter().filter_map(|c| c.speed_m_s).map(|u| u * u).sum();
     let speed = result.slap_down.speed.expect("a slap-down");
     assert!((2.0 * squares.sqrt() / speed.u95 - 1.0).abs() < 1e-9, "{} {}", squares.sqrt(), speed.u95);

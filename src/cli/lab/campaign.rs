@@ -78,7 +78,7 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     let (lines, first) = lines::merged(paths, is_none)?;
     let request: CampaignRequest = serde_json::from_value(first["of"].clone()).into_diagnostic()?;
     tabled(&request, Some(out), |take| lines.each(take))?;
-    print(&format!("Written: {}\n", crate::report::printable(&out.join(NAME).display().to_string())))?;
+    print(&format!("Written: {}\n", crate::report::sanitize(&out.join(NAME).display().to_string())))?;
     Ok(Ending::Clear)
 }
 

@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (files, recording) = written(arguments)?;
     let shown = |(file, was_there): (&PathBuf, bool)| {
         let replaced = if was_there { " (replaced)" } else { "" };
-        report::printable(&file.display().to_string()) + replaced
+        report::sanitize(&file.display().to_string()) + replaced
     };
     let files: Vec<String> = files.iter().zip(before).map(shown).collect();
     print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;

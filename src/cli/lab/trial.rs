@@ -15,7 +15,7 @@ use std::path::Path;
 /// the folder `site` among it.
 pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> miette::Result<Ending> {
     let folder = out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
-    let site = site.map(References::of).transpose()?;
+    let site = site.map(References::read).transpose()?;
     let trial =
         with_progress("trial", |progress| methods::trial(request, machine(), site.as_ref(), progress));
     if let Some(folder) = &folder {
@@ -23,7 +23,7 @@ pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> mi
     }
     print(&trial_outcome(&trial, columns()))?;
     if let Some(folder) = &folder {
-        print(&format!("Written: {}\n", report::printable(&folder.file(TRIAL_NAMES[0]))))?;
+        print(&format!("Written: {}\n", report::sanitize(&folder.file(TRIAL_NAMES[0]))))?;
     }
     Ok(if trial.is_accepted() { Ending::Clear } else { Ending::NeedsALook })
 }
@@ -32,7 +32,7 @@ pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> mi
 fn machine() -> TrialMachine {
     TrialMachine {
         program_sha256: program_sha256().unwrap_or_default(),
-        program_commit: Program::this().commit,
+        program_commit: Program::current().commit,
         processor: processor().unwrap_or_else(|| "a processor that does not say its name".to_owned()),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         when: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string(),

@@ -72,7 +72,7 @@ fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result
     let (scene, recording) = lab::campaign::scene(arguments.seed, number, arguments.exact);
     // Protobuf, unlike JSON, holds samples that are infinite.
     folder.write(&lab::report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
-    let files = names.each_ref().map(|name| report::printable(&folder.file(name)));
+    let files = names.each_ref().map(|name| report::sanitize(&folder.file(name)));
     print(&format!("Written: {}\n", files.join(", ")))?;
     Ok(Ending::Clear)
 }

@@ -21,7 +21,7 @@ const COMMON: [(&str, &str); 5] = [
 /// What a line says of its place in a campaign besides `own`, as JSON: the schema first, by which its file is
 /// known, and the program that wrote it.
 pub fn place(schema: &str, mut own: Value) -> String {
-    let Program { version, commit, .. } = Program::this();
+    let Program { version, commit, .. } = Program::current();
     (own["version"], own["commit"]) = (version.into(), commit.into());
     format!("{{\"schema\":\"{schema}\",{}", &own.to_string()[1..])
 }

@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if !json.is_standard_output() {
         print(&report::study_table(&study, columns()))?;
         if let Some(folder) = &folder {
-            print(&format!("\nReport: {}\n", report::printable(&folder.file("prediction.html"))))?;
+            print(&format!("\nReport: {}\n", report::sanitize(&folder.file("prediction.html"))))?;
         }
     }
     Ok(Ending::Clear)

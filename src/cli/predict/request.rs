@@ -2,7 +2,7 @@
 
 use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name};
-use crate::data::shown::rounded;
+use crate::data::shown::round_off;
 use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use crate::predict;
 use miette::{ensure, miette};
@@ -106,7 +106,7 @@ fn curve_angles_deg(swept: &[f64]) -> Option<Vec<f64>> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
     let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
         let steps = steps.min(MOST_CURVE_STEPS).ceil() as u32;
-        (0..=steps).map(|i| rounded(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
+        (0..=steps).map(|i| round_off(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
     };
     let (from, to) = ends(swept).filter(|_| swept.len() >= LEAST_CURVE_ANGLES)?;
     let step = swept[1] - swept[0];

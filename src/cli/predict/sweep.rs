@@ -2,7 +2,7 @@
 
 use super::words::{ascending, number};
 use crate::data::SweepVariable::{Angle, DropHeight, Friction, K, Length};
-use crate::data::shown::rounded;
+use crate::data::shown::round_off;
 use crate::data::{Sweep, SweepVariable};
 
 /// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds
@@ -86,7 +86,7 @@ fn values_of(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 200 000")]
     let count = count as u32;
-    Ok((0..count).map(|i| rounded(from + f64::from(i) * step).min(to)).collect())
+    Ok((0..count).map(|i| round_off(from + f64::from(i) * step).min(to)).collect())
 }
 
 fn called(word: &str) -> Option<&'static Known> {

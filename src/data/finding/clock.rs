@@ -1,26 +1,25 @@
-//! What speaks against the rate or the times that a recording is read by, with its numbers, to code, severity
-//! and sentence.
+//! Findings on the rate or the times of a recording: code, severity and sentence of each.
 
 use super::{IssueCode as Code, Severity};
 use crate::data::shown::{digits, hz};
 
 findings! {
-/// A finding about two things that say when samples were taken.
+/// A finding on two sources of time or rate that disagree.
 pub enum ClockFinding of Clock {
-    /// A rate was taken, and another one is said.
+    /// Another source states a rate that differs from the one used.
     Rates(apart: RatesApart) => (Code::Clock, Warning, Nothing),
         ("{apart}; the first was taken, and every velocity goes with the rate: if the second is right, write \
          sample_rate_hz = {rate}", rate = hz(apart.other_hz));
-    /// Times were taken, and another column or dataset does not bear them out.
+    /// Another column or dataset does not confirm the times used.
     Times(apart: TimesApart) => (Code::Clock, Warning, Nothing),
         ("{apart}; the channels timed by {} have their velocities from it", apart.taken);
-    /// A listing has no rate, for reading would refuse: the problem and its remedy.
+    /// A listing has no rate, because the reader would refuse it: the problem and its remedy.
     Refused(words: String) => (Code::Clock, Warning, Nothing),
         ("{words}");
 }
 }
 
-/// Two rates that contradict each other, each in Hz with what says it.
+/// Two rates that contradict each other, each in Hz with its source.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit")]
 #[error("two rates contradict each other: {} Hz by {taken_by}, {} Hz by \
@@ -42,18 +41,18 @@ pub struct TimesApart {
     pub how: HowApart,
 }
 
-/// By what two columns of times contradict each other.
+/// Kind of disagreement between two columns of times.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum HowApart {
-    /// By how long they last.
+    /// Their durations differ.
     #[error("from the first row to the last they say {} s and {} \
              s", digits(*.taken_s, 5), digits(*.other_s, 5))]
     Lasting { taken_s: f64, other_s: f64 },
-    /// By so much in a row, from 1.
+    /// They differ by this much in a row, counted from 1.
     #[error("in row {row} of the table they are {} s apart", digits(*.apart_s, 5))]
     InRow { row: usize, apart_s: f64 },
-    /// By where they begin.
+    /// They begin at different times.
     #[error("they begin {} s apart", digits(*.apart_s, 5))]
     AtStart { apart_s: f64 },
 }

@@ -1,9 +1,9 @@
-//! The names of the checks with what they mean, and the severity of a finding.
+//! Names of the checks with their meaning, and the severity of a finding.
 
 use serde::Serialize;
 
-/// How severe a finding is: a note informs, a warning is to be read before the numbers are used, an error
-/// takes a quantity away.
+/// Severity of a finding: a note informs, a warning is to be read before the numbers are used, an error
+/// removes a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -15,7 +15,7 @@ pub enum Severity {
     Error,
 }
 
-/// The codes, each with what it speaks of and what a finding of it means.
+/// Declares the codes, each with its subject and the meaning of its findings.
 macro_rules! issue_codes {
     ($($code:ident, $group:literal: $meaning:literal;)*) => {
         /// The name of a quality check, written in `snake_case` in the result.
@@ -23,12 +23,12 @@ macro_rules! issue_codes {
         #[serde(rename_all = "snake_case")]
         pub enum IssueCode {$(#[doc = $meaning] $code,)*}
 
-        /// Every check with what a finding of it means, by what it speaks of: docs/quality.md is made of it.
+        /// All checks, with the meaning of their findings, by subject: the source of docs/quality.md.
         pub const CODES: &[(&str, (IssueCode, &str))] = &[$(($group, (IssueCode::$code, $meaning))),*];
     };
 }
 
-// First of their severity: what mends goes before what follows from it.
+// Hints come first among findings of the same severity: the correction precedes its consequences.
 issue_codes! {
     UsualSlip, "Drop": "if one usual slip in the cask file is corrected, everything agrees";
     MissingChannel, "File": "one end has no transverse channel";

@@ -1,8 +1,8 @@
-//! What a finding does to the result: the parts that it takes away, and where it weighs.
+//! Effect of a finding on the result: the parts that it removes, and where it counts.
 
 use serde::{Serialize, Serializer};
 
-/// A part of the result that a finding may take away.
+/// A part of the result that a finding may remove.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ResultPart {
@@ -14,48 +14,48 @@ pub enum ResultPart {
     SlapDown,
     /// The second end's impact, and the speed of its corner.
     SecondImpact,
-    /// Every number of the motion.
+    /// All numbers of the motion.
     Motion,
 }
 
-/// What a finding does to the result.
+/// Effect of a finding on the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// Takes nothing away.
     Nothing,
-    /// Takes nothing, and says what would explain the other findings.
+    /// Removes nothing, and states what would explain the other findings.
     Hint,
-    /// Takes nothing; wholly before or after the drop it is a note.
+    /// Removes nothing; entirely before or after the drop it is a note.
     Local,
-    /// As `Local`: samples are missing.
+    /// As `Local`, for missing samples.
     LostSamples,
-    /// As `Local`: samples that no cask makes.
+    /// As `Local`, for samples that no cask can produce.
     Disturbance,
-    /// Takes nothing; the cask file may state a place wrongly.
+    /// Removes nothing; the cask file may state a position wrongly.
     DoubtfulPlace,
-    /// Takes a channel's peak, or a channel that the others or the mass properties replace.
+    /// Removes a channel's peak, or a channel that the others or the mass properties replace.
     Channel,
-    /// Takes a channel's velocity step, and the motion unless the other channels determine that step.
+    /// Removes a channel's velocity step, and the motion unless the other channels determine that step.
     VelocityStep,
     /// Takes a channel that nothing replaces.
     ChannelAndMotion,
-    /// Takes the second end's channel, and with it what only that shows.
+    /// Removes the second end's channel, and all quantities that it alone shows.
     SecondEnd,
     /// Takes all that follows the flight.
     SlapDown,
     /// Takes the second end's impact.
     SecondImpact,
-    /// Takes the motion: it is another one, or the samples do not show it.
+    /// Removes the motion: it differs from the model, or the samples do not show it.
     Motion,
-    /// Takes the motion, which contradicts what the cask file states.
+    /// Removes the motion, which contradicts the cask file.
     Contradiction,
-    /// Takes both impacts: there is none.
+    /// Removes both impacts, because there is none.
     Everything,
 }
 
 impl Effect {
     /// The parts that it takes away.
-    pub fn takes(self) -> &'static [ResultPart] {
+    pub fn parts(self) -> &'static [ResultPart] {
         use ResultPart::{Channel, FirstImpact, Motion, SecondImpact, SlapDown};
         match self {
             Self::Channel => &[Channel],
@@ -82,6 +82,6 @@ impl Effect {
 
 impl Serialize for Effect {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        self.takes().serialize(to)
+        self.parts().serialize(to)
     }
 }

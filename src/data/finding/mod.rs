@@ -1,8 +1,8 @@
-//! What speaks against a recording or a result, with its numbers, to its code, its severity, its effect and
-//! its sentence.
+//! Findings on a recording or a result: each has numbers, and from them follow its code, severity, effect and
+//! sentence.
 
-/// An enum of findings: behind the arrow of each its code, its severity and its [`Effect`], then its
-/// sentence, as `format` takes it. `of` names their kind where they are not of one channel.
+/// Declares an enum of findings: after each arrow its code, its severity and its [`Effect`], then its
+/// sentence, in the syntax of `format`. `of` names their kind if they do not belong to a channel.
 macro_rules! findings {
     (
         $(#[$of_enum:meta])*
@@ -21,7 +21,7 @@ macro_rules! findings {
         )*}
 
         impl $name {
-            /// The check that speaks, its severity, and what it takes away.
+            /// Check, severity, and effect of the finding.
             #[allow(unused_variables, clippy::match_same_arms, reason = "a variant's fields, one arm each")]
             pub(super) fn row(&self) -> super::FindingRow {
                 #[allow(unused_imports, clippy::enum_glob_use, reason = "few need all")]
@@ -45,7 +45,7 @@ macro_rules! findings {
         $(impl From<$name> for super::Finding {
             fn from(found: $name) -> Self {
                 let (row, message) = (found.row(), found.to_string());
-                Self::made(super::FindingKind::$kind(found), row, &message)
+                Self::build(super::FindingKind::$kind(found), row, &message)
             }
         })?
     };
@@ -77,7 +77,8 @@ pub use times::{Jitter, TimesFinding};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// What was found: the check's numbers. Code, severity and sentence are made of them here alone.
+/// Kind of a finding, with the numbers of its check; code, severity and sentence follow from these here
+/// alone.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FindingKind {
     /// About one channel.
@@ -86,7 +87,7 @@ pub enum FindingKind {
     Drop(DropFinding),
     /// About the times of a recording.
     Times(TimesFinding),
-    /// About what says when samples were taken.
+    /// About the sources of time.
     Clock(ClockFinding),
     /// About an MCAP file, its chunks and its messages.
     Mcap(McapFinding),
@@ -98,25 +99,25 @@ pub enum FindingKind {
     Rest(RestFinding),
 }
 
-/// A finding's row but for its sentence: the check that speaks, the severity, and the effect.
+/// Row of a finding except its sentence: check, severity, and effect.
 struct FindingRow(IssueCode, Severity, Effect);
 
 /// One finding about a recording or a result; a row of `quality` in the result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What it is, with its numbers.
+    /// Kind of the finding, with its numbers.
     #[serde(skip)]
     pub what: FindingKind,
-    /// Which check speaks.
+    /// Check that reports the finding.
     pub code: IssueCode,
-    /// How much it weighs; far from the event less than what was found would by itself.
+    /// Severity; far from the event it is lower than the finding alone would have.
     pub severity: Severity,
-    /// What it takes away; of a velocity step less where the other channels determine it.
+    /// Parts of the result that it removes; for a velocity step fewer if the other channels determine it.
     #[serde(rename = "takes")]
     pub effect: Effect,
-    /// The channel's name in the cask file, where it concerns one.
+    /// Name of the channel in the cask file, if the finding concerns one.
     pub channel: Option<String>,
-    /// One sentence: what was found, its size, and what to do.
+    /// One sentence: the finding, its size, and the action to take.
     pub message: String,
     /// Start of the span it concerns, s from the recording's first sample.
     pub from_s: Option<f64>,
@@ -125,47 +126,47 @@ pub struct Finding {
 }
 
 impl ChannelFinding {
-    /// The finding, about the channel of that name.
-    pub fn on(self, channel: &str) -> Finding {
+    /// Attributes the finding to the named channel.
+    pub fn tag(self, channel: &str) -> Finding {
         let (row, message) = (self.row(), self.sentence(channel));
-        Finding::made(FindingKind::Channel(self), row, &message).on(channel)
+        Finding::build(FindingKind::Channel(self), row, &message).tag(channel)
     }
 }
 
 impl Finding {
-    fn made(what: FindingKind, FindingRow(code, severity, effect): FindingRow, message: &str) -> Self {
-        let message = shortened(message).into_owned();
+    fn build(what: FindingKind, FindingRow(code, severity, effect): FindingRow, message: &str) -> Self {
+        let message = shorten(message).into_owned();
         Self { what, code, severity, effect, channel: None, message, from_s: None, to_s: None }
     }
 
-    /// True if it takes a part of the result away.
-    pub fn takes(&self, part: ResultPart) -> bool {
-        self.effect.takes().contains(&part)
+    /// True if the finding removes a part of the result.
+    pub fn removes(&self, part: ResultPart) -> bool {
+        self.effect.parts().contains(&part)
     }
 
-    /// Its sentence, behind the name of its channel where the sentence does not name it.
+    /// The sentence, preceded by the name of its channel if the sentence does not contain it.
     pub fn with_channel(&self) -> String {
         let unnamed = self.channel.as_ref().filter(|channel| !self.message.contains(&channel[..]));
         unnamed.map_or_else(|| self.message.clone(), |channel| format!("{channel}: {}", self.message))
     }
 
-    /// The same, about one channel.
-    pub fn on(mut self, channel: &str) -> Self {
+    /// Attributes the finding to one channel.
+    pub fn tag(mut self, channel: &str) -> Self {
         self.channel = Some(channel.to_owned());
         self
     }
 
-    /// The same, about a span of time, s from the recording's first sample.
-    pub fn between(mut self, from_s: f64, to_s: f64) -> Self {
+    /// Attributes the finding to a span of time, s from the recording's first sample.
+    pub fn span(mut self, from_s: f64, to_s: f64) -> Self {
         self.from_s = Some(from_s);
         self.to_s = Some(to_s);
         self
     }
 }
 
-/// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are
-/// eight lines.
-pub fn shortened(message: &str) -> Cow<'_, str> {
+/// Shortens the middle of a message that quotes more of a file than a person reads: 600 characters are eight
+/// lines.
+pub fn shorten(message: &str) -> Cow<'_, str> {
     const MOST_BYTES: usize = 600;
     if message.len() <= MOST_BYTES {
         return message.into();

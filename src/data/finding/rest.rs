@@ -1,11 +1,11 @@
-//! What speaks against a set-up before the drop, with its numbers, to code, severity and sentence.
+//! Findings on a set-up before the drop: code, severity and sentence of each.
 
 use super::{Finding, FindingKind, IssueCode as Code, Severity};
 
-/// No angular-rate sensor that has warmed up is off by more, °/s.
+/// An angular-rate sensor that has warmed up has a smaller error, °/s.
 const LARGE_DEG_S: f64 = 5.0;
 
-/// What makes a channel read at rest what it should not.
+/// Likely reason why a channel at rest reads a wrong level.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the words say it; the number is a factor, the text a channel's name")]
 pub enum RestCause {
@@ -29,9 +29,9 @@ pub enum RestCause {
 }
 
 findings! {
-/// A finding about a recording at rest; its words follow the name of the channel where it is about one.
+/// A finding on a recording at rest; if it concerns a channel, its words follow the channel's name.
 pub enum RestFinding of Rest {
-    /// The level at rest, and by how much it may be off.
+    /// The channel reads this level at rest, with this tolerance.
     Reads { reads_g: f64, expected_g: f64, most_g: f64, cause: RestCause } => (cause.code(), Error, Nothing),
         ("reads {reads_g:+.2} g at rest, where {expected_g:+.2} ± {most_g:.1} g is expected: {cause}");
     /// All samples are equal.
@@ -41,7 +41,7 @@ pub enum RestFinding of Rest {
     /// The level changes at rest.
     Unsteady => (Code::Offset, Warning, Nothing),
         ("does not rest: its level changes by more than 2 % of g; wait until cask and amplifier are steady");
-    /// The level of an angular-rate sensor.
+    /// An angular-rate sensor reads this level.
     Rate { reads_deg_s: f64 }
         => (Code::Offset, if reads_deg_s.abs() > LARGE_DEG_S { Warning } else { Note }, Nothing),
         ("reads {reads_deg_s:+.2}°/s at rest, where 0 is expected{}",
@@ -50,11 +50,11 @@ pub enum RestFinding of Rest {
     /// The level of an angular-rate sensor changes.
     Turning => (Code::Offset, Warning, Nothing),
         ("does not rest: its level changes by more than 1°/s; wait until the cask and the sensor are steady");
-    /// Noise or the steps of the converter leave the offset open.
+    /// Noise or the steps of the converter leave the offset undetermined.
     OpenOffset { u95_g: f64 } => (Code::Noise, Warning, Nothing),
         ("has an offset that is open by ± {u95_g:.2} g: slow noise, or coarse steps of the converter; choose \
          a smaller range or more bits, and check the cable");
-    /// The range is below the peak expected of a first impact of this length; a note where that may be
+    /// The range is below the peak expected of a first impact of this length; a note if the impact may be
     /// longer.
     Range { range_g: f64, peak_g: f64, pulse_s: f64, is_sure: bool }
         => (Code::Clipped, if *is_sure { Warning } else { Note }, Nothing),
@@ -64,25 +64,26 @@ pub enum RestFinding of Rest {
     ShortPretrigger { before_s: f64, least_s: f64 } => (Code::BeginsLate, Warning, Nothing),
         ("the times begin {:.0} ms before zero, their trigger: too little of the free fall before an impact; \
          set a pre-trigger of {least_s} s or more", 1e3 * before_s);
-    /// The record behind the trigger ends before the slap-down.
+    /// The record after the trigger ends before the slap-down.
     ShortRecord { after_s: f64, needs_s: f64 } => (Code::EndsEarly, Warning, Nothing),
         ("the record ends {after_s:.2} s behind its trigger; the slap-down takes up to {needs_s:.2} s: \
          record longer");
-    /// Of the file with the rest of a drop, which is not the drop's own record.
+    /// The finding concerns the file with the rest before a drop, which is separate from the recording of the
+    /// drop.
     InRestFile { file: String, found: String, what: Code } => (*what, Note, Nothing),
         ("in the file of the rest, {file}: {found}");
-    /// Another number of blows than two.
+    /// The recording holds a number of taps other than two.
     Blows { count: usize } => (Code::NoImpact, Warning, Nothing),
         ("{count} blows are seen where one on each end is expected: strike each end once, the first end \
          first, a second apart, so that every transverse channel answers");
-    /// The channel answers the blow on the other end first.
+    /// The channel responds first to the tap on the other end.
     OtherEnd { struck: &'static str } => (Code::EndsExchanged, Error, Nothing),
         ("answers the blow on the {struck} end before the channels of that end: the ends are exchanged; \
          correct `end` and `position_m`, or `source`, or exchange the cables");
-    /// The first swing after a blow from below goes down.
+    /// The first swing after a tap from below is negative.
     SwingsDown => (Code::Polarity, Error, Nothing),
         ("swings down under a blow from below on its own end, which reads positive: turn `polarity` round");
-    /// The clocks of two channels are apart by both blows.
+    /// The clocks of two channels differ, as both taps show.
     ClocksApart { behind_s: f64, other: String } => (Code::Skew, Warning, Nothing),
         ("is {:.1} ms behind {other} by both blows: their clocks are apart; use one trigger", 1e3 * behind_s);
 }
@@ -99,9 +100,9 @@ impl RestCause {
 }
 
 impl RestFinding {
-    /// The finding, about the channel of that name.
-    pub fn on(self, channel: &str) -> Finding {
+    /// Attributes the finding to the named channel.
+    pub fn tag(self, channel: &str) -> Finding {
         let (row, message) = (self.row(), format!("{channel} {self}"));
-        Finding::made(FindingKind::Rest(self), row, &message).on(channel)
+        Finding::build(FindingKind::Rest(self), row, &message).tag(channel)
     }
 }

@@ -1,4 +1,4 @@
-//! What speaks against the times of a recording, with its numbers, to code, severity and sentence.
+//! Findings on the times of a recording: code, severity and sentence of each.
 
 use super::{Effect, IssueCode as Code, Severity};
 use crate::data::shown::{digits, hz};
@@ -6,21 +6,21 @@ use crate::data::shown::{digits, hz};
 findings! {
 /// A finding about the times of rows or blocks, in any format.
 pub enum TimesFinding of Times {
-    /// Times that run backward, first from one to another.
+    /// The times run backward, first between these two.
     Backward { count: usize, from_s: f64, to_s: f64 } => (Code::DisorderedBlocks, Note, Nothing),
         ("times run backward {count} time(s), first from {from_s} s to {to_s} s; the samples were sorted by \
          time");
-    /// Rows at the end that hold one time and one value.
+    /// Rows at the end repeat one time and one value.
     Unfilled { samples: usize } => (Code::DisorderedBlocks, Note, Nothing),
         ("{samples} rows at the end hold one value, and a time before the row above them: laid out and never \
          filled, they are no samples");
-    /// Samples of equal times, some with different values.
+    /// Samples have equal times, some with different values.
     CameTwice { samples: usize, different: usize }
         => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }, Local),
         ("{samples} sample(s) came twice with the same time: {}",
          if *different == 0 { "the copies were dropped".into() }
          else { format!("{different} of them with different values, of which the first was kept") });
-    /// Samples that repeat those of another time to the last digit.
+    /// Samples repeat those of another time to the last digit.
     Repeated { samples: usize, of_s: f64, from_s: f64 } => (Code::DuplicateBlocks, Warning, LostSamples),
         ("{samples} samples from {} s on repeat those from {} s on to the last digit, in all channels of this \
          clock: a block was written twice, and the samples in whose place it stands are taken for lost; \
@@ -28,22 +28,22 @@ pub enum TimesFinding of Times {
     /// Samples that are no numbers.
     NonFinite { samples: usize } => (Code::NonFinite, Warning, LostSamples),
         ("{samples} sample(s) are empty, NaN or infinite and count as missing");
-    /// One gap.
+    /// There is one gap.
     Gap { lost: usize, over_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{lost} sample(s) are missing over {:.2} ms", 1e3 * over_s);
-    /// Many gaps, the longest of them over a span.
+    /// There are many gaps; the longest lasts for a span.
     Gaps { lost: usize, gaps: usize, longest: usize, over_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{lost} samples are missing in {gaps} gaps, the longest of {longest} samples over {over_s:.3e} s \
          (the span given)");
-    /// Times off an even base, onto which the samples were interpolated.
+    /// The times deviate from a uniform base, onto which the samples were interpolated.
     Jitter(jitter: Jitter)
-        => if jitter.is_of_clock() { (Code::Clock, Warning, Nothing) }
+        => if jitter.is_clock_change() { (Code::Clock, Warning, Nothing) }
            else { (Code::TimeJitter, Note, Nothing) },
         ("{jitter}");
-    /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so
+    /// The times are coarser than the samples; the rate follows from when they change; `off_s` if they change
     /// unevenly.
     Coarse { step_s: f64, rate_hz: f64, uncertainty: f64, off_s: Option<f64>, is_sure: bool }
-        => (Code::Clock, if *is_sure { Note } else { Warning }, rows_lost(*off_s)),
+        => (Code::Clock, if *is_sure { Note } else { Warning }, lost_rows_effect(*off_s)),
         ("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at \
          {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
          digits(step_s * rate_hz, 3), digits(*rate_hz, 6), digits(100.0 * uncertainty, 2),
@@ -51,14 +51,14 @@ pub enum TimesFinding of Times {
                                     missing", digits(off_s, 2))).unwrap_or_default(),
          if *is_sure { "" } else { "; give sample_rate_hz for this channel" },
          step = digits(*step_s, 3));
-    /// Steps of coarse times that hold fewer samples than the others, or that are not there.
+    /// Steps of coarse times hold fewer samples than the others, or are missing.
     ShortSteps { missing: usize, step_s: f64, usual: usize } => (Code::Gap, Warning, LostSamples),
         ("{missing} sample(s) are missing: the times are cut to {} s and each stands at {usual} samples, but for \
          some that stand at fewer or are left out; all samples of those count as missing",
          digits(*step_s, 3));
-    /// Coarse times beside a stated rate; `off_s` where they contradict it.
+    /// The times are coarse and a rate is stated; `off_s` if the times contradict it.
     CoarseBesideRate { step_s: f64, rate_hz: f64, off_s: Option<f64> }
-        => (Code::Clock, if off_s.is_some() { Warning } else { Note }, rows_lost(*off_s)),
+        => (Code::Clock, if off_s.is_some() { Warning } else { Note }, lost_rows_effect(*off_s)),
         ("the times are cut to {} s{}; the samples were taken as evenly spaced at the declared {rate} Hz",
          digits(*step_s, 3),
          off_s.map(|off_s| format!(" and change up to {} s off even steps at the declared {} Hz: samples are \
@@ -72,28 +72,28 @@ pub enum TimesFinding of Times {
     /// Blocks that come after a later one.
     BlocksBackward { count: usize } => (Code::DisorderedBlocks, Note, Nothing),
         ("{count} block(s) came after a later one; they were put in order by their stamps");
-    /// Blocks shorter than all others by less than their stamps tell.
+    /// Blocks are shorter than all others by less than their stamps resolve.
     ShortBlocks { count: usize, lacking: f64, off_s: f64 } => (Code::Gap, Warning, LostSamples),
         ("{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up \
          to {:.3} ms, do not tell whether samples are missing there; the blocks were joined", 1e3 * off_s);
-    /// Stamps of blocks that are cut, and agree with the stated rate; if they were exact they might tell
-    /// another.
+    /// The stamps of blocks are truncated and agree with the stated rate; exact stamps might show another
+    /// rate.
     StampsCut { cut_s: f64, rate_hz: f64, if_exact_hz: Option<f64> }
         => (Code::Clock, if if_exact_hz.is_some() { Warning } else { Note }, Nothing),
         ("the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken{}; blocks \
          that follow one another were joined",
         if_exact_hz.map(|hz| format!(", but would tell {hz:.6} Hz if they were exact")).unwrap_or_default());
-    /// Stamps of blocks that run at another rate than the stated one, far off or not.
+    /// Stamps of blocks run at another rate than the stated one, with a large or a small difference.
     StampsRunOff { stamps_hz: f64, stated_hz: f64, rms_s: f64, is_far: bool }
         => (Code::Clock, if *is_far { Warning } else { Note }, Nothing),
         ("the blocks' stamps run at {stamps_hz:.6} Hz, {:.1} ppm off the stated {stated_hz:.6} Hz, and \
          scatter by {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the \
          stamps' rate was taken", 1e6 * (stamps_hz / stated_hz - 1.0));
-    /// A few blocks that are stamped as at another rate than the one that was taken.
+    /// A few blocks are stamped as if at a rate other than the one used.
     FewBlocks { stamps_hz: f64, taken_hz: f64 } => (Code::Clock, Warning, Nothing),
         ("its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or \
          the rate is wrong, and every velocity with it", hz(*stamps_hz), hz(*taken_hz));
-    /// Blocks over times that are there already, some with different samples.
+    /// Blocks repeat times that already exist, some with different samples.
     BlocksTwice { count: usize, different: usize }
         => (Code::DuplicateBlocks, if *different == 0 { Note } else { Warning }, Local),
         ("{count} block(s) {}",
@@ -104,17 +104,17 @@ pub enum TimesFinding of Times {
 }
 }
 
-/// Where coarse times change off even steps, rows may be missing anywhere, also amid an impact.
-fn rows_lost(off_s: Option<f64>) -> Effect {
+/// If coarse times change at uneven steps, rows may be missing anywhere, even during an impact.
+fn lost_rows_effect(off_s: Option<f64>) -> Effect {
     if off_s.is_some() { Effect::Motion } else { Effect::Nothing }
 }
 
-/// How far times lie off an even base, and what interpolating onto it may add.
+/// Deviation of times from a uniform base, and the error that interpolating onto it may add.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("times lie {rms_s:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, \
          {max_s:.3e} s at most; the samples were interpolated onto it. Cubic and linear interpolation differ \
          by {rms_percent:.2} % of the largest sample RMS, {max_percent:.2} % at most, which bounds the error \
-         of doing so{}", 100.0 * .rms_s / .period_s, 1.0 / .period_s, self.doubt_of_clock())]
+         of doing so{}", 100.0 * .rms_s / .period_s, 1.0 / .period_s, self.clock_doubt())]
 pub struct Jitter {
     /// Interval of the base, s.
     pub period_s: f64,
@@ -124,27 +124,27 @@ pub struct Jitter {
     pub max_s: f64,
     /// Cubic less linear interpolation, RMS, percent of the largest sample.
     pub rms_percent: f64,
-    /// The same at most.
+    /// Largest deviation, in percent.
     pub max_percent: f64,
-    /// Rates of two parts of the times, Hz, where they differ.
+    /// Rates of two parts of the times, Hz, if they differ.
     pub rates_hz: Option<(f64, f64)>,
 }
 
 impl Jitter {
-    /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a
-    /// thousand samples is beyond.
+    /// Limit in sample intervals: late stamps with a gap or two to make up for stay below it; a clock 2 % off
+    /// for a thousand samples exceeds it.
     const MOST_LATE: f64 = 2.0;
 
     fn is_late(&self) -> bool {
         self.rms_s > Self::MOST_LATE * self.period_s
     }
 
-    /// Whether a clock that changed its rate explains it, and no jitter.
-    fn is_of_clock(&self) -> bool {
+    /// True if a clock that changed its rate explains the deviation, rather than jitter.
+    fn is_clock_change(&self) -> bool {
         self.is_late() || self.rates_hz.is_some()
     }
 
-    fn doubt_of_clock(&self) -> String {
+    fn clock_doubt(&self) -> String {
         match self.rates_hz {
             Some((one_hz, other_hz)) => format!(
                 "; they rise at {one_hz:.6} Hz in one part and at {other_hz:.6} Hz in another, which is no \

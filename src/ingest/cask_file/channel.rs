@@ -80,7 +80,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<ChannelSpec, IngestError> {
         rows: rows(table)?,
         time: table.text("time")?,
         sensor: sensor(table)?,
-        ..ChannelSpec::plain(&name, end.unwrap_or(End::First), "", 0.0)
+        ..ChannelSpec::new(&name, end.unwrap_or(End::First), "", 0.0)
     };
     if end.is_none() {
         without_meaning(table, &OF_MOTION, ["end = \"none\"", NO_PART])?;

@@ -4,7 +4,7 @@ use super::section::Section;
 use super::texts::A_NUMBER;
 use super::wording::unit_of;
 use crate::data::keys::{Allowed, Takes};
-use crate::data::shown::short;
+use crate::data::shown::show;
 use crate::ingest::IngestError;
 use std::ops::RangeInclusive;
 use toml::de::DeValue;
@@ -20,7 +20,7 @@ impl Section<'_> {
             };
             digits.replace('_', "").parse().ok().filter(|number: &f64| number.is_finite())
         })?;
-        number.map_or(Ok(()), |number| self.allows(key, number, &format!("{key} is {}", short(number))))?;
+        number.map_or(Ok(()), |number| self.allows(key, number, &format!("{key} is {}", show(number))))?;
         Ok(number)
     }
 
@@ -54,7 +54,7 @@ impl Section<'_> {
         range: &RangeInclusive<f64>,
         why: &str,
     ) -> IngestError {
-        let (least, most) = (short(*range.start()), short(*range.end()));
+        let (least, most) = (show(*range.start()), show(*range.end()));
         self.refuse(key, format!("{what}, outside {least} to {most}"), why)
     }
 }

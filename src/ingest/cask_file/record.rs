@@ -3,7 +3,7 @@
 
 use super::section::Section;
 use crate::data::keys::{LIMITS, OBSERVED};
-use crate::data::shown::bare;
+use crate::data::shown::os_text;
 use crate::data::{Letterhead, Limit, LimitState, Observed, Photo, TestRecord};
 use crate::ingest::IngestError;
 use crate::ingest::opened;
@@ -75,7 +75,7 @@ fn picture(
         opened(&path)?.take(HEAD_OF_SVG).read_to_end(&mut begin).map(|_| there.len())
     });
     let length =
-        looked.map_err(|refusal| wrong(format!("{name} cannot be read: {}", bare(&refusal)), mend))?;
+        looked.map_err(|refusal| wrong(format!("{name} cannot be read: {}", os_text(&refusal)), mend))?;
     let is_svg = |begin: &[u8]| !is_photo && begin.windows(4).any(|word| word == b"<svg");
     let image =
         IMAGES.into_iter().find(|(kind, _)| begin.starts_with(kind)).map(|(_, media_type)| media_type);

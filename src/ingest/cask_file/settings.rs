@@ -27,7 +27,7 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
         })
         .collect();
     let mut made = file.corrections;
-    for (key, is_made) in made.by_key() {
+    for (key, is_made) in made.switches() {
         // The file says otherwise, or nothing, where the command line has switched it off.
         if !*is_made && all["corrections"][key]["value"] != json!(false) {
             all["corrections"][key] = json!({"value": false, "from": "command line"});
@@ -87,7 +87,7 @@ fn default(file: &CaskFile, table: &str, key: &str) -> Value {
     let CaskFile { cask, drop, .. } = file;
     if let Some(tolerance) = TOLERANCES.iter().find(|of| table == "tolerance" && of.key == key) {
         // Free of the last digits of the conversion.
-        return json!((1e9 * tolerance.in_file(file.tolerances, cask)).round() / 1e9);
+        return json!((1e9 * tolerance.value_in_file(file.tolerances, cask)).round() / 1e9);
     }
     match (table, key) {
         ("cask", "name") => json!(cask.name),

@@ -34,7 +34,7 @@ pub(super) fn simulation(
             return Err(columns.refuse(&name, message, "name each channel's own column"));
         }
         let ChannelSpec { end, axis, position_m, offset_m, .. } = *measured;
-        let plain = ChannelSpec::plain(&name, end, "", position_m);
+        let plain = ChannelSpec::new(&name, end, "", position_m);
         named.push(ChannelSpec { axis, source, unit, offset_m, ..plain });
     }
     if named.is_empty() {

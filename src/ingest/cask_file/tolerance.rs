@@ -13,7 +13,7 @@ pub(super) fn tolerances(
     cask: &Cask,
     left_out: &[String],
 ) -> Result<Tolerances, IngestError> {
-    let mut stated = Tolerances::of(left_out, cask.length_m);
+    let mut stated = Tolerances::with_defaults(left_out, cask.length_m);
     for tolerance in &TOLERANCES {
         let key = tolerance.key;
         let Some(given) = table.given(key)? else { continue };
@@ -30,7 +30,7 @@ pub(super) fn tolerances(
 /// `[corrections]`; what it leaves out is made.
 pub(super) fn corrections(table: &Section) -> Result<Corrections, IngestError> {
     let mut made = Corrections::default();
-    for (key, made) in made.by_key() {
+    for (key, made) in made.switches() {
         *made = table.flag(key)?.unwrap_or(*made);
     }
     Ok(made)

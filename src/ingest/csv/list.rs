@@ -188,7 +188,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
         facts: facts(&layout, encoding, &clocks),
         channels,
         issues,
-        ..Listing::of(path, bytes, RecordingFormat::Csv)
+        ..Listing::new(path, bytes, RecordingFormat::Csv)
     })
 }
 
@@ -307,7 +307,7 @@ fn listed(
         encoding: clock.shown.time.as_ref().map_or("text".into(), |time| format!("text, times in {time:?}")),
         time: clock.shown.time.clone(),
         unreadable,
-        ..ListedChannel::named(&column.header, "column")
+        ..ListedChannel::new(&column.header, "column")
     }
 }
 

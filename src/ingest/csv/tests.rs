@@ -5,13 +5,13 @@ use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode, RowsOf};
 use crate::ingest::{Limits, ReadRequest};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
-    let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
+    let channel = |source: &&str| ChannelSpec::new(source, End::First, source, 0.0);
     let cask = Cask { inertia_kg_m2: 1.0, ..Cask::block("box", 1.0, 1.0, 0.0) };
-    let drop = Drop { impact_velocity_m_s: 4.4, ..Drop::of_height(1.0, 0.1) };
+    let drop = Drop { impact_velocity_m_s: 4.4, ..Drop::from_height(1.0, 0.1) };
     CaskFile {
         path: "box.toml".into(),
         channels: sources.iter().map(channel).collect(),
-        ..CaskFile::plain(cask, drop, Contact::Rough)
+        ..CaskFile::new(cask, drop, Contact::Rough)
     }
 }
 

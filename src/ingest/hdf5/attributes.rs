@@ -202,7 +202,7 @@ impl Attributes {
 
     /// value = raw · scale + offset, NaN where raw stands for a missing sample.
     pub(super) fn scaled(&self, mut samples: Samples) -> Samples {
-        let fills = samples.alike(self.fills.clone()).into_f64();
+        let fills = samples.match_precision(self.fills.clone()).into_f64();
         let (scale, offset) = (self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0));
         let is_scaled = self.scale.is_some() || self.offset.is_some();
         let (least, most) = self.valid.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));

@@ -102,7 +102,7 @@ impl DatasetChannel {
     pub(super) fn samples(&self) -> Result<Samples, Refusal> {
         let samples = self.attributes.scaled(self.column.samples()?);
         Ok(match &self.rows {
-            Some(rows) => samples.picked(rows),
+            Some(rows) => samples.select(rows),
             None => samples,
         })
     }
@@ -172,7 +172,7 @@ impl DatasetChannel {
         let mut told = None;
         if let Some(counter) = &self.counter {
             told = Some(counter.finding());
-            samples = samples.alike(with_missing(&samples.clone().into_f64(), &counter.jumps));
+            samples = samples.match_precision(with_missing(&samples.clone().into_f64(), &counter.jumps));
         }
         let unclear = no_rate.clone().filter(|_| self.claims.cask_hz.is_none());
         let none = || unfit.unwrap_or_else(|| clocks::why_none(&self.column));

@@ -54,7 +54,7 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     let listing = Listing {
         counts: BTreeMap::from(["groups", "datasets"].map(|counted| (counted.to_owned(), 0))),
         facts: BTreeMap::from([("read with".into(), format!("{}{guard}", file.opened.library))]),
-        ..Listing::of(&file.path, file.bytes, RecordingFormat::Hdf5)
+        ..Listing::new(&file.path, file.bytes, RecordingFormat::Hdf5)
     };
     // No number takes fewer than four bytes once it is unpacked and turned.
     let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
@@ -86,7 +86,7 @@ impl Lister {
     fn add(&mut self, file: &Rc<File>, path: &str, object: &Object) {
         let unread = |kind, reason: &str| ListedChannel {
             unreadable: Some(reason.to_owned()),
-            ..ListedChannel::named(path, kind)
+            ..ListedChannel::new(path, kind)
         };
         match object {
             Object::Group { .. } => self.count("groups"),
@@ -124,8 +124,7 @@ impl Lister {
             beside.iter().filter(|ids| self.pays_for(ids)).find_map(|ids| RecordSensors::by(ids, false));
         let all = sensors.map_or_else(|| vec![None], |sensors| sensors.all.into_iter().map(Some).collect());
         for rows in all {
-            let mut listed =
-                ListedChannel { rows, ..ListedChannel::named(&column.source, column.kind_name()) };
+            let mut listed = ListedChannel { rows, ..ListedChannel::new(&column.source, column.kind_name()) };
             if let Err(fault) = self.fill(column.clone(), &mut listed) {
                 listed.unreadable = Some(why_unreadable(fault));
             }
@@ -158,7 +157,7 @@ impl Lister {
         if let Some(two) = &attributes.two_units {
             self.doubt(source, &two.clone().at(source), AttributeFinding::Refused);
         }
-        self.listing.issues.extend(attributes.issues.iter().map(|issue| issue.clone().on(source)));
+        self.listing.issues.extend(attributes.issues.iter().map(|issue| issue.clone().tag(source)));
         let is_read = column.length <= MOST_SAMPLES && self.pays_for(column);
         if !is_read || times.first().is_some_and(|time| !self.pays_for(time)) {
             listed.sample_rate_hz = claims.stated.first().map(|stated| stated.rate_hz);
@@ -167,7 +166,7 @@ impl Lister {
         let samples = channel.samples()?;
         let count = samples.len();
         let values = (0..count).map(|i| samples.get(i));
-        (listed.range, listed.samples) = (ListedChannel::range_of(values), Some(count as u64));
+        (listed.range, listed.samples) = (ListedChannel::value_range(values), Some(count as u64));
         if channel.has_no_clock() || count < 2 {
             return Ok(());
         }
@@ -177,7 +176,7 @@ impl Lister {
                 let uniform = based.uniform;
                 uniform.list(based.span_s, listed);
                 self.starts.push((source.clone(), based.start));
-                self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.on(source)));
+                self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.tag(source)));
             }
         }
         Ok(())
@@ -200,7 +199,7 @@ impl Lister {
     /// That reading would refuse a channel, in its words.
     fn doubt<F: Into<Finding>>(&mut self, source: &str, fault: &Refusal, refused: fn(String) -> F) {
         let found: Finding = refused(fault.beside(source)).into();
-        self.listing.issues.push(found.on(source));
+        self.listing.issues.push(found.tag(source));
     }
 }
 

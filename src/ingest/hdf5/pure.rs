@@ -10,7 +10,7 @@ use super::answer::{
     Storage, StoredChunk, receive, send,
 };
 use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
-use crate::numerics::single;
+use crate::numerics::to_f32;
 use attributes::type_of;
 use hdf5_reader::chunk_index::ChunkEntry;
 use hdf5_reader::error::Error;
@@ -292,7 +292,7 @@ impl Store for InMemory {
             if next.is_empty() {
                 return Ok(());
             }
-            let narrow = |next: Vec<f64>| Reply::Narrow(next.into_iter().map(single).collect());
+            let narrow = |next: Vec<f64>| Reply::Narrow(next.into_iter().map(to_f32).collect());
             send(to, &if is_wide { Reply::Wide(next) } else { narrow(next) })?;
         }
     }

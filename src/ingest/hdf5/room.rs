@@ -317,7 +317,7 @@ impl Link {
 fn unstarted(refusal: &io::Error) -> Refusal {
     let what = match PROGRAM.get() {
         Some(program) => {
-            let why = crate::ingest::shown::bare(refusal);
+            let why = crate::ingest::shown::os_text(refusal);
             format!("{} could not be started for it: {why}", program.path.display())
         }
         None => "no program was named for it".into(),

@@ -3,7 +3,7 @@
 use super::plan::{Beside, Field, Says, Slots, StatedRate, Value};
 use crate::data::Samples;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::shown::short;
+use crate::ingest::shown::show;
 use crate::numerics::as_count;
 use std::borrow::Cow;
 
@@ -99,7 +99,7 @@ impl SaidBeside<'_> {
         let [scale, count, turns] = [Says::Scale, Says::Count, Says::Turns].map(|s| Some(number(s)?.0));
         if let (Some(turns), Value::Array(_)) = (turns.filter(|turns| *turns > 1.0), &value) {
             return Err(Refusal::new(
-                format!("by its layout each message holds {} signals by turns in one array", short(turns)),
+                format!("by its layout each message holds {} signals by turns in one array", show(turns)),
                 "name one number of the array, as in `data[0]`, where a message holds one sample of each; \
                  else have the recorder write an array for each signal",
             ));
@@ -121,7 +121,7 @@ impl SaidBeside<'_> {
                     "its messages state {} = {} beside the samples, and nothing says whether these are \
                      converted by it already",
                     beside.field,
-                    short(number)
+                    show(number)
                 ),
                 "write scale into this [[channel]] of the cask file, scale = 1 where they are converted; or \
                  have the recorder write `scale` and `offset` beside them: value = raw · scale + offset",

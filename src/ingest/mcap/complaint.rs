@@ -116,7 +116,7 @@ pub(super) fn no_samples(
 pub(super) fn unit_change(spec: &ChannelSpec, [first, other]: [&str; 2]) -> Result<Finding, Refusal> {
     if spec.unit.is_some() {
         let (first, other) = (first.to_owned(), other.to_owned());
-        return Ok(Finding::from(McapFinding::TwoUnits { first, other, source: None }).on(&spec.name));
+        return Ok(Finding::from(McapFinding::TwoUnits { first, other, source: None }).tag(&spec.name));
     }
     Err(Refusal::new(
         format!("{}: {}", spec.source, two_units(first, other)),

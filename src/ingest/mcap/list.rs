@@ -39,7 +39,7 @@ pub(crate) fn list(request: ReadRequest) -> Result<Listing, IngestError> {
     }
     let zero_ns = series.iter().filter_map(|one| one.column.span_ns()).map(|(from, _)| from).min();
     issues.extend(unlisted);
-    let (facts, empty) = (facts(&scanned, zero_ns), Listing::of(path, bytes, RecordingFormat::Mcap));
+    let (facts, empty) = (facts(&scanned, zero_ns), Listing::new(path, bytes, RecordingFormat::Mcap));
     let mut listing = Listing { counts, facts, issues, ..empty };
     for of_channel in series.chunk_by_mut(TopicSeries::is_beside) {
         let is_alone = writers[&of_channel[0].topic().name] == 1;
@@ -81,7 +81,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
                 messages: Some(messages),
                 encoding,
                 unreadable: topic.unreadable.clone().or_else(none),
-                ..ListedChannel::named(&topic.name, "topic")
+                ..ListedChannel::new(&topic.name, "topic")
             });
             continue;
         };
@@ -102,7 +102,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
         }
         if let Some(drift) = column.log_drift().filter(|drift| !said.contains(&drift.message)) {
             said.push(drift.message.clone());
-            issues.push(drift.on(&source));
+            issues.push(drift.tag(&source));
         }
         let mut channel = ListedChannel {
             place,
@@ -112,7 +112,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
             unit,
             range,
             encoding,
-            ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
+            ..ListedChannel::new(&source, if *is_array { "array" } else { "number" })
         };
         let untimed = timed(&mut channel, column, zero_ns).err().map(|refusal| refusal.beside(&source));
         listing.channels.push(channel);

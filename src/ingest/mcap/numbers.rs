@@ -3,12 +3,12 @@
 
 use super::plan::Value;
 use crate::data::{Samples, is_number};
-use crate::numerics::single;
+use crate::numerics::to_f32;
 
 /// One more number; single precision as long as all are narrow.
 pub(super) fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
     match samples {
-        Samples::F32(narrow) if is_narrow => narrow.push(single(value)),
+        Samples::F32(narrow) if is_narrow => narrow.push(to_f32(value)),
         Samples::F32(_) => append(samples, &mut Samples::F64(vec![value])),
         Samples::F64(wide) => wide.push(value),
     }

@@ -31,7 +31,7 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         let settled = column.settle_ticks(&spec.source.to_string(), spec.sample_rate_hz);
         settled.map_err(|refusal| refused(spec, refusal))?;
         if let Some(time) =
-            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.good_stamps == 0)
+            cask_file.time_source(spec).filter(|time| *time != LOG_TIME && column.good_stamps == 0)
         {
             return Err(refused(spec, complaint::no_named_time(spec, time)));
         }
@@ -51,9 +51,9 @@ pub(crate) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         if let Some(change) = of_channel.column.unit_change() {
             issues.push(complaint::unit_change(spec, change).map_err(|refusal| refused(spec, refusal))?);
         }
-        let is_named = cask_file.time_of(spec).is_some();
+        let is_named = cask_file.time_source(spec).is_some();
         let counted = of_channel.column.held_against_counter(is_named, others_messages(of_channel));
-        issues.extend(counted.map_err(|refusal| refused(spec, refusal))?.map(|found| found.on(&spec.name)));
+        issues.extend(counted.map_err(|refusal| refused(spec, refusal))?.map(|found| found.tag(&spec.name)));
         let mut factors = of_channel.column.factors();
         factors.extend(of_channel.channel.gathered.factors.iter().chain(&scanned.factors).cloned());
         let unit = of_channel.unit();
@@ -124,7 +124,7 @@ fn message_issues(spec: &ChannelSpec, TopicSeries { channel, column, .. }: &Topi
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
     let found = log_time.into_iter().chain(channel.gathered.undecoded(None)).map(Finding::from);
     let drift = column.log_drift().filter(|_| spec.sample_rate_hz.is_none());
-    found.chain(drift).map(|finding| finding.on(&spec.name)).collect()
+    found.chain(drift).map(|finding| finding.tag(&spec.name)).collect()
 }
 
 #[cfg(test)]

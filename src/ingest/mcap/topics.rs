@@ -309,7 +309,7 @@ fn asked_of(file: &CaskFile, topic: &str) -> Vec<AskedField> {
             let nearer = path.enclosing().map(|message| FieldPath([message.0, own.0.clone()].concat()));
             Some(nearer.collect())
         };
-        let times = file.time_of(spec).map(|time| match time {
+        let times = file.time_source(spec).map(|time| match time {
             LOG_TIME => Vec::new(),
             time => beside(time).unwrap_or_default(),
         });

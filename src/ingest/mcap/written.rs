@@ -195,11 +195,8 @@ pub(super) fn imu<Order: CdrEndian>(stamp_ns: i64, z: f64) -> Vec<u8> {
 
 /// A cask file whose channels have these sources.
 pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
-    let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
+    let channel = |source: &&str| ChannelSpec::new(source, End::First, source, 0.0);
     let cask = Cask::block("test", 1.0, 1.0, 0.0);
-    let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.2) };
-    CaskFile {
-        channels: sources.iter().map(channel).collect(),
-        ..CaskFile::plain(cask, drop, Contact::Rough)
-    }
+    let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, 0.2) };
+    CaskFile { channels: sources.iter().map(channel).collect(), ..CaskFile::new(cask, drop, Contact::Rough) }
 }

@@ -4,7 +4,7 @@ use super::zip::{self, ZipEntry};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::lines::Text;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::shown::bare;
+use crate::ingest::shown::os_text;
 use crate::ingest::{Limits, RecordingFile, opened};
 use std::collections::BTreeMap;
 use std::fs;
@@ -108,8 +108,9 @@ impl<'a> MmeFiles<'a> {
             None => Box::new(opened(&place).map_err(|source| error::io(&place, &source))?),
             Some(entry) => {
                 let mend = "copy the zip again, or unpack it and name the folder";
-                let damaged =
-                    |source| error::of_file(self.recording.path, Refusal::new(bare(&source), mend).at(name));
+                let damaged = |source| {
+                    error::of_file(self.recording.path, Refusal::new(os_text(&source), mend).at(name))
+                };
                 Box::new(Cursor::new(entry.unpacked(self.recording).map_err(damaged)?))
             }
         };

@@ -124,7 +124,7 @@ impl Laid {
         let mut samples = if is_in_place {
             held
         } else {
-            let laid = held.spread(count, &stretches);
+            let laid = held.distribute(count, &stretches);
             for (piece, (span, _)) in pieces.iter().zip(&stretches) {
                 let from = piece.samples.start;
                 let mut doubled = (0..span.from - from)
@@ -140,7 +140,7 @@ impl Laid {
         if let Some((from_s, to_s)) = doubles.span_s {
             let Doubles { count, different, .. } = doubles;
             let found = TimesFinding::BlocksTwice { count, different };
-            issues.push(Finding::from(found).between(from_s, to_s));
+            issues.push(Finding::from(found).span(from_s, to_s));
         }
         missing::push_gaps(&gaps, &mut issues);
         let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
@@ -167,7 +167,7 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent)
     no_mixture(&starts_s, order.into_iter(), is_copy)?;
     let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
     let (from_s, to_s) = (pieces[first].start_s, pieces[first - 1].start_s);
-    issues.push(Finding::from(TimesFinding::BlocksBackward { count }).between(from_s, to_s));
+    issues.push(Finding::from(TimesFinding::BlocksBackward { count }).span(from_s, to_s));
     pieces.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     Ok(())
 }

@@ -146,8 +146,8 @@ fn filled(times_s: &[f64], samples: &Samples, changes: &[usize], step_s: f64) ->
     let finding = Finding::from(TimesFinding::ShortSteps { missing, step_s, usual });
     let from_s = short.iter().map(|(from, _)| times_s[*from]).chain(jumps.map(|at| times_s[at - 1]));
     let (first_s, last_s) = extent(from_s);
-    let finding = finding.between(first_s, last_s + step_s);
-    Some(FilledTimes { times, samples: samples.alike(values), finding })
+    let finding = finding.span(first_s, last_s + step_s);
+    Some(FilledTimes { times, samples: samples.match_precision(values), finding })
 }
 
 /// Refuses times of which each stands exactly two, three or four times, as on rows of so many sensors, unless
@@ -432,7 +432,7 @@ mod tests {
             lost.drain(lost_from..lost_from + 40);
             let stated = placed(&lost, Some(20_000.0)).unwrap();
             assert_eq!(only(&stated).0, Severity::Warning, "{step_s}: {}", only(&stated).1);
-            assert!(stated.issues[0].takes(ResultPart::Motion), "rows of the impact may be missing");
+            assert!(stated.issues[0].removes(ResultPart::Motion), "rows of the impact may be missing");
         }
         // Blocks of 1000 samples that a computer stamps as they come, 3 ms early or late.
         let blocks: Vec<f64> =

@@ -1,7 +1,7 @@
 //! Why times give no uniform base.
 
 use crate::ingest::refusal::Refusal;
-use crate::ingest::shown::short;
+use crate::ingest::shown::show;
 
 /// That so many samples are too few.
 pub(super) fn too_few(count: usize) -> Refusal {
@@ -40,7 +40,7 @@ pub(super) fn not_finite(number: usize, time_s: f64) -> Refusal {
 /// That times jump so far that filling the gap, so many samples at the rate of the rest, would not fit in
 /// memory.
 pub(super) fn jump(from_s: f64, to_s: f64, lost: f64, rate_hz: f64) -> Refusal {
-    let [from_s, to_s, rate_hz] = [from_s, to_s, rate_hz].map(short);
+    let [from_s, to_s, rate_hz] = [from_s, to_s, rate_hz].map(show);
     let problem = format!(
         "times jump from {from_s} s to {to_s} s, which would be {lost:.3e} samples at {rate_hz} Hz: no gap \
          of one record"

@@ -3,7 +3,7 @@
 use super::error;
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::ingest::refusal::Refusal;
-use crate::numerics::{as_count, as_f64, robust, single};
+use crate::numerics::{as_count, as_f64, robust, to_f32};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -248,7 +248,7 @@ fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
         .collect();
     let largest_s = looked_at.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
     let held_s = 2.0 * largest_s * f64::EPSILON;
-    if looked_at.iter().all(|&t| f64::from(single(t)).total_cmp(&t).is_eq()) {
+    if looked_at.iter().all(|&t| f64::from(to_f32(t)).total_cmp(&t).is_eq()) {
         return largest_s * f64::from(f32::EPSILON);
     }
     for digits in 0..=9 {

@@ -23,7 +23,7 @@ pub(super) fn spread(samples: &Samples, fit: &BaseFit) -> Samples {
     let ends = fit.runs.iter().skip(1).map(|next| next.first).chain([samples.len()]);
     let stretch = |(run, to): (&Run, usize)| (Span { from: run.first, to }, run.place);
     let stretches: Vec<(Span, usize)> = fit.runs.iter().zip(ends).map(stretch).collect();
-    samples.spread(fit.places(samples.len()), &stretches)
+    samples.distribute(fit.places(samples.len()), &stretches)
 }
 
 /// Turns infinite samples and those over the range into NaN and says how many are no numbers beside the
@@ -44,7 +44,7 @@ pub(super) fn mark(
         && count > lost
     {
         let found = Finding::from(TimesFinding::NonFinite { samples: count - lost });
-        issues.push(found.between(time_s(first.from), time_s(last.to - 1)));
+        issues.push(found.span(time_s(first.from), time_s(last.to - 1)));
     }
     spans
 }
@@ -74,7 +74,7 @@ pub(super) fn report_gaps(fit: &BaseFit, times_s: &[f64], issues: &mut Vec<Findi
 pub(super) fn push_gaps(gaps: &[Gap], issues: &mut Vec<Finding>) {
     if gaps.len() <= GAPS_TOLD_SINGLY {
         issues.extend(gaps.iter().map(|&Gap { lost, from_s, to_s }| {
-            Finding::from(TimesFinding::Gap { lost, over_s: to_s - from_s }).between(from_s, to_s)
+            Finding::from(TimesFinding::Gap { lost, over_s: to_s - from_s }).span(from_s, to_s)
         }));
         return;
     }
@@ -82,7 +82,7 @@ pub(super) fn push_gaps(gaps: &[Gap], issues: &mut Vec<Finding>) {
     let lost = gaps.iter().map(|gap| gap.lost).sum();
     let over_s = widest.to_s - widest.from_s;
     let found = TimesFinding::Gaps { lost, gaps: gaps.len(), longest: widest.lost, over_s };
-    issues.push(Finding::from(found).between(widest.from_s, widest.to_s));
+    issues.push(Finding::from(found).span(widest.from_s, widest.to_s));
 }
 
 #[cfg(test)]

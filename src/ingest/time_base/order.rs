@@ -2,7 +2,7 @@
 
 use super::error;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::{clock::usual_step, refusal::Refusal, shown::short};
+use crate::ingest::{clock::usual_step, refusal::Refusal, shown::show};
 use crate::numerics::{as_f64, extent};
 use std::borrow::Cow;
 
@@ -51,7 +51,7 @@ pub(super) fn ordered<'a>(
     if filled < times_s.len() {
         issues.push(TimesFinding::Unfilled { samples: times_s.len() - filled }.into());
         let (times_s, rows) = (&times_s[..filled], (0..filled).collect::<Vec<_>>());
-        return ordered(times_s, self::rise(times_s), samples.picked(&rows), issues);
+        return ordered(times_s, self::rise(times_s), samples.select(&rows), issues);
     }
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(error::not_finite(index + 1, times_s[index]));
@@ -132,7 +132,7 @@ pub(super) fn no_mixture(
     }
     let count = backward.len();
     let place =
-        format!("behind number {first}, from {} s to {} s", short(times_s[first - 1]), short(times_s[first]));
+        format!("behind number {first}, from {} s to {} s", show(times_s[first - 1]), show(times_s[first]));
     if count > FEW && RISING_OF * count > times_s.len() {
         return Err(Refusal::new(
             format!(
@@ -167,7 +167,7 @@ impl Ordered<'_> {
         no_mixture(times_s, order.iter().copied(), is_copy)?;
         let (from_s, to_s) = (times_s[first - 1], times_s[first]);
         let found = TimesFinding::Backward { count: backward.len(), from_s, to_s };
-        issues.push(Finding::from(found).between(to_s, from_s));
+        issues.push(Finding::from(found).span(to_s, from_s));
         Ok(self.picked(&order))
     }
 
@@ -194,13 +194,13 @@ impl Ordered<'_> {
             return Self { is_coarse, ..self };
         }
         let found = TimesFinding::CameTwice { samples: doubles.len(), different };
-        issues.push(Finding::from(found).between(times_s[first], times_s[last]));
+        issues.push(Finding::from(found).span(times_s[first], times_s[last]));
         self.picked(&kept)
     }
 
     fn picked(self, rows: &[usize]) -> Self {
         let times_s = rows.iter().map(|&row| self.times_s[row]).collect();
-        Self { times_s: Cow::Owned(times_s), samples: self.samples.picked(rows), ..self }
+        Self { times_s: Cow::Owned(times_s), samples: self.samples.select(rows), ..self }
     }
 
     fn is_same(&self, row: usize, other: usize) -> bool {

@@ -54,7 +54,7 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
     let rates_hz = two_periods(times_s).map(|(short_s, long_s)| (1.0 / short_s, 1.0 / long_s));
     let &BaseFit { period_s, rms_s, max_s, .. } = fit;
     let jitter = Jitter { period_s, rms_s, max_s, rms_percent, max_percent, rates_hz };
-    Resampled { start_s, samples: samples.alike(moved), jitter }
+    Resampled { start_s, samples: samples.match_precision(moved), jitter }
 }
 
 /// In a gap: the sample at its edge where that is within half a period, else none.

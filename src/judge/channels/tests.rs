@@ -5,7 +5,7 @@ use crate::data::{At, Contact, Drop, IssueCode, Plateau, example};
 
 fn cask_file() -> CaskFile {
     let cask = example::cask(4000.0, 5.0, 0.0);
-    CaskFile::plain(cask, Drop { impact_velocity_m_s: 13.29, ..Drop::of_height(9.0, 0.25) }, Contact::Rough)
+    CaskFile::new(cask, Drop { impact_velocity_m_s: 13.29, ..Drop::from_height(9.0, 0.25) }, Contact::Rough)
 }
 
 /// A half sine of 5 ms from 20 ms on at 10 kHz; white noise of 1 m/s² is said, none is there.
@@ -30,7 +30,7 @@ fn pair() -> [Signal; 2] {
 }
 
 fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
-    let events = Events { separation: Some(At::exactly(0.025)), ..example::events(0.02, 0.09) };
+    let events = Events { separation: Some(At::exact(0.025)), ..example::events(0.02, 0.09) };
     judge_by_themselves(signals, &events, None, &cask_file())
         .into_iter()
         .map(|i| (i.code, i.channel))
@@ -60,7 +60,7 @@ fn noise_that_moves_the_velocity_is_named() {
     // A plateau known to 0.05 m/s by the flight leaves the noise of the 5 ms of contact: 0.16 m/s.
     let plateau = Plateau { channel: noisy[0].name.clone(), u_m_s: 0.05, ..Plateau::default() };
     let flight = FlightFit { plateaus: vec![plateau], ..FlightFit::default() };
-    let events = Events { separation: Some(At::exactly(0.025)), ..example::events(0.02, 0.09) };
+    let events = Events { separation: Some(At::exact(0.025)), ..example::events(0.02, 0.09) };
     let by_flight = judge_noise(&noisy[0], &events, Some(&flight), 13.29).map(|found| found.severity);
     assert_eq!(by_flight, Some(Severity::Note));
 }
@@ -71,7 +71,7 @@ fn what_the_numbers_are_known_to_holds_noise_and_a_coarse_step() {
         ChannelFinding::Noise { noise_m_s2: 30.0, u_m_s: 0.8, length_s: 0.1, severity: Severity::Warning };
     let coarse = ChannelFinding::LowRate { samples: 7.0, pulse_s: 4e-4, off_percent: 1.0, least_hz: 5e4 };
     let severities = |k_u95: f64, speed_u95: f64| {
-        let mut found = [noise.clone().on("A1"), coarse.clone().on("A1")];
+        let mut found = [noise.clone().tag("A1"), coarse.clone().tag("A1")];
         let (k, speed) = (Estimate::new(0.5, k_u95, "1"), Estimate::new(20.0, speed_u95, "m/s"));
         note_what_is_held(&mut found, k, Some(speed));
         found.map(|found| found.severity)
@@ -108,8 +108,8 @@ fn a_record_that_begins_in_the_impact_is_named() {
             s.noise_spectrum.clear();
         }
         let mut events =
-            Events { first_contact: Some(At::exactly(late[0].start_s.max(0.02))), ..Events::default() };
-        events.separation = Some(At::exactly(0.025));
+            Events { first_contact: Some(At::exact(late[0].start_s.max(0.02))), ..Events::default() };
+        events.separation = Some(At::exact(0.025));
         let findings = judge_by_themselves(&late, &events, None, &cask_file());
         assert_eq!(findings.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{findings:?}");
     }

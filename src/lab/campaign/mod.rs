@@ -1,5 +1,5 @@
-//! A number of random scenes with known truth, through everything, to how far off the analysis is and how
-//! often it says so.
+//! Runs random scenes with known truth through the whole program, and counts its errors and the coverage of
+//! its intervals.
 
 mod draw;
 mod recorder;
@@ -16,21 +16,21 @@ pub use tally::Tally;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
-pub use crate::lab::damage::{DamageKind, drawn as kinds};
+pub use crate::lab::damage::{DamageKind, campaign_kinds as kinds};
 use crate::lab::data::{CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording};
 use crate::numerics::as_f64;
 use crate::ordered_parallel;
 use score::RecordedScene;
 use std::convert::Infallible;
 
-/// What the first key of every line names.
+/// Value of the first key of every line.
 pub const SCHEMA: &str = "dropcheck.scenes/1";
 
 /// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 
-/// The rows of the campaign, undamaged scenes first, each in the order of their numbers; `progress` is told
-/// the share that is done. The same request gives the same rows.
+/// Rows of the campaign, undamaged scenes first, each in the order of their numbers; `progress` receives the
+/// completed share. The same request gives the same rows.
 pub fn run(request: &CampaignRequest, progress: Progress) -> Vec<CampaignRow> {
     let (numbers, mut rows) = (numbers(request), Vec::new());
     let take = |_, row| {
@@ -43,14 +43,14 @@ pub fn run(request: &CampaignRequest, progress: Progress) -> Vec<CampaignRow> {
     rows
 }
 
-/// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
+/// One scene as `synth` writes it: the scene with its cask file, and its recording.
 pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
     let RecordedScene { drop, recording, .. } = recorded(seed, number, exact);
     (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
 }
 
-/// The scenes of a campaign in their order, undamaged ones first: those of a kind are counted through all
-/// kinds, those not asked for left out.
+/// Numbers of a campaign's scenes in order, undamaged ones first: those of a kind are counted through all
+/// kinds, and kinds that are not requested are omitted.
 pub fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let has = |word: &str| request.kinds.contains(word);
     let [all, undamaged, sound] = WORDS.map(has);
@@ -62,7 +62,7 @@ pub fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     undamaged.map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
 }
 
-/// What there is to scene D`number`: kinds take turns, then sizes.
+/// Kind and size of damage in scene D`number`: kinds alternate, then sizes.
 fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
     let kinds: Vec<&DamageKind> = kinds().collect();
     let number = usize::try_from(number).unwrap_or(0);
@@ -70,28 +70,28 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
     (kind, kind.sizes[(number / kinds.len()) % kind.sizes.len()])
 }
 
-/// What is found of a scene, beside its truth.
+/// Analyses a scene and compares the result with its truth.
 pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
     let analysis = scene.drop.analyzed(&scene.recording);
     score::row(number, scene, analysis.as_ref())
 }
 
-/// What a line says; `None` where it is no whole one.
+/// Reads a line; `None` if it is incomplete.
 pub fn read(line: &[u8]) -> Option<CampaignRow> {
     serde_json::from_slice(line.strip_suffix(b"\n")?).ok()
 }
 
 fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
-    // A stream of its own for every scene, so that none moves another.
+    // Every scene has its own random stream, so that none changes another.
     let (stream, struck) = match number {
         SceneNumber::Undamaged(number) => (2 * u64::from(number), None),
         SceneNumber::Damaged(number) => (2 * u64::from(number) + 1, Some(kind_and_size(number))),
     };
     let wish = struck.map_or_else(Wish::default, |(kind, size)| kind.wish(size));
-    let mut drop = draw::drawn(Chance::new(seed, stream), &wish, exact);
+    let mut drop = draw::draw_drop(Chance::new(seed, stream), &wish, exact);
     recorder::equip(&mut drop, &wish, exact);
-    let recording = struck.map(|(kind, size)| kind.strike(&mut drop, size));
+    let recording = struck.map(|(kind, size)| kind.apply(&mut drop, size));
     let recording = recording.unwrap_or_else(|| drop.recorded());
     let damage =
         struck.map(|(kind, size)| Damage { kind: kind.name.to_owned(), size, unit: kind.unit.to_owned() });
@@ -122,23 +122,23 @@ mod tests {
         };
         let wish = struck.map_or_else(Wish::default, |(kind, size)| kind.wish(size));
         let wish = Wish { rest: Some(true), ..wish };
-        let mut drop = draw::drawn(Chance::new(3, stream), &wish, false);
+        let mut drop = draw::draw_drop(Chance::new(3, stream), &wish, false);
         recorder::equip(&mut drop, &wish, false);
         let chance = &mut drop.chance;
-        let from_end_m = chance.even(0.05, 0.4);
-        let (end, unit) = (chance.one_of(&[End::First, End::Second]), chance.one_of(&["deg/s", "rad/s"]));
+        let from_end_m = chance.uniform(0.05, 0.4);
+        let (end, unit) = (chance.choose(&[End::First, End::Second]), chance.choose(&["deg/s", "rad/s"]));
         let position_m = if end == End::First { from_end_m } else { drop.scene.cask.length_m - from_end_m };
         let sensor = RateSensor {
             name: "W1".into(),
             position_m,
             unit: unit.into(),
             sample_rate_hz: drop.scene.channels[0].sample_rate_hz,
-            scale: 1.0 + chance.within(drop.stated.tolerances.calibration),
-            offset_rad_s: chance.even(-3.0, 3.0).to_radians(),
-            white_noise_rad_s: chance.log_even([0.05, 0.5]).to_radians(),
+            scale: 1.0 + chance.vary(drop.stated.tolerances.calibration),
+            offset_rad_s: chance.uniform(-3.0, 3.0).to_radians(),
+            white_noise_rad_s: chance.log_uniform([0.05, 0.5]).to_radians(),
         };
         let rate = Some(RateSpec { polarity: 1.0, calibration: None });
-        let read = ChannelSpec::plain("W1", end, "W1", position_m);
+        let read = ChannelSpec::new("W1", end, "W1", position_m);
         drop.stated.others.push(OtherSpec { read, unit: None, rate });
         let keys = ["drop.angular_velocity_deg_s", "tolerance.angular_velocity_deg_s"];
         drop.stated.defaults.extend(keys.map(str::to_owned));

@@ -1,4 +1,4 @@
-//! An analysis beside its truth to a row, and a row to what became of its scene.
+//! Compares an analysis with its truth as a row, and derives the outcome of the scene from the row.
 
 use crate::data::{Analysis, Estimate, Severity, Verdict};
 use crate::lab::data::{
@@ -12,14 +12,14 @@ use std::collections::BTreeMap;
 /// which is one half-width, short of the truth.
 const MISSED_BY: f64 = 2.0;
 
-/// A scene, drawn, struck by its damage and recorded.
+/// A scene, drawn, damaged and recorded.
 pub(super) struct RecordedScene {
     pub drop: DrawnDrop,
     pub damage: Option<Damage>,
     pub recording: SyntheticRecording,
 }
 
-/// The row of a scene; no analysis: the recording was refused.
+/// The row of a scene; without an analysis the recording was refused.
 pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {
     let RecordedScene { drop, damage, recording } = recorded;
     let truth = drop.motion.truth;
@@ -43,7 +43,8 @@ pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<
     }
 }
 
-/// What is scored, by name; the times of first contact and slap-down count from the first sample, s.
+/// Pairs each scored quantity with its name; the times of first contact and slap-down count from the first
+/// sample, s.
 fn quantities(
     truth: &Truth,
     times_s: (f64, Option<f64>),
@@ -79,12 +80,12 @@ fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
     names
 }
 
-/// What became of a scene.
+/// Outcome of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SceneOutcome {
     /// Passed, and right.
     Right,
-    /// Not passed, but its numbers hold.
+    /// Not passed, but its intervals hold the truth.
     Covered,
     /// Not passed, and without numbers or with wrong ones.
     Caught,
@@ -93,7 +94,7 @@ pub enum SceneOutcome {
 }
 
 impl SceneOutcome {
-    /// From the best to the worst.
+    /// All outcomes, from the best to the worst.
     pub(super) const ALL: [Self; 4] = [Self::Right, Self::Covered, Self::Caught, Self::Missed];
 
     /// "right", "covered" and so on.
@@ -102,7 +103,7 @@ impl SceneOutcome {
     }
 }
 
-/// What became of the scene of this row, by speed and k.
+/// Outcome of the scene of this row, by speed and k.
 pub fn outcome(row: &CampaignRow) -> SceneOutcome {
     let off = ["speed", "k"].map(|name| row.quantities.get(name).and_then(half_widths_off));
     let worst = off.iter().flatten().fold(0.0_f64, |worst, off| worst.max(*off));
@@ -115,7 +116,7 @@ pub fn outcome(row: &CampaignRow) -> SceneOutcome {
     }
 }
 
-/// Whether the row passed and is wrong.
+/// True if the row passed although a number is wrong.
 pub(in crate::lab) fn is_missed(row: &CampaignRow) -> bool {
     outcome(row) == SceneOutcome::Missed
 }
@@ -126,7 +127,7 @@ pub(in crate::lab) fn half_widths_off(scored: &Scored) -> Option<f64> {
     Some(half_widths_between(stated, truth))
 }
 
-/// The same of a statement.
+/// Half-widths between a statement and the truth.
 pub(in crate::lab) fn half_widths_between(stated: Stated, truth: f64) -> f64 {
     // No number at all is as far off as can be.
     let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);

@@ -1,5 +1,4 @@
-//! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
-//! often it says so.
+//! The document of a campaign: errors of the analysis, coverage of its intervals, and its warnings.
 
 use super::score::SceneOutcome;
 use super::tally::{ClassTable, QUANTITIES, SceneGroup, Spread, Tally};
@@ -15,7 +14,7 @@ pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally))
 }
 
-/// The scenes of a class behind its words.
+/// The scenes of a class with its words.
 type NamedGroup<'a> = (&'a str, &'a SceneGroup);
 
 fn document(tally: &Tally) -> ReportDocument {
@@ -30,8 +29,8 @@ fn document(tally: &Tally) -> ReportDocument {
         tally.request.seed,
         if tally.request.exact { ", what is stated exactly true" } else { "" },
     );
-    let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
-    let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
+    let mut chapters = vec![Chapter::new("").then(ChapterPart::text(summary))];
+    let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).then(table));
     if !undamaged.is_empty() {
         chapter("Errors and intervals", intervals(&undamaged));
     }
@@ -42,11 +41,11 @@ fn document(tally: &Tally) -> ReportDocument {
     if !damaged.is_empty() {
         chapter("Damaged scenes, by kind", damages(&damaged));
     }
-    chapters.push(Chapter::new("Passed and wrong").with_all(missed(tally)));
+    chapters.push(Chapter::new("Passed and wrong").with_all(list_missed(tally)));
     ReportDocument { chapters, ..ReportDocument::default() }
 }
 
-/// A number with this many decimals; a dash where there is none.
+/// Formats a number with this many decimals; a dash if it is not finite.
 fn number(value: f64, decimals: usize) -> String {
     optional_fixed(Some(value), decimals)
 }
@@ -57,18 +56,18 @@ fn share(part: usize, of: usize) -> String {
 }
 
 impl Spread {
-    /// The error that this share of the scenes stays below.
+    /// The error that this share of the scenes does not exceed.
     pub(super) fn error(&self, share: f64, decimals: usize) -> String {
         number(self.errors.quantile(share), decimals)
     }
 
-    /// The half-width that half of the scenes stay below.
+    /// The half-width that half of the scenes do not exceed.
     pub(super) fn half_width(&self, decimals: usize) -> String {
         number(self.half_widths.quantile(0.5), decimals)
     }
 
-    /// How many of the intervals hold the truth.
-    pub(super) fn held(&self) -> String {
+    /// Says how many of the intervals hold the truth.
+    pub(super) fn count_held(&self) -> String {
         share(self.held, self.count())
     }
 }
@@ -78,7 +77,7 @@ fn intervals<'a>(groups: &[NamedGroup<'a>]) -> ChapterPart {
         QUANTITIES.map(|(quantity, shown, _, decimals)| (name, shown, decimals, of.spread(quantity)))
     };
     let spreads: Vec<_> = groups.iter().flat_map(of_group).collect();
-    ReportTable::of(&spreads)
+    ReportTable::from_rows(&spreads)
         .text("scenes", |(name, ..)| *name)
         .text("quantity", |(_, shown, ..)| *shown)
         .number("stated", |(.., spread)| spread.count().to_string())
@@ -86,19 +85,19 @@ fn intervals<'a>(groups: &[NamedGroup<'a>]) -> ChapterPart {
         .number("95th", |(_, _, decimals, spread)| spread.error(0.95, *decimals))
         .number("largest", |(_, _, decimals, spread)| spread.error(1.0, *decimals))
         .number("half-width: median", |(_, _, decimals, spread)| spread.half_width(*decimals))
-        .number("holds the truth", |(.., spread)| spread.held())
+        .number("holds the truth", |(.., spread)| spread.count_held())
         .into()
 }
 
-/// How many of each group pass, how far off they are, and how often each interval holds.
+/// Table of the groups: how many scenes pass, their errors, and the coverage of the intervals.
 fn coverage(groups: &[NamedGroup]) -> ChapterPart {
-    let held = |scenes: &SceneGroup, name| scenes.spread(name).held();
-    ReportTable::of(groups)
+    let held = |scenes: &SceneGroup, name| scenes.spread(name).count_held();
+    ReportTable::from_rows(groups)
         .text("drops", |(words, _)| *words)
         .number("scenes", |(_, scenes)| scenes.len().to_string())
         .number("pass", |(_, scenes)| share(scenes.count(|s| s.verdict == Some(Verdict::Pass)), scenes.len()))
         .number("no numbers", |(_, scenes)| share(scenes.count(|s| !s.has_numbers), scenes.len()))
-        .number("covered", |(_, scenes)| share(scenes.with(SceneOutcome::Covered), scenes.len()))
+        .number("covered", |(_, scenes)| share(scenes.count_outcome(SceneOutcome::Covered), scenes.len()))
         .number("speed: 95th, %", |(_, scenes)| scenes.spread("speed").error(0.95, 2))
         .number("k: 95th", |(_, scenes)| scenes.spread("k").error(0.95, 4))
         .number("held: speed", |(_, scenes)| held(scenes, "speed"))
@@ -106,25 +105,26 @@ fn coverage(groups: &[NamedGroup]) -> ChapterPart {
         .number("ω", |(_, scenes)| held(scenes, "omega"))
         .number("v_z", |(_, scenes)| held(scenes, "vertical"))
         .number("v_x", |(_, scenes)| held(scenes, "horizontal"))
-        .number("missed", |(_, scenes)| scenes.with(SceneOutcome::Missed).to_string())
+        .number("missed", |(_, scenes)| scenes.count_outcome(SceneOutcome::Missed).to_string())
         .into()
 }
 
 /// The outcomes of every kind of damage.
 fn damages(groups: &[NamedGroup]) -> ChapterPart {
-    let mut table = ReportTable::of(groups)
+    let mut table = ReportTable::from_rows(groups)
         .text("damage", |(kind, _)| *kind)
         .number("scenes", |(_, scenes)| scenes.len().to_string());
     for outcome in SceneOutcome::ALL {
-        table = table.number(outcome.word(), |(_, scenes)| scenes.with(outcome).to_string());
+        table = table.number(outcome.word(), |(_, scenes)| scenes.count_outcome(outcome).to_string());
     }
-    let missed_per_200 =
-        |scenes: &SceneGroup| 200.0 * as_f64(scenes.with(SceneOutcome::Missed)) / as_f64(scenes.len());
+    let missed_per_200 = |scenes: &SceneGroup| {
+        200.0 * as_f64(scenes.count_outcome(SceneOutcome::Missed)) / as_f64(scenes.len())
+    };
     table.number("missed per 200", |(_, scenes)| number(missed_per_200(scenes), 1)).into()
 }
 
-/// The scenes that passed and are wrong, as many as are listed.
-fn missed(tally: &Tally) -> Vec<ChapterPart> {
+/// Lists the scenes that passed although they are wrong, up to a limit.
+fn list_missed(tally: &Tally) -> Vec<ChapterPart> {
     if tally.missed.is_empty() {
         return vec![ChapterPart::text("None.")];
     }
@@ -135,10 +135,10 @@ fn missed(tally: &Tally) -> Vec<ChapterPart> {
     };
     let stated = |row: &CampaignRow, name, decimals| {
         let words = |e: Stated| format!("{} ± {}", number(e.value, decimals), number(e.u95, decimals));
-        row.stated(name).map_or_else(|| "–".to_owned(), words)
+        row.find_stated(name).map_or_else(|| "–".to_owned(), words)
     };
     let truth = |row: &CampaignRow, name, decimals| optional_fixed(row.truth(name), decimals);
-    let table = ReportTable::of(&tally.missed)
+    let table = ReportTable::from_rows(&tally.missed)
         .text("scene", |row| row.scene.to_string())
         .text("damage", damage)
         .number("speed", |row| stated(row, "speed", 3))

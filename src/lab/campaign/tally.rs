@@ -1,15 +1,15 @@
-//! Rows, one after the other, to the counts of the scenes of each class that stand in the tables. They add up
-//! exactly in whatever order and parts the rows are counted.
+//! Counts rows, one after the other, for the tables of each class of scenes. The counts add up exactly in
+//! whatever order and parts the rows are counted.
 
 use super::DamageKind;
 use super::score::{SceneOutcome, outcome};
 use crate::data::Verdict;
 use crate::lab::data::{CampaignRequest, CampaignRow, Stated};
 use crate::lab::drawn::{BUILDS, DRAWN};
-use crate::numerics::robust::quantile_of;
+use crate::numerics::robust::quantile_by;
 use std::collections::BTreeMap;
 
-/// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
+/// Quantities by their names in scores and in tables; true if in percent of the truth; decimals.
 pub(super) const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("speed", "slap-down speed, %", true, 2),
     ("k", "k", false, 4),
@@ -23,8 +23,8 @@ pub(super) const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("slap_down_time", "time of the slap-down, s", false, 6),
 ];
 
-/// Magnitudes counted in bins a five-hundredth of themselves wide: what is read off is right to a thousandth,
-/// and of however many there are some thousand counts are kept.
+/// Magnitudes counted in bins of a relative width of 1/500: quantiles are accurate to a thousandth, with at
+/// most some thousand counts.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Magnitudes {
     bins: BTreeMap<u32, u32>,
@@ -32,26 +32,26 @@ pub(super) struct Magnitudes {
     largest: f64,
 }
 
-/// Bits of a number that are left out of its bin: all but sign, exponent and nine of its fraction.
+/// Low bits of a number that its bin ignores: all but sign, exponent and nine of its fraction.
 const BITS_LEFT_OUT: u32 = 43;
 
 impl Magnitudes {
     fn add(&mut self, value: f64) {
         let value = if value.is_nan() { f64::INFINITY } else { value.abs() };
-        // Bits of positive numbers are in their order.
+        // The bits of positive numbers have the same order as the numbers.
         let bin = u32::try_from(value.to_bits() >> BITS_LEFT_OUT).unwrap_or(u32::MAX);
         *self.bins.entry(bin).or_default() += 1;
         self.count += 1;
         self.largest = self.largest.max(value);
     }
 
-    /// The value below which this share lies; the largest is known as it is. NaN of none.
+    /// The value below which this share lies; the largest value is exact. NaN without values.
     pub(super) fn quantile(&self, share: f64) -> f64 {
-        quantile_of(self.count, share, |rank| self.at(rank))
+        quantile_by(self.count, share, |rank| self.value_at(rank))
     }
 
     /// The value of this rank: the middle of its bin.
-    fn at(&self, rank: usize) -> f64 {
+    fn value_at(&self, rank: usize) -> f64 {
         if rank + 1 == self.count {
             return self.largest;
         }
@@ -72,12 +72,12 @@ pub(super) struct Spread {
     pub errors: Magnitudes,
     /// Half-widths.
     pub half_widths: Magnitudes,
-    /// How many intervals hold the truth.
+    /// Number of intervals that hold the truth.
     pub held: usize,
 }
 
 impl Spread {
-    /// Counts one statement beside its truth, where there are both; `relative`: in percent of the truth.
+    /// Counts one statement with its truth, if both exist; `relative`: in percent of the truth.
     fn add(&mut self, both: Option<(Stated, f64)>, relative: bool) {
         let Some((stated, truth)) = both else { return };
         let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
@@ -87,19 +87,19 @@ impl Spread {
         self.half_widths.add(scale * stated.u95);
     }
 
-    /// How many statements there are.
+    /// Number of statements.
     pub(super) fn count(&self) -> usize {
         self.errors.count
     }
 }
 
-/// What is said of a scene in a word each.
+/// Words that describe a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct SceneWords {
     /// None where the recording was refused.
     pub verdict: Option<Verdict>,
     pub outcome: SceneOutcome,
-    /// Whether speed and k are stated.
+    /// True if speed and k are stated.
     pub has_numbers: bool,
 }
 
@@ -107,7 +107,7 @@ pub(super) struct SceneWords {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct SceneGroup {
     counts: BTreeMap<SceneWords, usize>,
-    /// By the name of what is stated.
+    /// Spread of each stated quantity, by its name.
     spreads: BTreeMap<&'static str, Spread>,
 }
 
@@ -118,32 +118,32 @@ impl SceneGroup {
         let words = SceneWords { verdict: row.verdict, outcome, has_numbers };
         *self.counts.entry(words).or_default() += 1;
         for (name, _, relative, _) in QUANTITIES {
-            self.spreads.entry(name).or_default().add(row.stated(name).zip(row.truth(name)), relative);
+            self.spreads.entry(name).or_default().add(row.find_stated(name).zip(row.truth(name)), relative);
         }
     }
 
-    /// How many scenes there are of which this is said.
+    /// Counts the scenes with a property.
     pub(super) fn count(&self, is_said: impl Fn(&SceneWords) -> bool) -> usize {
         self.counts.iter().filter(|(words, _)| is_said(words)).map(|(_, count)| count).sum()
     }
 
-    /// How many scenes there are.
+    /// Number of scenes.
     pub(super) fn len(&self) -> usize {
         self.count(|_| true)
     }
 
-    /// How many have this outcome.
-    pub(super) fn with(&self, outcome: SceneOutcome) -> usize {
+    /// Counts the scenes with this outcome.
+    pub(super) fn count_outcome(&self, outcome: SceneOutcome) -> usize {
         self.count(|words| words.outcome == outcome)
     }
 
-    /// What is counted of a quantity.
+    /// Spread of a quantity.
     pub(super) fn spread(&self, name: &str) -> Spread {
         self.spreads.get(name).cloned().unwrap_or_default()
     }
 }
 
-/// Scenes that passed and are wrong are listed up to this many.
+/// Scenes that passed although they are wrong are listed up to this many.
 const MOST_LISTED: usize = 1000;
 
 /// A table that has a row for each of several classes of scenes.
@@ -151,11 +151,11 @@ const MOST_LISTED: usize = 1000;
 pub(super) enum ClassTable {
     /// Undamaged drops: those that passed, then all.
     Undamaged,
-    /// Drops with which nothing is wrong, by kind, then all.
+    /// Drops without a fault, by kind, then all.
     SoundKinds,
-    /// The same by cask, and by whether a number of theirs is small, middle or large.
+    /// Sound scenes by cask, and by small, middle or large values of their numbers.
     SoundClasses,
-    /// Drops with something wrong, by kind, then all.
+    /// Drops with a fault, by kind, then all.
     DamagedKinds,
 }
 
@@ -163,7 +163,7 @@ pub(super) enum ClassTable {
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct SceneClass {
     table: ClassTable,
-    /// Which row of it.
+    /// Row within the table.
     place: usize,
     words: String,
 }
@@ -174,7 +174,7 @@ impl SceneClass {
     }
 }
 
-/// The place of all scenes of a table.
+/// The row of all scenes of a table.
 const LAST: usize = usize::MAX;
 
 /// The classes that a scene belongs to.
@@ -197,7 +197,7 @@ fn classes(row: &CampaignRow) -> Vec<SceneClass> {
     classes
 }
 
-/// The two kinds of bodies, as classes and limits name them.
+/// The two kinds of bodies, with the names of classes and limits.
 pub(in crate::lab) const BODIES: [&str; 2] = ["rigid bodies with modes", "elastic bodies"];
 
 /// Body, cask, and small, middle or large numbers.
@@ -208,7 +208,7 @@ fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
     let cask = casks.zip(2..).find(|(name, _)| row.facts.cask.starts_with(name));
     let mut classes = vec![class(body, BODIES[body])];
     classes.extend(cask.map(|(name, i)| class(i, name)));
-    // Where the middle class begins and ends.
+    // The limits separate small, middle and large values.
     for (i, (name, unit, [low, high], number)) in (2 + BUILDS.len()..).zip([
         ("angle", "°", [5.0, 30.0], Some(row.facts.angle_deg)),
         ("contact", " ms", [3.0, 10.0], row.truth("duration").map(|contact_s| 1e3 * contact_s)),
@@ -231,13 +231,13 @@ fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
 pub struct Tally {
     pub(super) request: CampaignRequest,
     groups: BTreeMap<SceneClass, SceneGroup>,
-    /// The first of those that passed and are wrong.
+    /// The first scenes that passed although they are wrong.
     pub(super) missed: Vec<CampaignRow>,
     pub(super) missed_count: usize,
 }
 
 impl Tally {
-    /// Of no scene yet.
+    /// A tally without any scene.
     pub fn new(request: CampaignRequest) -> Self {
         Self { request, groups: BTreeMap::new(), missed: Vec::new(), missed_count: 0 }
     }

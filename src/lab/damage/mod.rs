@@ -1,4 +1,4 @@
-//! The table of damages to drops that have them: at a size that the campaign draws, or at one that grows
+//! The table of damages, and drops with them: with a size that the campaign draws, or with one that grows
 //! until the analysis fails.
 
 mod chain;
@@ -11,51 +11,52 @@ use super::drawn::{DrawnDrop, DropPlan};
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
-/// A row of `damages.tsv`: one thing that may be wrong with a recording or its cask file, or that makes a
-/// drop hard to tell.
+/// A row of `damages.tsv`: one damage to a recording or its cask file, or one property that makes a drop
+/// difficult.
 pub struct DamageKind {
-    /// What it is done to: "chain", "samples" or what is "stated"; "flight": of such a drop; "drop": of a
-    /// drop that grows harder; "sound": no damage, but a drop as there are some, which should pass.
+    /// Object of the damage: "chain", "samples" or "stated" (the cask file); "flight": a drop with such a
+    /// flight; "drop": a drop that grows more difficult; "sound": no damage, a rare kind of sound drop, which
+    /// should pass.
     of: &'static str,
-    /// Its name.
+    /// Name of the kind.
     pub name: &'static str,
-    /// Unit of the sizes; empty where there is one size only.
+    /// Unit of the sizes; empty if there is only one size.
     pub unit: &'static str,
-    /// From small to gross, for the campaign to draw from; empty: not in the campaign.
+    /// Sizes from small to gross, for the campaign to draw from; empty: not in the campaign.
     pub sizes: Vec<f64>,
-    /// What the drop must be like, in words of [`Wish::of`].
+    /// Requirements on the drop, in words of [`Wish::parse`].
     needs: &'static str,
-    /// Codes of which a finding must name at least one where it is gross; empty: nothing need tell it.
-    pub(super) told_by: Vec<&'static str>,
-    /// From harmless to gross: 13, 7, 4 or 1 of them; empty: does not grow.
+    /// Codes of findings, one of which must name the damage if it is gross; empty: no finding is required.
+    pub(super) expected_codes: Vec<&'static str>,
+    /// Sizes from harmless to gross: 13, 7, 4 or 1 of them; empty: does not grow.
     pub(super) growing: Vec<f64>,
-    /// What to measure at the site, because the recording may not tell; empty where it does.
+    /// Measurement at the site that replaces what the recording may not show; empty if it does.
     pub(super) instead: &'static str,
-    /// What it is, for a person.
+    /// Description for a reader.
     pub(super) what: &'static str,
 }
 
 static TABLE: LazyLock<Vec<DamageKind>> = LazyLock::new(|| {
     let lines = include_str!("damages.tsv").lines();
-    lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(DamageKind::of_line).collect()
+    lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(DamageKind::from_line).collect()
 });
 
-/// The kinds that the campaign draws from, of damage and of sound drops, in the order of its numbers.
-pub fn drawn() -> impl Iterator<Item = &'static DamageKind> {
+/// Kinds that the campaign draws from, of damage and of sound drops, in the order of its numbers.
+pub fn campaign_kinds() -> impl Iterator<Item = &'static DamageKind> {
     TABLE.iter().filter(|kind| !kind.sizes.is_empty())
 }
 
 /// The kinds that grow.
-pub(super) fn growing() -> impl Iterator<Item = &'static DamageKind> {
+pub(super) fn growing_kinds() -> impl Iterator<Item = &'static DamageKind> {
     TABLE.iter().filter(|kind| !kind.growing.is_empty())
 }
 
-/// The kind of this name.
-pub(super) fn named(name: &str) -> Option<&'static DamageKind> {
+/// The kind with this name.
+pub(super) fn find_kind(name: &str) -> Option<&'static DamageKind> {
     TABLE.iter().find(|kind| kind.name == name)
 }
 
-/// What the recorded full run found of the damage of this name, where it was silent.
+/// Result of the recorded full run for the damage of this name, if it was silent.
 pub(super) fn known_silence(name: &str) -> Option<KnownSilence> {
     let rows = include_str!("silent.tsv").lines().filter_map(|line| line.split_once('\t'));
     let (_, cells) = rows.into_iter().find(|(own, _)| *own == name)?;
@@ -64,8 +65,8 @@ pub(super) fn known_silence(name: &str) -> Option<KnownSilence> {
 }
 
 impl DamageKind {
-    /// Of cells between tabs; "-" is an empty one.
-    fn of_line(line: &'static str) -> Self {
+    /// Reads a line of cells between tabs; "-" is an empty cell.
+    fn from_line(line: &'static str) -> Self {
         let mut cells = line.split('\t').map(|cell| if cell == "-" { "" } else { cell });
         let mut next = || cells.next().unwrap_or_default();
         let numbers =
@@ -76,48 +77,48 @@ impl DamageKind {
             unit: next(),
             sizes: numbers(next()),
             needs: next(),
-            told_by: next().split_whitespace().collect(),
+            expected_codes: next().split_whitespace().collect(),
             growing: numbers(next()),
             instead: next(),
             what: next(),
         }
     }
 
-    /// Whether it is no damage: its drops should pass, and their intervals hold.
+    /// True if the kind is not damage: its drops should pass, and their intervals hold.
     pub fn is_sound(&self) -> bool {
         self.of == "sound"
     }
 
-    /// What the drop must be like that is struck at this size.
+    /// Requirements on a drop with damage of this size.
     pub(super) fn wish(&self, size: f64) -> Wish {
-        Wish { kind: self.name, size, ..Wish::of(self.needs, size) }
+        Wish { kind: self.name, size, ..Wish::parse(self.needs, size) }
     }
 
     /// Damages the drop and its cask file, then its recording.
-    pub(super) fn strike(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
-        stated::strike(self.name, drop, size);
-        chain::strike(self.name, drop, size);
+    pub(super) fn apply(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
+        stated::apply(self.name, drop, size);
+        chain::apply(self.name, drop, size);
         let mut recording = drop.recorded();
-        samples::strike(self.name, drop, &mut recording, size);
+        samples::apply(self.name, drop, &mut recording, size);
         recording
     }
 
-    /// The drop of a sound plan, and its recording, grown to this size.
-    pub(super) fn grown(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
+    /// The drop of a sound plan, and its recording, with damage of this size.
+    pub(super) fn grow(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
         harden(self.name, &mut plan, size);
         let wish = self.wish(size);
         plan.contact = wish.contact.unwrap_or(plan.contact);
         let mut drop = plan.draw_with(|scene, stated, chance| wish.equip(scene, stated, chance));
-        let recording = self.strike(&mut drop, size);
+        let recording = self.apply(&mut drop, size);
         (drop, recording)
     }
 }
 
-/// A flight shows so many periods of a mode that has to be told by itself.
+/// A mode must show this many periods in a flight to be determined by itself.
 const CLEAR_PERIODS: f64 = 3.0;
 
-/// Hardens a sound plan; a kind of damage does nothing to it.
+/// Makes a sound plan more difficult; a kind of damage has no effect.
 fn harden(kind: &str, plan: &mut DropPlan, size: f64) {
     let flight_s = if kind.contains("mode") { plan.flight_s() } else { 1.0 };
     let clear = DropPlan::mode(1, CLEAR_PERIODS / flight_s);
@@ -167,7 +168,7 @@ mod tests {
         assert!(!rows.is_empty());
         for row in rows {
             let name = row.split('\t').next().expect("a name");
-            let kind = growing().find(|kind| kind.name == name).expect(name);
+            let kind = growing_kinds().find(|kind| kind.name == name).expect(name);
             let known = known_silence(name).expect(name);
             assert!(known.becomes.starts_with("unnoticed from") && known.off.parse::<f64>().is_ok(), "{row}");
             assert!(!kind.instead.is_empty(), "{name}");
@@ -176,7 +177,7 @@ mod tests {
 
     #[test]
     fn every_kind_does_something() {
-        let mut plan = DropPlan::of(ANF_18, 15.0, 0.5, 1);
+        let mut plan = DropPlan::new(ANF_18, 15.0, 0.5, 1);
         plan.rate_hz = 5e3;
         plan.contact = Contact::Coulomb(0.25);
         plan.chain.anti_alias_hz = Some(4e3);
@@ -186,26 +187,26 @@ mod tests {
             drop.stated.channels.push(drop.stated.channels[0].clone());
             drop
         };
-        let said = |drop: &DrawnDrop, recording: &SyntheticRecording| {
+        let describe = |drop: &DrawnDrop, recording: &SyntheticRecording| {
             format!("{:?} {:?} {recording:?}", drop.scene, drop.stated)
         };
-        let untouched = said(&sound(), &sound().recorded());
+        let untouched = describe(&sound(), &sound().recorded());
         for kind in TABLE.iter() {
             let size = kind.sizes.last().or(kind.growing.last()).copied().expect("a size");
             let mut struck = sound();
             let is_struck = {
-                let recording = kind.strike(&mut struck, size);
-                said(&struck, &recording) != untouched
+                let recording = kind.apply(&mut struck, size);
+                describe(&struck, &recording) != untouched
             };
             let is_hard = !kind.growing.is_empty() && {
-                let (hard, recording) = kind.grown(&plan, size);
+                let (hard, recording) = kind.grow(&plan, size);
                 assert!(!recording.channels.is_empty());
                 format!("{:?}", hard.scene) != format!("{:?}", plan.draw().scene)
             };
             let mut made = sound();
             kind.wish(size).fulfil(&mut made.scene, &mut made.stated, &mut made.chance);
-            let is_made = said(&made, &made.recorded()) != untouched;
-            let is_wished = Wish::of(kind.needs, size).flight != BetweenImpacts::Free;
+            let is_made = describe(&made, &made.recorded()) != untouched;
+            let is_wished = Wish::parse(kind.needs, size).flight != BetweenImpacts::Free;
             assert_eq!(is_struck, !["drop", "flight"].contains(&kind.of) && !is_made, "{}", kind.name);
             assert!(is_struck || is_hard || is_made || is_wished, "{}", kind.name);
         }

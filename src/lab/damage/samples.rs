@@ -1,24 +1,24 @@
-//! A damage that shows in the samples alone to the samples that have it.
+//! Damages that change the samples alone.
 
 use super::super::data::{SyntheticChannel, SyntheticRecording};
 use super::super::drawn::{DrawnDrop, DropPlan, unit_m_s2};
 use super::super::synth;
 use crate::data::{STANDARD_GRAVITY_M_S2, Unit};
-use crate::numerics::{as_count, as_f64, single};
+use crate::numerics::{as_count, as_f64, to_f32};
 use std::f64::consts::TAU;
 
-/// Damages the recording by `kind`; one that is done to something else does nothing to it.
-pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+/// Damages the recording by `kind`; kinds that belong to another object have no effect.
+pub(super) fn apply(kind: &str, case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     match kind {
         "non_finite" => non_finite(case, recording, size),
         "dead" => dies(case, recording, -1.0),
         "dies" => dies(case, recording, size / 100.0),
-        "unplugged" => unplugged(case, recording, size),
+        "unplugged" => unplug(case, recording, size),
         "limited_first" => limited(case, recording, 0, size),
         "limited_second" => limited(case, recording, 1, size),
-        "slewing" => slewing(case, recording, size),
-        "overloaded" => overloaded(case, recording, size),
-        "compressed" => compressed(case, recording, size),
+        "slewing" => limit_slew(case, recording, size),
+        "overloaded" => overload(case, recording, size),
+        "compressed" => compress(case, recording, size),
         "breaks" => breaks(case, recording, size),
         "loose_plug" => loose_plug(case, recording, size),
         "trigger" => trigger(case, recording, size),
@@ -34,8 +34,8 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut Synthetic
     }
 }
 
-/// One of A1 and A2.
-fn one<'a>(case: &mut DrawnDrop, recording: &'a mut SyntheticRecording) -> &'a mut SyntheticChannel {
+/// Picks A1 or A2 at random.
+fn pick<'a>(case: &mut DrawnDrop, recording: &'a mut SyntheticRecording) -> &'a mut SyntheticChannel {
     &mut recording.channels[case.chance.index(2)]
 }
 
@@ -60,55 +60,55 @@ fn peak(channel: &SyntheticChannel) -> f64 {
     channel.samples.iter().fold(0.0_f64, |peak, x| peak.max(f64::from(x.abs())))
 }
 
-/// Infinite samples here and there between first contact and slap-down.
+/// Puts infinite samples in random places between first contact and slap-down.
 fn non_finite(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let way_s = case.way_s();
-    let channel = one(case, recording);
+    let way_s = case.contact_to_strike_s();
+    let channel = pick(case, recording);
     for i in index(case, channel, -5e-3)..index(case, channel, way_s) {
-        if case.chance.is(size / 100.0) {
+        if case.chance.flip(size / 100.0) {
             channel.samples[i] = f32::INFINITY;
         }
     }
 }
 
-/// The value stays from a share of the way to the slap-down on; below 0: over the whole record.
+/// Freezes the value from a share of the time to the slap-down on; below 0 over the whole record.
 fn dies(case: &mut DrawnDrop, recording: &mut SyntheticRecording, share: f64) {
-    let way_s = case.way_s();
-    let channel = one(case, recording);
+    let way_s = case.contact_to_strike_s();
+    let channel = pick(case, recording);
     let from = if share < 0.0 { 0 } else { index(case, channel, share * way_s) };
     let held = channel.samples.get(from).copied().unwrap_or(0.0);
     channel.samples[from..].fill(held);
 }
 
-/// Nothing but noise and mains hum.
-fn unplugged(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let phase = case.chance.even(0.0, TAU);
-    let channel = one(case, recording);
+/// Replaces a channel by noise and mains hum.
+fn unplug(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let phase = case.chance.uniform(0.0, TAU);
+    let channel = pick(case, recording);
     let g = g_in(channel);
     for i in 0..channel.samples.len() {
         let hum = size * (TAU * 50.0 * time_s(case, channel, i) + phase).sin();
-        channel.samples[i] = single(g * (hum + 0.05 * case.chance.normal()));
+        channel.samples[i] = to_f32(g * (hum + 0.05 * case.chance.normal()));
     }
 }
 
 /// Noise of a converter, g.
 const CONVERTER_G: f64 = 0.1;
 
-/// An amplifier that limits at `size` percent below the peak, with the converter's noise behind it.
+/// Limits the signal at `size` percent below the peak, with the converter's noise after it.
 fn limited(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usize, size: f64) {
     let channel = &mut recording.channels[which];
     let (limit, noise) = ((1.0 - size / 100.0) * peak(channel), CONVERTER_G * g_in(channel));
     for sample in &mut channel.samples {
-        *sample = single(f64::from(*sample).clamp(-limit, limit) + noise * case.chance.normal());
+        *sample = to_f32(f64::from(*sample).clamp(-limit, limit) + noise * case.chance.normal());
     }
     case.stated.channels[which].full_scale = None;
 }
 
-/// An amplifier that follows no slope steeper than `size` percent below the steepest.
-fn slewing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let channel = one(case, recording);
+/// Limits the slope to `size` percent below the steepest.
+fn limit_slew(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let channel = pick(case, recording);
     let steepest = channel.samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
-    let most = single((1.0 - size / 100.0) * f64::from(steepest));
+    let most = to_f32((1.0 - size / 100.0) * f64::from(steepest));
     let mut reads = channel.samples.first().copied().unwrap_or(0.0);
     for sample in &mut channel.samples {
         reads += (*sample - reads).clamp(-most, most);
@@ -116,10 +116,10 @@ fn slewing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) 
     }
 }
 
-/// An amplifier that limits at `size` percent below the peak, and recovers from it within 5 to 50 ms.
-fn overloaded(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let fades_s = case.chance.log_even([5e-3, 50e-3]);
-    let channel = one(case, recording);
+/// Limits the signal at `size` percent below the peak, with a recovery within 5 to 50 ms.
+fn overload(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let fades_s = case.chance.log_uniform([5e-3, 50e-3]);
+    let channel = pick(case, recording);
     let limit = (1.0 - size / 100.0) * peak(channel);
     let kept = (-1.0 / (fades_s * channel.sample_rate_hz)).exp();
     let mut charged = 0.0;
@@ -127,85 +127,85 @@ fn overloaded(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f6
         let force = f64::from(*sample);
         let beyond = force - force.clamp(-limit, limit);
         charged = kept * charged - (1.0 - kept) * beyond;
-        *sample = single(force - beyond + charged);
+        *sample = to_f32(force - beyond + charged);
     }
 }
 
-/// An amplifier that reads the peak by `size` percent too little, and less force by less: by its cube.
-fn compressed(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let channel = one(case, recording);
+/// Reads the peak too low by `size` percent, and smaller forces by less: by the cube of the reading.
+fn compress(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
+    let channel = pick(case, recording);
     let peak = peak(channel);
     for sample in &mut channel.samples {
         let force = f64::from(*sample);
-        *sample = single(force * (1.0 - size / 100.0 * (force / peak).powi(2)));
+        *sample = to_f32(force * (1.0 - size / 100.0 * (force / peak).powi(2)));
     }
 }
 
-/// A cable that breaks after `size` percent of the way to the slap-down: noise from there on, about 0 or at a
+/// Breaks the cable after `size` percent of the time to the slap-down: noise from there on, about 0 or at a
 /// rail.
 fn breaks(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let since_s = size / 100.0 * case.way_s();
-    let rail = if case.chance.is(0.5) { case.chance.sign() } else { 0.0 };
-    let channel = one(case, recording);
+    let since_s = size / 100.0 * case.contact_to_strike_s();
+    let rail = if case.chance.flip(0.5) { case.chance.sign() } else { 0.0 };
+    let channel = pick(case, recording);
     let (level, noise, from) =
         (rail * peak(channel), CONVERTER_G * g_in(channel), index(case, channel, since_s));
     for sample in &mut channel.samples[from..] {
-        *sample = single(level + noise * case.chance.normal());
+        *sample = to_f32(level + noise * case.chance.normal());
     }
 }
 
-/// A plug that lets go for 0.3 to 2 ms, `size` times between first contact and slap-down.
+/// Disconnects the plug for 0.3 to 2 ms, `size` times between first contact and slap-down.
 fn loose_plug(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let way_s = case.way_s();
-    let channel = one(case, recording);
+    let way_s = case.contact_to_strike_s();
+    let channel = pick(case, recording);
     for _ in 0..as_count(size) {
-        let (since_s, long_s) = (case.chance.even(0.0, way_s), case.chance.log_even([3e-4, 2e-3]));
+        let (since_s, long_s) = (case.chance.uniform(0.0, way_s), case.chance.log_uniform([3e-4, 2e-3]));
         let span = index(case, channel, since_s)..index(case, channel, since_s + long_s);
         channel.samples[span].fill(0.0);
     }
 }
 
-/// What a trigger couples into a channel within the first contact: `size` percent of the peak, which fades
-/// within half a millisecond.
+/// Adds the pulse that a trigger couples into a channel within the first contact: `size` percent of the peak,
+/// fading within half a millisecond.
 fn trigger(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     const FADES_S: f64 = 5e-4;
-    let since_s = case.chance.even(0.0, case.contact_s());
+    let since_s = case.chance.uniform(0.0, case.contact_s());
     let share = case.chance.sign() * size / 100.0;
-    let channel = one(case, recording);
+    let channel = pick(case, recording);
     let (amplitude, fades) = (share * peak(channel), FADES_S * channel.sample_rate_hz);
     let from = index(case, channel, since_s);
     for (i, sample) in channel.samples[from..].iter_mut().enumerate() {
-        *sample += single(amplitude * (-as_f64(i) / fades).exp());
+        *sample += to_f32(amplitude * (-as_f64(i) / fades).exp());
     }
 }
 
 /// A slope over the whole record.
 fn drift(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let slope = size * case.chance.sign();
-    let channel = one(case, recording);
+    let channel = pick(case, recording);
     let g = g_in(channel);
     for i in 0..channel.samples.len() {
         let since_s = time_s(case, channel, i) + case.scene.before_s;
-        channel.samples[i] += single(g * slope * since_s);
+        channel.samples[i] += to_f32(g * slope * since_s);
     }
 }
 
-/// Single samples off by half to twice the peak, between 20 ms before first contact and the slap-down.
+/// Changes single samples by half to twice the peak, between 20 ms before first contact and the slap-down.
 fn spikes(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let way_s = case.way_s();
-    let channel = one(case, recording);
+    let way_s = case.contact_to_strike_s();
+    let channel = pick(case, recording);
     let peak = peak(channel);
     for _ in 0..as_count(size) {
-        let since_s = case.chance.even(-20e-3, way_s);
+        let since_s = case.chance.uniform(-20e-3, way_s);
         let at = index(case, channel, since_s);
-        let off = case.chance.sign() * case.chance.even(0.5, 2.0) * peak;
+        let off = case.chance.sign() * case.chance.uniform(0.5, 2.0) * peak;
         if let Some(sample) = channel.samples.get_mut(at) {
-            *sample += single(off);
+            *sample += to_f32(off);
         }
     }
 }
 
-/// Strain of the base, in step with the bending that the first end's force makes.
+/// Adds base strain in step with the bending from the first end's force.
 fn base_strain(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     let first = &recording.channels[0];
     let mode = DropPlan::mode(1, case.scene.modes.first().map_or(100.0, |mode| mode.frequency_hz));
@@ -221,54 +221,54 @@ fn base_strain(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f
     let bending: Vec<f64> = bending.collect();
     let most = bending.iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
     let share = case.chance.sign() * size / 100.0;
-    let channel = one(case, recording);
+    let channel = pick(case, recording);
     let amplitude = share * peak(channel);
-    channel.samples.iter_mut().zip(bending).for_each(|(x, bent)| *x += single(amplitude * bent / most));
+    channel.samples.iter_mut().zip(bending).for_each(|(x, bent)| *x += to_f32(amplitude * bent / most));
 }
 
-/// What heat leaves in a channel from the peak of its first impact on, which fades within 5 to 100 ms.
+/// Adds the drift from heat in a channel from the peak of its first impact on, fading within 5 to 100 ms.
 fn thermal(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    let (share, fades_s) = (case.chance.sign() * size / 100.0, case.chance.log_even([5e-3, 0.1]));
-    let half_way_s = case.way_s() / 2.0;
+    let (share, fades_s) = (case.chance.sign() * size / 100.0, case.chance.log_uniform([5e-3, 0.1]));
+    let half_way_s = case.contact_to_strike_s() / 2.0;
     let which = case.chance.index(2);
     let channel = &mut recording.channels[which];
     let (from, to) = (index(case, channel, 0.0), index(case, channel, half_way_s));
     let struck = (from..to).max_by(|a, b| channel.samples[*a].abs().total_cmp(&channel.samples[*b].abs()));
     let (amplitude, fades) = (share * peak(channel), fades_s * channel.sample_rate_hz);
     for (i, sample) in channel.samples.iter_mut().skip(struck.unwrap_or(to)).enumerate() {
-        *sample += single(amplitude * (-as_f64(i) / fades).exp());
+        *sample += to_f32(amplitude * (-as_f64(i) / fades).exp());
     }
 }
 
-/// The structure rings between half and three times the sample rate after both impacts, and no filter takes
-/// it off.
+/// Adds ringing of the structure between half and three times the sample rate after both impacts, without a
+/// filter against it.
 fn aliasing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
-    /// Ringing of a bolted structure at tens of kilohertz fades within this, s.
+    /// Time in which ringing of a bolted structure at tens of kilohertz fades, s.
     const FADES_S: f64 = 3e-3;
-    let way_s = case.way_s();
-    let times_rate = case.chance.even(0.5, 3.0);
+    let way_s = case.contact_to_strike_s();
+    let times_rate = case.chance.uniform(0.5, 3.0);
     for channel in &mut recording.channels {
         let amplitude = size / 100.0 * peak(channel);
         for struck_s in [0.0, way_s] {
-            let phase = case.chance.even(0.0, TAU);
+            let phase = case.chance.uniform(0.0, TAU);
             for i in index(case, channel, struck_s)..channel.samples.len() {
                 let since_s = time_s(case, channel, i) - struck_s;
                 let fading = amplitude * (-since_s / FADES_S).exp();
                 let swing = (TAU * times_rate * channel.sample_rate_hz * since_s + phase).sin();
-                channel.samples[i] += single(fading * swing);
+                channel.samples[i] += to_f32(fading * swing);
             }
         }
     }
 }
 
-/// Cask file and recording both say `unit`, and the samples are in the other one.
+/// Writes samples in another unit than `unit`, which cask file and recording both state.
 fn unit(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64, unit: Unit) {
     let (only, all) = (case.chance.index(2), size > 1.5);
     for (i, channel) in recording.channels.iter_mut().enumerate() {
-        // What the samples must be multiplied by to be in the unit that is not stated.
+        // The factor converts the samples to the unit that is not stated.
         let factor = unit_m_s2(&channel.unit) / if unit == Unit::G { 1.0 } else { STANDARD_GRAVITY_M_S2 };
         if all || i == only {
-            channel.samples.iter_mut().for_each(|x| *x = single(f64::from(*x) * factor));
+            channel.samples.iter_mut().for_each(|x| *x = to_f32(f64::from(*x) * factor));
             if unit == Unit::G { "g" } else { "m/s^2" }.clone_into(&mut channel.unit);
             case.stated.channels[i].unit = Some(unit);
         }

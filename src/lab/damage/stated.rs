@@ -1,10 +1,10 @@
-//! A wrong statement to the cask file that makes it.
+//! Wrong statements in the cask file.
 
 use super::super::drawn::DrawnDrop;
 use crate::data::{Contact, block_inertia_kg_m2};
 
-/// Damages what is stated by `kind`; one that is done to something else does nothing to it.
-pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
+/// Damages the cask file by `kind`; kinds that belong to another object have no effect.
+pub(super) fn apply(kind: &str, case: &mut DrawnDrop, size: f64) {
     match kind {
         "stated_position" => position(case, size),
         "stated_angle" => {
@@ -21,11 +21,11 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
         "stated_rough" | "stated_rough_axial" => state(case, Contact::Rough),
         "stated_smooth" | "stated_smooth_axial" => state(case, Contact::Smooth),
         "stated_cog" => {
-            given(case, "cask.cog_m");
+            state_key(case, "cask.cog_m");
             case.stated.cask.cog_m += case.chance.sign() * size;
         }
         "stated_inertia" => {
-            given(case, "cask.inertia_kg_m2");
+            state_key(case, "cask.inertia_kg_m2");
             case.stated.cask.inertia_kg_m2 *= case.chance.factor(size);
         }
         "stated_length" => length(case, size),
@@ -39,12 +39,12 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
     }
 }
 
-/// A key of the cask file that is given after all.
-fn given(case: &mut DrawnDrop, key: &str) {
+/// States a key of the cask file that had been omitted.
+fn state_key(case: &mut DrawnDrop, key: &str) {
     case.stated.defaults.retain(|default| default != key);
 }
 
-/// One of A1 and A2 somewhere else along the cask; still on it, so that nothing but the data can tell.
+/// Moves A1 or A2 along the cask; the position stays on the cask, so that only the data can reveal it.
 fn position(case: &mut DrawnDrop, size: f64) {
     let (which, sign) = (case.chance.index(2), case.chance.sign());
     let length_m = case.stated.cask.length_m;
@@ -54,11 +54,11 @@ fn position(case: &mut DrawnDrop, size: f64) {
 }
 
 fn state(case: &mut DrawnDrop, contact: Contact) {
-    given(case, "contact.friction");
+    state_key(case, "contact.friction");
     case.stated.contact = contact;
 }
 
-/// The second end elsewhere than stated; what sits on the cask stays where it is, and on it.
+/// Moves the second end away from its stated position; sensors keep their positions, within the cask.
 fn length(case: &mut DrawnDrop, size: f64) {
     let drawn = case.chance.factor(size);
     let reach_m = case.stated.channels.iter().map(|spec| spec.position_m).fold(0.0, f64::max);
@@ -67,7 +67,7 @@ fn length(case: &mut DrawnDrop, size: f64) {
     follow(case);
 }
 
-/// What the cask file leaves out follows from the sizes that it states.
+/// Derives the values that the cask file omits from the sizes that it states.
 fn follow(case: &mut DrawnDrop) {
     let is_left = |key: &str| case.stated.defaults.iter().any(|default| default == key);
     let cask = &mut case.stated.cask;

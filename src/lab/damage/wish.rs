@@ -1,13 +1,13 @@
-//! Words of the table to what a damage needs of the drop that it strikes, and a kind of drop to the scene
-//! that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
+//! Requirements of a damage on its drop, from words in the table, and the scene of a kind of drop: cask,
+//! contents, ends, fall, and their statements.
 
 use super::super::chance::Chance;
-use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
+use super::super::data::{LooseMass, Scene, SceneChannel, slow_down};
 use super::super::drawn::{LEAST_FRICTION, cask_file};
 use super::super::synth;
 use crate::data::{Axis, Cask, CaskFile, Contact};
 
-/// What happens between the two impacts.
+/// Motion between the two impacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(in super::super) enum BetweenImpacts {
     /// L flies until R strikes.
@@ -15,32 +15,32 @@ pub(in super::super) enum BetweenImpacts {
     Free,
     /// L touches again before.
     LandsAgain,
-    /// The same as free, for so short a time that no undamaged drop has it.
+    /// A free flight too short for any undamaged drop.
     Short,
 }
 
-/// What a damage needs of the drop that it strikes; by default nothing, as of an undamaged one.
+/// Requirements of a damage on its drop; by default none, as for an undamaged drop.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in super::super) struct Wish {
-    /// What happens between the impacts.
+    /// Motion between the impacts.
     pub flight: BetweenImpacts,
-    /// The contact of L, as it is where the kind does not change it.
+    /// The true contact of L, if the kind does not change it.
     pub contact: Option<Contact>,
-    /// Whether there is an axial channel; `None`: as it comes.
+    /// True if there is an axial channel; `None` leaves it to chance.
     pub axial: Option<bool>,
-    /// Whether the rest before the release is recorded; `None`: as it comes.
+    /// True if the rest before the release is recorded; `None` leaves it to chance.
     pub rest: Option<bool>,
     /// Two transverse channels on the first end.
     pub third_channel: bool,
-    /// The kind that it is for, and its size; empty for an undamaged drop.
+    /// Kind of damage, and its size; empty for an undamaged drop.
     pub kind: &'static str,
     /// See `kind`.
     pub size: f64,
 }
 
 impl Wish {
-    /// Of words such as "friction no_axial", for a damage of this size.
-    pub(super) fn of(words: &str, size: f64) -> Self {
+    /// Reads words such as "friction no_axial", for a damage of this size.
+    pub(super) fn parse(words: &str, size: f64) -> Self {
         let has = |word: &str| words.split(' ').any(|one| one == word);
         let either = |yes: &str, no: &str| has(yes).then_some(true).or(has(no).then_some(false));
         let flights = [("lands_again", BetweenImpacts::LandsAgain), ("short_flight", BetweenImpacts::Short)];
@@ -79,16 +79,16 @@ impl Wish {
         self.fulfil(scene, stated, chance);
     }
 
-    /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of
-    /// something else does nothing.
+    /// Makes a scene and its cask file, both still without channels, fit the kind; kinds that belong to
+    /// another object have no effect.
     pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
         let Self { kind, size, .. } = *self;
         match kind {
             "turning" | "turning_unstated" => {
                 let more_rad_s = chance.sign() * size.to_radians();
-                scene.drop = scene.drop.turned(&scene.cask, more_rad_s);
+                scene.drop = scene.drop.add_rotation(&scene.cask, more_rad_s);
                 if kind == "turning" {
-                    stated.drop = stated.drop.turned(&stated.cask, more_rad_s);
+                    stated.drop = stated.drop.add_rotation(&stated.cask, more_rad_s);
                 }
             }
             "swinging" | "swinging_unstated" => {
@@ -100,48 +100,49 @@ impl Wish {
             }
             "guided" | "guided_seen" | "guided_rest" => {
                 scene.extras.guided = size / 100.0;
-                scene.drop = slowed(scene.drop, scene.extras.guided);
+                scene.drop = slow_down(scene.drop, scene.extras.guided);
             }
             "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
             "lock_up" => lock_up(size, scene),
             "footprint" | "footprint_wide" => scene.first_end.footprint = size,
             "friction_falls" | "rough_falls" => {
                 scene.contact = Contact::Coulomb(size);
-                let fast = (size * chance.even(0.3, 0.8)).max(LEAST_FRICTION);
-                scene.extras.falling_friction = Some((fast, chance.log_even([0.3, 3.0])));
+                let fast = (size * chance.uniform(0.3, 0.8)).max(LEAST_FRICTION);
+                scene.extras.falling_friction = Some((fast, chance.log_uniform([0.3, 3.0])));
             }
             "friction_changes" | "rough_changes" => {
                 scene.contact = Contact::Coulomb(size);
-                scene.extras.returning_friction = Some((size * chance.even(0.3, 1.5)).max(LEAST_FRICTION));
+                scene.extras.returning_friction = Some((size * chance.uniform(0.3, 1.5)).max(LEAST_FRICTION));
             }
             _ => {}
         }
     }
 }
 
-/// A body of `size` percent of the cask's mass, which rattles at both its ends with a play of 2 to 60 mm.
+/// Adds a body of `size` percent of the cask's mass, which rattles at both its ends with a play of 2 to 60
+/// mm.
 fn contents(size: f64, cask: &Cask, chance: &mut Chance) -> Vec<LooseMass> {
-    let play_m = chance.log_even([2e-3, 60e-3]);
-    let pulse_s = chance.even(1e-3, 3e-3);
+    let play_m = chance.log_uniform([2e-3, 60e-3]);
+    let pulse_s = chance.uniform(1e-3, 3e-3);
     let loose = |(nearest, farthest)| LooseMass {
         mass_kg: size / 200.0 * cask.mass_kg,
-        position_m: chance.even(nearest, farthest) * cask.length_m,
-        gap_m: chance.even(0.0, play_m),
+        position_m: chance.uniform(nearest, farthest) * cask.length_m,
+        gap_m: chance.uniform(0.0, play_m),
         play_m,
         pulse_s,
-        damping_s_m: chance.even(0.05, 0.4),
+        damping_s_m: chance.uniform(0.05, 0.4),
     };
     [(0.15, 0.4), (0.6, 0.85)].map(loose).into()
 }
 
-/// A limiter that yields at half of its elastic peak and locks up at `size` percent of the crush that it
-/// would then have, four times as stiff.
+/// Makes a limiter yield at half of its elastic peak and lock up at `size` percent of its crush, four times
+/// as stiff.
 fn lock_up(size: f64, scene: &mut Scene) {
     scene.first_end.yield_n = None;
     let peak_n = synth::simulate(scene).steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max);
     let loading_n_m = scene.first_end.loading_n_m;
     scene.first_end.yield_n = Some(0.5 * peak_n);
-    // The work F²/2 K of the elastic end is that of half the force over (2 + 1/2) F/2 K.
+    // The work F²/2 K of the elastic end equals that of half the force over (2 + 1/2) F/2 K.
     let crush_m = 1.25 * peak_n / loading_n_m;
     scene.first_end.lock_up = Some((size / 100.0 * crush_m, 4.0 * loading_n_m));
 }

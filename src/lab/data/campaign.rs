@@ -1,15 +1,15 @@
-//! A campaign of random scenes with known truth: what is asked for, and a row for each scene.
+//! A campaign of random scenes with known truth: its request, and a row for each scene.
 
-use crate::data::{Estimate, ReconstructionRung, Verdict, number_or_null};
+use crate::data::{Estimate, Method, Verdict, number_or_null};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Which scene of a campaign: with its seed it names the same drop for ever.
+/// Number of a scene in a campaign: with the seed it names the same drop for ever.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SceneNumber {
-    /// Nothing is wrong with it: U0, U1 …
+    /// An undamaged scene: U0, U1 …
     Undamaged(u32),
-    /// One thing is wrong with it, or it is of a sound kind: D0, D1 …
+    /// A scene with one damage, or of a sound kind: D0, D1 …
     Damaged(u32),
 }
 
@@ -48,35 +48,35 @@ impl<'de> Deserialize<'de> for SceneNumber {
     }
 }
 
-/// What a campaign is asked for.
+/// Request for a campaign.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CampaignRequest {
-    /// How many undamaged scenes, and how many of kinds.
+    /// Number of undamaged scenes, and of scenes with damage.
     pub scenes: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Kinds by name, or words for several: "all", "undamaged", "sound"; in one order and each once, so that
-    /// shards of the same campaign say the same.
+    /// Kinds by name, or words for several: "all", "undamaged", "sound"; sorted and unique, so that shards of
+    /// the same campaign agree.
     pub kinds: BTreeSet<String>,
-    /// Whether what is stated is exactly true.
+    /// True if the cask file is exactly true.
     pub exact: bool,
 }
 
-/// What is wrong with a scene.
+/// Damage to a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
     /// The kind, by name.
     pub kind: String,
-    /// How large, in `unit`.
+    /// Size, in `unit`.
     pub size: f64,
-    /// Unit of the size; empty where a kind has one size only.
+    /// Unit of the size; empty if a kind has only one size.
     pub unit: String,
 }
 
 /// A value with the half-width of its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stated {
-    /// The value; what is no number is null where it is written.
+    /// The value; written as null if it is not a number.
     #[serde(deserialize_with = "number_or_null")]
     pub value: f64,
     /// The half-width.
@@ -93,14 +93,14 @@ impl From<Estimate> for Stated {
 /// A measured quantity beside its truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scored {
-    /// As the analysis states it.
+    /// Result of the analysis.
     pub stated: Option<Stated>,
-    /// As it was, in the same unit.
+    /// True value, in the same unit.
     #[serde(rename = "true")]
     pub truth: Option<f64>,
 }
 
-/// What scenes are classed by: the rest of a scene comes again by its number.
+/// Properties by which scenes are classed: the number of a scene reproduces everything else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
     /// The cask, by name.
@@ -109,18 +109,18 @@ pub struct SceneFacts {
     pub angle_deg: f64,
     /// Rate of the first channel, Hz.
     pub rate_hz: f64,
-    /// Whether the body is an elastic beam.
+    /// True if the body is an elastic beam.
     pub elastic: bool,
 }
 
-/// One scene of a campaign: what a line of it says.
+/// One scene of a campaign: the content of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignRow {
-    /// Which.
+    /// Number of the scene.
     pub scene: SceneNumber,
-    /// What is wrong with it.
+    /// Damage to the scene.
     pub damage: Option<Damage>,
-    /// The word of the analysis; none where the recording is refused.
+    /// Verdict of the analysis; `None` if the recording was refused.
     pub verdict: Option<Verdict>,
     /// Codes of the errors, each once.
     pub errors: Vec<String>,
@@ -128,24 +128,24 @@ pub struct CampaignRow {
     pub warnings: Vec<String>,
     /// The quantities, by name.
     pub quantities: BTreeMap<String, Scored>,
-    /// The rung of the reconstruction taken.
-    pub rung: Option<ReconstructionRung>,
-    /// What it is classed by.
+    /// The selected reconstruction method.
+    pub rung: Option<Method>,
+    /// Properties by which the scene is classed.
     pub facts: SceneFacts,
 }
 
 impl CampaignRow {
-    /// What is stated of a quantity.
-    pub fn stated(&self, quantity: &str) -> Option<Stated> {
+    /// Statement of a quantity, if there is one.
+    pub fn find_stated(&self, quantity: &str) -> Option<Stated> {
         self.quantities.get(quantity)?.stated
     }
 
-    /// Whether it states speed and k.
+    /// True if the row states speed and k.
     pub fn has_numbers(&self) -> bool {
-        ["speed", "k"].iter().all(|name| self.stated(name).is_some())
+        ["speed", "k"].iter().all(|name| self.find_stated(name).is_some())
     }
 
-    /// The truth of a quantity.
+    /// True value of a quantity.
     pub fn truth(&self, quantity: &str) -> Option<f64> {
         self.quantities.get(quantity)?.truth
     }

@@ -1,20 +1,20 @@
-//! A scene for `synth`: the cask, how it is dropped and struck, what rings in it, and the measuring chain.
+//! A scene for `synth`: the cask, its drop and impacts, its ringing, and the measuring chain.
 
 use crate::data::{Axis, Cask, Contact, Drop, End};
 use serde::Serialize;
 
-/// A corner that crushes: bilinear force over depth, so that k < 1 comes out of the two stiffnesses.
+/// A corner that crushes: bilinear force over depth, whose two stiffnesses give k < 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct CrushableEnd {
     /// Loading stiffness, N/m.
     pub loading_n_m: f64,
     /// Unloading stiffness, N/m; not below the loading stiffness.
     pub unloading_n_m: f64,
-    /// Force at which the end yields, N: the force stays there while it is crushed on.
+    /// Force at which the end yields, N: the force stays constant during further crush.
     pub yield_n: Option<f64>,
     /// Lock-up: beyond the first, m, of crush the force grows by the second, N/m, on top of that.
     pub lock_up: Option<(f64, f64)>,
-    /// How far inward the force moves along the target as the end flattens, m for each of crush.
+    /// Inward movement of the force along the target as the end flattens, m/m of crush.
     pub footprint: f64,
 }
 
@@ -22,7 +22,7 @@ pub struct CrushableEnd {
 /// both its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LooseMass {
-    /// Beside the cask's, kg.
+    /// Mass in addition to the cask's, kg.
     pub mass_kg: f64,
     /// Along the axis from the first end, m.
     pub position_m: f64,
@@ -30,26 +30,26 @@ pub struct LooseMass {
     pub gap_m: f64,
     /// Way from pad to pad, m.
     pub play_m: f64,
-    /// Length of a blow on a pad that takes no energy, s.
+    /// Duration of an impact on a pad that absorbs no energy, s.
     pub pulse_s: f64,
     /// λ of the pads' force K c (1 + λ ċ) over their crush c, s/m.
     pub damping_s_m: f64,
 }
 
-/// What most drops are without.
+/// Features that most drops lack.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct SceneExtras {
     /// Loose contents.
     pub contents: Vec<LooseMass>,
-    /// Friction of L that falls with the sliding speed: towards the first, within the second, m/s.
+    /// Friction of L that falls with the sliding speed: towards the first number, within the second, m/s.
     pub falling_friction: Option<(f64, f64)>,
     /// Friction of L from its greatest crush on.
     pub returning_friction: Option<f64>,
-    /// Share of gravity that rails, ropes or a brake take in the fall.
+    /// Share of gravity that rails, ropes or a brake remove in the fall.
     pub guided: f64,
     /// Roll that a tilted edge leaves, built up with the force of the first contact, rad/s.
     pub roll_rad_s: f64,
-    /// Angular-rate sensors; their channels come behind the others.
+    /// Angular-rate sensors; their channels follow the others.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rates: Vec<RateSensor>,
 }
@@ -82,7 +82,7 @@ pub struct BendingMode {
     pub frequency_hz: f64,
     /// Share of critical damping.
     pub damping: f64,
-    /// How strongly the contact force drives it; 1 is the uniform beam.
+    /// Strength with which the contact force drives the mode; 1 is the uniform beam.
     pub strength: f64,
 }
 
@@ -90,18 +90,18 @@ pub struct BendingMode {
 /// strike.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ElasticBody {
-    /// Natural frequency of its first bending mode, Hz; the others follow from its slenderness.
+    /// Natural frequency of the first bending mode, Hz; the others follow from the slenderness.
     pub first_bending_hz: f64,
     /// Share of critical damping of each mode.
     pub damping: f64,
 }
 
-/// What a sensor and its chain do to the specific force at its place.
+/// Errors that a sensor and its chain add to the specific force at its place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Chain {
     /// Inclination of the sensitive axis towards the other body axis, rad.
     pub tilt_rad: f64,
-    /// Share of the cross axis that is read as well.
+    /// Share of the cross axis in the reading.
     pub cross_axis: f64,
     /// Resonance of the mounted sensor: frequency, Hz, and share of critical damping.
     pub resonance: Option<(f64, f64)>,
@@ -129,13 +129,13 @@ pub struct Chain {
     pub full_scale_m_s2: Option<f64>,
     /// Bits of the converter over ± full scale.
     pub bits: Option<u8>,
-    /// Spans after the first sample in which the channel holds its last value, s.
+    /// Spans after the first sample in which the channel repeats its last value, s.
     pub dropouts_s: Vec<(f64, f64)>,
     /// Spans after the first sample that the recorder lost, s.
     pub gaps_s: Vec<(f64, f64)>,
-    /// How much later than the others this channel is stamped, s.
+    /// Delay of this channel's stamps behind those of the others, s.
     pub skew_s: f64,
-    /// Whether the polarity in the cask file is wrong.
+    /// True if the polarity in the cask file is wrong.
     pub swapped_polarity: bool,
 }
 
@@ -146,7 +146,7 @@ impl Chain {
     }
 }
 
-/// A channel of the scene: where it sits, how it is written, and its chain.
+/// A channel of the scene: its position, its format, and its chain.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct SceneChannel {
     /// Name.
@@ -203,34 +203,34 @@ pub struct Scene {
     pub second_end: CrushableEnd,
     /// Bending modes that ride on the rigid motion.
     pub modes: Vec<BendingMode>,
-    /// The body where it is elastic: then there are no other modes.
+    /// The body if it is elastic: then there are no other modes.
     pub elastic: Option<ElasticBody>,
     /// Record before first contact, s.
     pub before_s: f64,
     /// Record after the slap-down, s.
     pub after_s: f64,
-    /// Whether the record shows the cask hanging at rest before its release, where `before_s` reaches that
-    /// far.
+    /// True if the record shows the cask hanging at rest before its release, as far as `before_s` reaches.
     pub rest: bool,
     /// The recorder's clock: true rate over stated rate, minus one.
     pub clock_error: f64,
-    /// Whether the recordings of the ends are exchanged.
+    /// True if the recordings of the ends are exchanged.
     pub swapped_ends: bool,
     /// The channels.
     pub channels: Vec<SceneChannel>,
-    /// What most drops are without.
+    /// Features that most drops lack.
     pub extras: SceneExtras,
 }
 
-/// The drop where guides take `share` of g off its fall: √(2 g h) becomes √(2 (1 − q) g h).
-pub fn slowed(free: Drop, share: f64) -> Drop {
+/// The drop if guides remove `share` of g from its fall: √(2 g h) becomes √(2 (1 − q) g h).
+pub fn slow_down(free: Drop, share: f64) -> Drop {
     let of_fall_m_s = (2.0 * free.gravity_m_s2 * free.height_m).sqrt();
     let lost_m_s = of_fall_m_s * (1.0 - (1.0 - share).sqrt());
     Drop { impact_velocity_m_s: free.impact_velocity_m_s - lost_m_s, ..free }
 }
 
 impl Scene {
-    /// From the release to first contact, s: √(2 h/(g (1 − q))), of which guides take q.
+    /// Time from the release to first contact, s: √(2 h/(g (1 − q))), with q the share of g that guides
+    /// remove.
     pub fn fall_s(&self) -> f64 {
         (2.0 * self.drop.height_m / (self.drop.gravity_m_s2 * (1.0 - self.extras.guided))).sqrt()
     }
@@ -239,16 +239,17 @@ impl Scene {
 /// The simulated motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedMotion {
-    /// At the integrator's own times, ascending; twice where a contact changes and acceleration may step.
+    /// Steps at the integrator's times, ascending; a time occurs twice if a contact changes and acceleration
+    /// may step.
     pub steps: Vec<MotionStep>,
-    /// The bending modes at each of these times, those of a time together.
+    /// The bending modes at each of these times, grouped by time.
     pub modes: Vec<ModeStep>,
-    /// What a perfect measurement would say.
+    /// Results of a perfect measurement.
     pub truth: Truth,
 }
 
 impl SimulatedMotion {
-    /// How many steps lie at times that meet `is_before`, as they do from the first one on.
+    /// Counts the steps for which `is_before` holds, all of which lie at the beginning.
     pub fn count_before(&self, is_before: impl Fn(f64) -> bool) -> usize {
         self.steps.partition_point(|step| is_before(step.time_s))
     }
@@ -270,9 +271,9 @@ impl SimulatedMotion {
 pub struct MotionStep {
     /// Since first contact, s.
     pub time_s: f64,
-    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates.
+    /// State: 0 to 2 are x and z of S, m, and the inclination, rad; 3 to 5 are their rates.
     pub state: [f64; 6],
-    /// The rate of each of these.
+    /// Rates of the state.
     pub rates: [f64; 6],
     /// Forces on the corners of L and R, N: tangential, normal.
     pub loads_n: [(f64, f64); 2],
@@ -283,33 +284,33 @@ pub struct MotionStep {
 /// A bending mode at one time, before its strength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeStep {
-    /// Its coordinate, m.
+    /// Coordinate of the mode, m.
     pub q_m: f64,
-    /// The rate of that, m/s.
+    /// Rate of the coordinate, m/s.
     pub rate_m_s: f64,
-    /// The rate of that again, m/s².
+    /// Second derivative of the coordinate, m/s².
     pub rate_m_s2: f64,
 }
 
-/// What a perfect measurement would say of the impact of an end.
+/// Results of a perfect measurement for the impact of one end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ImpactTruth {
-    /// Length of the contact, s; `None` where the end does not leave.
+    /// Duration of the contact, s; `None` if the end does not leave.
     pub contact_s: Option<f64>,
-    /// Greatest crush of the end: how far its corner, as it bends, came below the target, m.
+    /// Greatest crush of the end: depth of its corner below the target, including bending, m.
     pub crush_m: f64,
     /// Greatest normal force, unfiltered, N.
     pub force_n: f64,
-    /// What the rigid motion loses in the contact, of kinetic energy and of height, J; where the end does not
-    /// leave, up to the greatest crush.
+    /// Energy that the rigid motion loses in the contact, kinetic and potential, J; if the end does not leave
+    /// the target, up to the greatest crush.
     pub energy_j: f64,
 }
 
-/// What a perfect measurement would say. Times count from first contact.
+/// Results of a perfect measurement. Times count from first contact.
 ///
-/// k, velocities, ω and angles are of the rigid motion: that of S by its momentum and of the axis by its
-/// angular momentum, without what bends. Times are of the contacts as the corners make them. A bending corner
-/// chatters: it leaves and is back before the rigid motion has ended its contact. A pause that is shorter
+/// k, velocities, ω and angles belong to the rigid motion: that of S by its momentum and of the axis by its
+/// angular momentum, without bending. Times belong to the contacts that the corners make. A bending corner
+/// chatters: it leaves and returns before the rigid motion has ended its contact. A pause that is shorter
 /// than the contact so far and than a period of the first bending mode therefore belongs to the contact,
 /// unless R strikes in it; a longer one is a flight.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -320,7 +321,7 @@ pub struct Truth {
     pub angle_deg: f64,
     /// −ż_L after over ż_L before; `None` where L never leaves.
     pub k: Option<f64>,
-    /// Vertical velocity of L as it leaves, m/s.
+    /// Vertical velocity of L when it leaves, m/s.
     pub rebound_velocity: Option<f64>,
     /// Length of the first contact, s.
     pub contact_s: Option<f64>,
@@ -332,7 +333,7 @@ pub struct Truth {
     pub vx_corner_after: Option<f64>,
     /// Slap-down, s.
     pub slap_t: Option<f64>,
-    /// From separation to slap-down, s.
+    /// Time from separation to slap-down, s.
     pub flight_s: Option<f64>,
     /// Horizontal and vertical velocity of R just before it strikes, m/s.
     pub vx: Option<f64>,
@@ -340,7 +341,7 @@ pub struct Truth {
     pub vz: Option<f64>,
     /// Magnitude of R's velocity, m/s.
     pub speed: Option<f64>,
-    /// The same with all that bends: of the corner that strikes.
+    /// Speed of the corner that strikes, including bending.
     pub local_speed: Option<f64>,
     /// ω just before slap-down, rad/s.
     pub omega: Option<f64>,
@@ -350,7 +351,7 @@ pub struct Truth {
     pub energy_ratio: Option<f64>,
     /// Times that L touched again before R struck.
     pub relands: u32,
-    /// Whether L was on the target when R struck.
+    /// True if L was on the target when R struck.
     pub first_down_at_slap: bool,
     /// The impacts of L and R, where they strike.
     pub impacts: [Option<ImpactTruth>; 2],

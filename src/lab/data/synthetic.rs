@@ -1,26 +1,26 @@
-//! What `synth` makes of a scene: the channels as their recorder wrote them, and the truth.
+//! Output of `synth` for a scene: the channels as their recorder wrote them, and the truth.
 
 use super::scene::{Scene, Truth};
 use crate::data::CaskFile;
 use crate::numerics::as_f64;
 
-/// An end's impact, as a scene file may ask for it instead of stiffnesses.
+/// An end's impact, which a scene file may request instead of stiffnesses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WantedImpact {
-    /// How long the contact lasts, s.
+    /// Duration of the contact, s.
     pub duration_s: f64,
     /// k, above 0 and not above 1.
     pub restitution: f64,
-    /// Yield force over the peak that the elastic end would have; `None`: no yield.
+    /// Yield force over the peak of the elastic end; `None`: no yield.
     pub yield_share: Option<f64>,
 }
 
-/// A scene file, checked: the scene, and what the cask file beside the recording is to say of it.
+/// A checked scene file: the scene, and the statements for the cask file beside the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
     /// The scene as it is.
     pub scene: Scene,
-    /// The scene as stated: its channels in the order of the scene's, their sources still to be named.
+    /// The scene as stated: its channels in the same order, their sources still unnamed.
     pub stated: CaskFile,
 }
 
@@ -65,15 +65,15 @@ pub struct SyntheticRecording {
     pub channels: Vec<SyntheticChannel>,
     /// First contact by the recorder's clock, s from the earliest sample, for a channel without skew.
     pub first_contact_s: f64,
-    /// What a perfect measurement would say.
+    /// Results of a perfect measurement.
     pub truth: Truth,
     /// The seed that it was made with.
     pub seed: u64,
 }
 
 impl SyntheticRecording {
-    /// The recording as sensors write it that are mounted as the cask file states.
-    pub fn mounted(&self, stated: &CaskFile) -> Self {
+    /// Converts the recording to sensors that are mounted as the cask file states.
+    pub fn to_mounted(&self, stated: &CaskFile) -> Self {
         let mut mounted = self.clone();
         for (channel, stated) in mounted.channels.iter_mut().zip(&stated.channels) {
             if stated.polarity < 0.0 {

@@ -1,8 +1,8 @@
-//! Ways of working under trial: what each costs and how far off it is, and where the program fails.
+//! Results of a trial: time and error of each method, and the failures of the program.
 
 use serde::Serialize;
 
-/// What a trial is asked for.
+/// Request for a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct TrialRequest {
     /// Fewer scenes and repeats: within a minute.
@@ -12,71 +12,71 @@ pub struct TrialRequest {
 }
 
 impl TrialRequest {
-    /// What the quick run takes, or the full one.
-    pub fn either<T>(&self, quick: T, full: T) -> T {
+    /// Chooses the value for a quick or for a full run.
+    pub fn choose<T>(&self, quick: T, full: T) -> T {
         if self.quick { quick } else { full }
     }
 }
 
-/// One method on one class of scenes: its error against the truth beside its time.
+/// One method on one class of scenes: its error against the truth and its time.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TrialPoint {
-    /// What the method is for: "k, from file to answer".
+    /// Task of the method: "k, from file to answer".
     pub family: String,
-    /// The method, by its public name.
+    /// Public name of the method.
     pub method: String,
     /// The class of scenes.
     pub class: String,
-    /// Whether it is what the program takes where nothing is said.
+    /// True if the program uses this method by default.
     pub is_default: bool,
     /// Median error against the truth, in `error_unit`.
     pub median_error: f64,
     /// 95th percentile of the error, in `error_unit`.
     pub p95_error: f64,
-    /// Of what the error is a share, or its unit: "% of the slap-down speed".
+    /// Reference of a relative error, or its unit: "% of the slap-down speed".
     pub error_unit: String,
     /// Median time from file to answer, ns.
     pub time_ns: f64,
-    /// Cases the error is taken over.
+    /// Number of cases behind the error.
     pub cases: usize,
-    /// Cases besides in which the method gives no number.
+    /// Further cases in which the method gives no number.
     pub missing: usize,
-    /// From where on a difference matters, in `error_unit`.
+    /// Smallest difference that matters, in `error_unit`.
     pub matters: f64,
-    /// The median half-width that the method states of itself, in `error_unit`.
+    /// Median half-width that the method itself states, in `error_unit`.
     pub promised: Option<f64>,
-    /// The share of its intervals that hold the truth.
+    /// Share of its intervals that hold the truth.
     pub held: Option<f64>,
 }
 
-/// What becomes of a drop that a damage is done to.
+/// Fate of a drop with damage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrialFate {
     /// The intervals of speed and k hold the truth, or miss it by no more than chance does.
     Inside,
-    /// One of them does not, and the verdict is not "pass".
+    /// One of the intervals misses the truth, and the verdict is not "pass".
     Warned,
     /// A number is not given.
     Refused,
-    /// An interval does not hold the truth, further than chance puts it, and the verdict is "pass".
+    /// An interval misses the truth, further than by chance, and the verdict is "pass".
     Silent,
 }
 
-/// A drop that a damage of one size is done to.
+/// A drop with a damage of one size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TrialDrop {
-    /// What becomes of it.
+    /// Fate of the drop.
     pub fate: TrialFate,
-    /// The larger error of speed and k, in half-widths of its interval; none where neither is given.
+    /// The larger error of speed and k, in half-widths of its interval; `None` if neither is stated.
     pub half_widths_off: Option<f64>,
-    /// Whether a finding names what is wrong by one of the codes that should.
+    /// True if a finding names the damage by one of the expected codes.
     pub is_named: bool,
-    /// Whether the body is an elastic beam.
+    /// True if the body is an elastic beam.
     pub is_elastic: bool,
 }
 
-/// What several drops show that a damage of one size is done to.
+/// Results of several drops with a damage of one size.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrialSize {
     /// The size, in the map's unit.
@@ -85,10 +85,10 @@ pub struct TrialSize {
     pub drops: Vec<TrialDrop>,
 }
 
-/// What becomes of drops as a damage grows.
+/// Fate of drops as a damage grows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrialMap {
-    /// The damage, as in the table of damages.
+    /// Name of the damage, as in the table of damages.
     pub name: String,
     /// A sentence: what is done.
     pub what: String,
@@ -96,48 +96,48 @@ pub struct TrialMap {
     pub unit: String,
     /// Codes of which one must be named at the gross end.
     pub told_by: Vec<&'static str>,
-    /// What to measure at the site, because the recording may not tell.
+    /// Measurement at the site, because the recording may not show the damage.
     pub instead: String,
-    /// From harmless to gross.
+    /// Sizes from harmless to gross.
     pub sizes: Vec<TrialSize>,
-    /// What the recorded full run found of a damage that it saw silent; none in a full run.
+    /// Result of the recorded full run for a damage that it saw silent; none in a full run.
     pub known: Option<KnownSilence>,
 }
 
 /// A row of `silent.tsv`: a damage that was silent in the recorded full run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct KnownSilence {
-    /// From which size on what becomes of a drop.
+    /// Heading for the sizes and fates of drops.
     pub becomes: &'static str,
     /// The largest error, in half-widths.
     pub off: &'static str,
 }
 
 impl TrialMap {
-    /// Whether some drop of this run was silent.
-    pub fn is_seen_silent(&self) -> bool {
+    /// True if a drop of this run was silent.
+    pub fn has_silent_drop(&self) -> bool {
         self.first(TrialFate::Silent).is_some()
     }
 
-    /// The first size at which this becomes of a drop.
+    /// The first size at which a drop has this fate.
     pub fn first(&self, fate: TrialFate) -> Option<&TrialSize> {
         self.sizes.iter().find(|size| size.drops.iter().any(|drop| drop.fate == fate))
     }
 
-    /// The drops at the gross end of which no finding names what is wrong.
-    pub fn unnamed(&self) -> usize {
+    /// Counts the drops at the gross end whose findings do not name the damage.
+    pub fn count_unnamed(&self) -> usize {
         self.sizes.last().map_or(0, |size| size.drops.iter().filter(|drop| !drop.is_named).count())
     }
 }
 
-/// One limit of the acceptance, and what this program on this machine makes of it.
+/// One limit of the acceptance, and the value that this program reaches on this machine.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TrialLimit {
-    /// What is measured.
+    /// Measured property.
     pub name: String,
-    /// What it is: "95th percentile of the error, %".
+    /// Unit: "95th percentile of the error, %".
     pub unit: String,
-    /// What was found; none where it could not be had, which is not accepted.
+    /// Measured value; `None` if it could not be determined, which is not accepted.
     pub value: Option<f64>,
     /// The least that is accepted.
     pub least: Option<f64>,
@@ -145,27 +145,27 @@ pub struct TrialLimit {
     pub most: Option<f64>,
     /// Why this much.
     pub reason: String,
-    /// Which of several did not hold, or was the furthest off; empty where they did.
+    /// Item that failed or was furthest off; empty if all hold.
     pub which: String,
 }
 
 impl TrialLimit {
-    /// Whether what was found lies within.
-    pub fn is_kept(&self) -> bool {
+    /// True if the value lies within the limits.
+    pub fn is_met(&self) -> bool {
         let within =
             |v: f64| self.least.is_none_or(|least| v >= least) && self.most.is_none_or(|most| v <= most);
         self.value.is_some_and(within)
     }
 
-    /// How far what was found lies from the middle, in halves of what is accepted; none where it was not
-    /// found.
+    /// Distance of the value from the middle of the accepted range, in half-widths of the range; `None`
+    /// without a value.
     pub fn half_widths_off(&self) -> Option<f64> {
         let (least, most) = (self.least?, self.most?);
         Some((2.0 * self.value? - least - most).abs() / (most - least))
     }
 }
 
-/// What a trial ran on.
+/// Machine and program of a trial.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TrialMachine {
     /// The processor, as it calls itself.
@@ -174,13 +174,13 @@ pub struct TrialMachine {
     pub cores: usize,
     /// Operating system and architecture.
     pub system: String,
-    /// SHA-256 of the program's file; empty where it cannot be read.
+    /// SHA-256 of the program's file; empty if it cannot be read.
     pub program_sha256: String,
-    /// The commit that it was built of, where the build was told.
+    /// Commit that the program was built from, if the build knew it.
     pub program_commit: Option<&'static str>,
-    /// When the trial began, in universal time.
+    /// Beginning of the trial, in universal time.
     pub when: String,
-    /// Whether the program was built with optimisation; without it times say nothing.
+    /// True if the program was built with optimisation; without it the times are meaningless.
     pub is_optimised: bool,
 }
 
@@ -191,21 +191,21 @@ pub struct Trial {
     pub schema: &'static str,
     /// The program's version.
     pub version: &'static str,
-    /// What was asked for.
+    /// Request for the trial.
     pub request: TrialRequest,
-    /// What it ran on.
+    /// Machine and program.
     pub machine: TrialMachine,
     /// Methods on classes, family after family.
     pub points: Vec<TrialPoint>,
-    /// What becomes of drops as each damage grows.
+    /// Fate of drops as each damage grows.
     pub maps: Vec<TrialMap>,
-    /// What is accepted, and what was found.
+    /// Limits of the acceptance with the measured values.
     pub limits: Vec<TrialLimit>,
 }
 
 impl Trial {
-    /// Whether every limit is kept.
+    /// True if every limit is met.
     pub fn is_accepted(&self) -> bool {
-        self.limits.iter().all(TrialLimit::is_kept)
+        self.limits.iter().all(TrialLimit::is_met)
     }
 }

@@ -1,5 +1,5 @@
-//! A damage that grows, on several drops, through the whole program to what becomes of each: inside its
-//! interval, warned of, refused or silent.
+//! Maps a growing damage: several drops go through the whole program, and each is inside its interval, warned
+//! of, refused or silent.
 
 use super::limits::SILENT_BY;
 use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
@@ -13,17 +13,17 @@ use crate::report::text::json_word;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to
-/// 12 ms at either end and an offset of half a g; rigid bodies with a weak mode and elastic ones by turns.
+/// Plans to which every damage is applied: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to
+/// 12 ms at either end and an offset of half a g; rigid bodies with a weak mode alternate with elastic ones.
 fn plans(request: &TrialRequest) -> Vec<DropPlan> {
     let plan = |order: u64, build: Build, [angle_deg, k, first_ms, second_ms, frequency_hz]: [f64; 5]| {
-        let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);
+        let mut plan = DropPlan::new(build, angle_deg, k, request.seed + order);
         (plan.ends[0].duration_s, plan.ends[1].duration_s) = (1e-3 * first_ms, 1e-3 * second_ms);
         if order.is_multiple_of(2) {
             plan.modes = vec![BendingMode { strength: 0.3, ..DropPlan::mode(1, frequency_hz) }];
         } else {
             plan.elastic = Some(ElasticBody { first_bending_hz: frequency_hz, damping: 0.01 });
-            // Its modes reach beyond half the sample rate, where a recorder has a filter.
+            // The modes reach beyond half the sample rate, where a recorder has a filter.
             plan.chain.anti_alias_hz = Some(plan.rate_hz / 4.0);
         }
         plan.chain.offset_m_s2 = 0.5 * STANDARD_GRAVITY_M_S2;
@@ -37,18 +37,18 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
         plan(4, ESBB, [12.0, 0.6, 3.0, 5.0, 90.0]),
         plan(5, VHLW, [25.0, 0.45, 12.0, 6.0, 160.0]),
     ];
-    let count = request.either(4, plans.len());
+    let count = request.choose(4, plans.len());
     plans.into_iter().take(count).collect()
 }
 
-/// What becomes of a plan's drop, struck at this size.
-fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
-    let (drop, recording) = kind.grown(plan, size);
+/// Determines the fate of a plan's drop with damage of this size.
+fn analyze_drop(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
+    let (drop, recording) = kind.grow(plan, size);
     let truth = &drop.motion.truth;
     // None where the recording is refused.
     let result = drop.analyzed(&recording).map(|analysis| analysis.result);
     let [speed, k] = result.as_ref().map_or([None; 2], |result| [result.slap_down.speed, result.k]);
-    // Infinitely far where a number is given for what did not happen.
+    // The error is infinite if a number is stated for an event that did not happen.
     let off = [(speed, truth.speed), (k, truth.k)]
         .map(|(stated, truth)| Some(half_widths_between(stated?.into(), truth.unwrap_or(f64::INFINITY))));
     let worst = off.iter().flatten().copied().reduce(f64::max);
@@ -59,13 +59,13 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
         _ => TrialFate::Refused,
     };
     let mut findings = result.iter().flat_map(|result| &result.quality);
-    let is_named = kind.told_by.is_empty()
-        || findings.any(|finding| kind.told_by.contains(&&json_word(finding.code)[..]));
+    let is_named = kind.expected_codes.is_empty()
+        || findings.any(|finding| kind.expected_codes.contains(&&json_word(finding.code)[..]));
     TrialDrop { fate, half_widths_off: worst, is_named, is_elastic: drop.scene.elastic.is_some() }
 }
 
-/// Chance puts one sound drop in twenty outside its interval: silent is one more than two half-widths out, or
-/// a half-width further out than the same drop at the harmless size.
+/// Chance puts one sound drop in twenty outside its interval: a drop is silent if it is more than two
+/// half-widths off, or a half-width further off than the same drop at the harmless size.
 fn excuse_chance(sizes: &mut [TrialSize]) {
     let harmless: Vec<Option<f64>> = sizes[0].drops.iter().map(|drop| drop.half_widths_off).collect();
     let drops = sizes.iter_mut().flat_map(|size| size.drops.iter_mut().zip(&harmless));
@@ -77,15 +77,15 @@ fn excuse_chance(sizes: &mut [TrialSize]) {
     }
 }
 
-/// A map of every damage that grows; `progress` is told the share that is done.
+/// Maps every damage that grows; `progress` receives the completed share.
 pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> {
-    let kinds: Vec<&DamageKind> = damage::growing().collect();
+    let kinds: Vec<&DamageKind> = damage::growing_kinds().collect();
     let (plans, done) = (plans(request), AtomicUsize::new(0));
     let of_kind = |kind: &&DamageKind| {
         // The first and the last are among every third of them.
-        let sizes = kind.growing.iter().copied().step_by(request.either(3, 1));
+        let sizes = kind.growing.iter().copied().step_by(request.choose(3, 1));
         let of_size = |size: f64| {
-            let drops = plans.par_iter().map(|plan| drop_of(kind, plan, size)).collect();
+            let drops = plans.par_iter().map(|plan| analyze_drop(kind, plan, size)).collect();
             TrialSize { size, drops }
         };
         let mut sizes: Vec<TrialSize> = sizes.collect::<Vec<_>>().into_par_iter().map(of_size).collect();
@@ -94,7 +94,7 @@ pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> 
             name: kind.name.to_owned(),
             what: kind.what.to_owned(),
             unit: kind.unit.to_owned(),
-            told_by: kind.told_by.clone(),
+            told_by: kind.expected_codes.clone(),
             instead: kind.instead.to_owned(),
             sizes,
             // A full run finds for itself what is silent.
@@ -113,9 +113,9 @@ mod tests {
     #[test]
     fn whatever_a_damage_takes_has_the_finding_that_took_it() {
         let plan = &plans(&TrialRequest { quick: true, seed: 1 })[0];
-        let kinds: Vec<&DamageKind> = damage::growing().collect();
+        let kinds: Vec<&DamageKind> = damage::growing_kinds().collect();
         let hold = |kind: &&DamageKind| {
-            let (drop, recording) = kind.grown(plan, kind.growing.last().copied().unwrap_or_default());
+            let (drop, recording) = kind.grow(plan, kind.growing.last().copied().unwrap_or_default());
             let Some(mut result) = drop.analyzed(&recording).map(|analysis| analysis.result) else {
                 return 0;
             };
@@ -124,7 +124,7 @@ mod tests {
                 let took = missing.because.map(|place| &result.quality[place]);
                 let is_headline = missing.quantity == "k" || missing.quantity == "slap_down.speed";
                 assert!(took.is_some() || !is_headline, "{}: {missing:?}", kind.name);
-                assert!(took.is_none_or(|f| !f.effect.takes().is_empty()), "{}: {missing:?}", kind.name);
+                assert!(took.is_none_or(|f| !f.effect.parts().is_empty()), "{}: {missing:?}", kind.name);
             }
             usize::from(result.k.is_none())
         };
@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn a_drop_is_inside_refused_or_silent() {
         let plan = &plans(&TrialRequest { quick: true, seed: 1 })[0];
-        let fate = |name, size| drop_of(damage::named(name).expect("a damage"), plan, size);
+        let fate = |name, size| analyze_drop(damage::find_kind(name).expect("a damage"), plan, size);
         assert_eq!(fate("offset", 10.0).fate, TrialFate::Inside);
         assert_eq!(fate("stated_length", 8.0).fate, TrialFate::Silent);
         let refused = fate("ends_exchanged", 0.0);

@@ -1,4 +1,4 @@
-//! Whole ways of working and damages that grow to what is accepted: speed, accuracy, failure.
+//! Trial of whole analyses and of growing damages against the limits of acceptance: speed, accuracy, failure.
 
 mod limits;
 mod map;
@@ -13,19 +13,20 @@ use crate::ingest::Progress;
 use crate::lab::campaign;
 use crate::lab::data::{CampaignRequest, Trial, TrialMachine, TrialRequest};
 
-/// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
+/// Runs the whole trial, including a site's own reference recordings; `progress` receives the completed
+/// share.
 pub fn trial(
     request: TrialRequest,
     machine: TrialMachine,
     site: Option<&References>,
     progress: Progress,
 ) -> Trial {
-    // Ways, the map and the campaign take a third of the time each.
+    // The methods, the map and the campaign take a third of the time each.
     progress(0.0);
     let points = ways(&request);
     let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
     let drops = CampaignRequest {
-        scenes: request.either(100, 600),
+        scenes: request.choose(100, 600),
         seed: request.seed,
         kinds: ["undamaged".to_owned()].into(),
         exact: false,

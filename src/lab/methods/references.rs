@@ -1,4 +1,4 @@
-//! Recordings with expected values, the program's own and a site's, to what it makes of each.
+//! Recordings with expected values, the program's own and a site's, and the results of the program for each.
 
 use crate::analysis::{self, analyze};
 use crate::data::{DropResult, Estimate};
@@ -11,7 +11,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a folder of reference recordings holds besides them.
+/// Name of the file that describes a folder of reference recordings.
 const NAME: &str = "reference.toml";
 
 /// Recordings of a folder of the fixtures and their cask files by their names, and its `reference.toml`.
@@ -30,7 +30,7 @@ macro_rules! fixtures {
 /// Small files by their names.
 type Files = &'static [(&'static str, &'static [u8])];
 
-/// Small recordings that another program simulated, and what is expected of them.
+/// Small recordings that another program simulated, with expected values.
 pub(super) const OWN: Files = fixtures![
     "examples", "anf10-plain" ".csv", "anf10-protobuf" ".mcap", "anf18-german" ".csv", "anf18-json" ".mcap",
     "damaged-clipped" ".h5", "damaged-ends-early" ".csv", "damaged-gap" ".mcap", "damaged-truncated" ".mcap",
@@ -43,10 +43,10 @@ pub(super) const FINITE_ELEMENTS: Files = fixtures![
     "friction-30" ".h5", "landing-44" ".h5"
 ];
 
-/// Quantities that a reference may state, and where the result has each.
+/// Declares the quantities that a reference may state, with their place in the result.
 macro_rules! expected {
-    ($($quantity:ident => $found:expr,)*) => {
-        /// What is expected of a recording, as `reference.toml` says it.
+    ($($quantity:ident => $find_estimate:expr,)*) => {
+        /// Expected values of a recording in `reference.toml`.
         #[derive(Debug, Clone, Default, Deserialize)]
         #[serde(deny_unknown_fields)]
         struct Expected {
@@ -58,20 +58,20 @@ macro_rules! expected {
             $($quantity: Option<ExpectedValue>,)*
         }
 
-        /// What stands in `reference.toml`.
+        /// Form of `reference.toml`.
         const FORM: &str = concat!("a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", \
             verdict = \"pass\", findings = [\"clipped\"], k = 0.51 or k = { value = 0.51, within = 0.02 }",
             $(", ", stringify!($quantity),)*);
 
         impl Expected {
-            /// Each value that is stated, by its quantity, beside what was found.
+            /// Lists each expected value, by its quantity, with the measured one.
             fn limits(&self, result: Option<&DropResult>) -> Vec<TrialLimit> {
-                fn found(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
+                fn find_estimate(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
                     of(result)
                 }
-                [$((stringify!($quantity), self.$quantity, result.and_then(|r| found($found, r)))),*]
+                [$((stringify!($quantity), self.$quantity, result.and_then(|r| find_estimate($find_estimate, r)))),*]
                     .into_iter()
-                    .filter_map(|(quantity, expected, found)| Some(expected?.limit(quantity, found)))
+                    .filter_map(|(quantity, expected, find_estimate)| Some(expected?.limit(quantity, find_estimate)))
                     .collect()
             }
         }
@@ -96,7 +96,7 @@ expected! {
     second_restitution => |r| r.impacts[1].numbers.restitution,
 }
 
-/// A value that the stated interval must hold, or one with a distance of its own.
+/// A value that the stated interval must hold, or one with its own tolerance.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum ExpectedValue {
@@ -105,15 +105,15 @@ enum ExpectedValue {
 }
 
 impl ExpectedValue {
-    fn limit(self, quantity: &str, found: Option<Estimate>) -> TrialLimit {
+    fn limit(self, quantity: &str, find_estimate: Option<Estimate>) -> TrialLimit {
         let (value, within) = match self {
-            Self::Held(value) => (value, found.map_or(f64::NAN, |found| found.u95)),
+            Self::Held(value) => (value, find_estimate.map_or(f64::NAN, |find_estimate| find_estimate.u95)),
             Self::Near { value, within } => (value, within),
         };
         TrialLimit {
             name: quantity.to_owned(),
-            unit: found.map_or_else(String::new, |found| found.unit.to_owned()),
-            value: found.map(|found| found.value),
+            unit: find_estimate.map_or_else(String::new, |find_estimate| find_estimate.unit.to_owned()),
+            value: find_estimate.map(|find_estimate| find_estimate.value),
             least: Some(value - within),
             most: Some(value + within),
             reason: format!("expected: {value}"),
@@ -122,7 +122,7 @@ impl ExpectedValue {
     }
 }
 
-/// Recordings of a folder, with what is expected of each.
+/// Recordings of a folder, with the expected values of each.
 #[derive(Debug, Clone)]
 pub struct References {
     folder: PathBuf,
@@ -130,11 +130,13 @@ pub struct References {
 }
 
 impl References {
-    /// Those of a folder.
+    /// Reads the reference recordings of a folder.
     ///
     /// # Errors
-    /// No `reference.toml`, one that says what nobody knows, a recording or cask file that is not there.
-    pub fn of(folder: &Path) -> Result<Self, CaskFileError> {
+    ///
+    /// Returned without a `reference.toml`, for one with an unknown key, and if a recording or cask file is
+    /// missing.
+    pub fn read(folder: &Path) -> Result<Self, CaskFileError> {
         let path = folder.join(NAME);
         let wrong = |problem: String| no_cask_file(&path, &problem, FORM);
         let bytes = cask_file::read(&path, &Kind { name: "a reference file", root: &[], tables: &[] })?;
@@ -155,12 +157,12 @@ impl References {
         Ok(references)
     }
 
-    /// Every expected value beside what was found, in the order of the recordings.
+    /// Compares every expected value with the result, in the order of the recordings.
     pub(super) fn limits(&self) -> Vec<TrialLimit> {
-        self.expected.iter().flat_map(|(name, expected)| self.of_recording(name, expected)).collect()
+        self.expected.iter().flat_map(|(name, expected)| self.check_recording(name, expected)).collect()
     }
 
-    fn of_recording(&self, name: &Path, expected: &Expected) -> Vec<TrialLimit> {
+    fn check_recording(&self, name: &Path, expected: &Expected) -> Vec<TrialLimit> {
         let file =
             ingest::cask_file(&self.folder.join(cask_of(name, expected))).map_err(|error| error.to_string());
         let analyzed = file.and_then(|file| {
@@ -176,12 +178,12 @@ impl References {
     }
 }
 
-/// What the cask file of a recording is called.
+/// Path of the cask file of a recording.
 fn cask_of(name: &Path, expected: &Expected) -> PathBuf {
     expected.cask.clone().unwrap_or_else(|| name.with_extension("toml"))
 }
 
-/// Verdict and findings, or why the recording is refused.
+/// Verdict and findings, or the reason why the recording is refused.
 fn words(expected: &Expected, analyzed: Result<&DropResult, &String>) -> TrialLimit {
     let mut differs = Vec::new();
     match analyzed {
@@ -220,7 +222,7 @@ pub(super) fn built_in(files: Files) -> Option<Vec<TrialLimit>> {
     for (name, bytes) in files {
         std::fs::write(folder.path().join(name), bytes).ok()?;
     }
-    Some(References::of(folder.path()).ok()?.limits())
+    Some(References::read(folder.path()).ok()?.limits())
 }
 
 #[cfg(test)]
@@ -235,14 +237,14 @@ mod tests {
             std::fs::write(folder.path().join(name), bytes).expect("written");
         }
         std::fs::write(folder.path().join(NAME), reference).expect("written");
-        References::of(folder.path()).map(|references| references.limits()).map_err(|error| error.to_string())
+        References::read(folder.path()).map(|found| found.limits()).map_err(|error| error.to_string())
     }
 
     #[test]
     fn expected_values_are_held_against_the_interval_or_their_own_distance() {
         let kept = |text: &str| {
             let limits = folder(&format!("[\"anf10-plain.csv\"]\n{text}")).expect("a folder");
-            limits.iter().map(TrialLimit::is_kept).collect::<Vec<_>>()
+            limits.iter().map(TrialLimit::is_met).collect::<Vec<_>>()
         };
         // The truth of simulate.py is 13.991 m/s and 0.5073.
         assert_eq!(kept("verdict = \"pass\"\nslap_down_speed_m_s = 13.99\nk = 0.507"), [true; 3]);
@@ -264,7 +266,7 @@ mod tests {
             let message = folder(text).expect_err(text);
             assert!(message.contains(word) && message.contains(NAME), "{message}");
         }
-        assert!(References::of(Path::new("nowhere")).is_err());
+        assert!(References::read(Path::new("nowhere")).is_err());
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Recordings in files to points of how far off each way of working with them is, timed whole from file to
-//! answer.
+//! Accuracy and time of each method on recordings in files, timed from file to answer.
 
 use crate::analysis::{self, analyze};
 use crate::data::{CaskFile, Estimate, Recording, STANDARD_GRAVITY_M_S2};
@@ -20,11 +19,11 @@ use std::time::Instant;
 #[derive(Clone, Copy)]
 struct DropClass {
     name: &'static str,
-    /// What makes a sound drop one of the class, with its flight, s, and a number between 0 and 1.
+    /// Changes a sound drop to one of the class; receives its flight, s, and a number between 0 and 1.
     make: fn(&mut DropPlan, f64, f64),
 }
 
-/// Nothing rings.
+/// A drop without ringing.
 const CALM: DropClass = DropClass { name: "calm", make: |_, _, _| {} };
 const NOISY: DropClass = DropClass {
     name: "5 g of noise",
@@ -34,7 +33,7 @@ const ONE_MODE: DropClass = DropClass {
     name: "one mode, 2 to 5 periods",
     make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (2.0 + 3.0 * share) / flight_s)],
 };
-/// Slower than any cask bends: the program is to refuse it (`swings`).
+/// A mode slower than any cask bends: the program must refuse it (`swings`).
 const SWINGING: DropClass = DropClass {
     name: "moves as a whole, 0.7 to 1.2 periods",
     make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (0.7 + 0.5 * share) / flight_s)],
@@ -46,23 +45,23 @@ impl DropClass {
         let plan = |number: u64| {
             let mut chance = Chance::new(request.seed, number);
             let build = BUILDS[usize::try_from(number).unwrap_or(0) % BUILDS.len()];
-            let (angle_deg, k) = (chance.even(8.0, 22.0), chance.even(0.2, 0.7));
-            let mut plan = DropPlan::of(build, angle_deg, k, request.seed + number);
-            plan.ends[0].duration_s = chance.even(3e-3, 8e-3);
-            // Not on the same place of the first sample's interval every time.
-            plan.before_s += chance.even(0.0, 1e-3);
+            let (angle_deg, k) = (chance.uniform(8.0, 22.0), chance.uniform(0.2, 0.7));
+            let mut plan = DropPlan::new(build, angle_deg, k, request.seed + number);
+            plan.ends[0].duration_s = chance.uniform(3e-3, 8e-3);
+            // The first sample should not always fall on the same point of its interval.
+            plan.before_s += chance.uniform(0.0, 1e-3);
             let sound_s = plan.flight_s();
-            (self.make)(&mut plan, sound_s, chance.even(0.0, 1.0));
+            (self.make)(&mut plan, sound_s, chance.uniform(0.0, 1.0));
             plan
         };
         (0..count).into_par_iter().map(plan).collect()
     }
 }
 
-/// Drops of one kind, and what is wrong with them: a row of the table of damages, and its size.
-type WayClass = (DropClass, Option<(&'static str, f64)>);
+/// Drops of one kind, and their damage: a row of the table of damages, and its size.
+type DamagedClass = (DropClass, Option<(&'static str, f64)>);
 
-const CLASSES: [WayClass; 7] = [
+const CLASSES: [DamagedClass; 7] = [
     (DropClass { name: "clean", ..CALM }, None),
     (NOISY, None),
     (ONE_MODE, None),
@@ -80,7 +79,7 @@ const LIMITER: DropClass = DropClass {
     },
 };
 
-/// Samples a second, and the record before first contact, s: what loggers at test sites write.
+/// Samples a second, and the record before first contact, s: typical loggers at test sites.
 const RATE_HZ: f64 = 1e5;
 const BEFORE_S: f64 = 0.4;
 
@@ -93,37 +92,37 @@ struct FiledDrop {
     cask: PathBuf,
 }
 
-/// Speed, m/s, and k, as a way says them of a drop.
+/// Speed, m/s, and k of a drop, as a method states them.
 type Answer = [Option<Estimate>; 2];
 
-/// The families of what is worked from file to answer.
+/// Families of analyses from file to answer.
 pub const WAYS: [&str; 2] = ["speed, from file to answer", "k, from file to answer"];
 
-/// Of what the error of each is a share, or its unit, and how much a verdict needs.
+/// Reference of each relative error, or its unit, and the accuracy that a verdict needs.
 const NEEDED: [(&str, f64); 2] = [("% of the slap-down speed", 1.0), ("1", 0.01)];
 
-/// What the program says and takes.
+/// Name of the program's own answer.
 const TAKEN: &str = "dropcheck, as taken";
 
-/// The points of the program and of the notebook, by quantity and class; what is no answer is wholly off.
-/// Reading alone has a time and no answer.
+/// The points of the program and of the notebook, by quantity and class; a missing answer counts as entirely
+/// wrong. Reading alone has a time and no answer.
 pub fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
     let drops: Vec<FiledDrop> =
-        CLASSES.iter().flat_map(|class| filed(class, request, folder.path())).collect();
-    let mut worked = vec![Worked::named(READING), Worked::named(TAKEN)];
+        CLASSES.iter().flat_map(|class| write_drops(class, request, folder.path())).collect();
+    let mut worked = vec![TimedAnswers::new(READING), TimedAnswers::new(TAKEN)];
     for drop in &drops {
-        // Each has its turn on a file, after one that nobody times.
+        // Each method in turn reads a file that an untimed reading has warmed up.
         black_box(read(drop));
-        worked[0].timed(|| read(drop).map(|_| Answer::default()));
-        worked[1].timed(|| {
+        worked[0].time_work(|| read(drop).map(|_| Answer::default()));
+        worked[1].time_work(|| {
             let (recording, file) = read(drop)?;
             let result = analyze(&recording, &file).result;
             Some([result.slap_down.speed, result.k])
         });
     }
     worked.extend(in_python(&drops, folder.path()));
-    (0..WAYS.len()).flat_map(|quantity| scored(quantity, &worked, &drops)).collect()
+    (0..WAYS.len()).flat_map(|quantity| score(quantity, &worked, &drops)).collect()
 }
 
 fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
@@ -131,15 +130,15 @@ fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
     Some((analysis::read(&drop.recording, &file, &|_| ()).ok()?, file))
 }
 
-/// The drops of a class as files in a folder; those in which R does not strike are left out.
-fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
-    let plans = class.plans(request.either(6, 30), request);
+/// Writes the drops of a class as files in a folder; drops in which R does not strike are omitted.
+fn write_drops((class, struck): &DamagedClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
+    let plans = class.plans(request.choose(6, 30), request);
     let filed = |(number, plan): (usize, &DropPlan)| {
         let mut plan = plan.clone();
         (plan.rate_hz, plan.before_s) = (RATE_HZ, plan.before_s + BEFORE_S);
         let mut drop = plan.draw();
-        let kind = struck.and_then(|(name, size)| Some((damage::named(name)?, size)));
-        let recording = kind.map(|(kind, size)| kind.strike(&mut drop, size));
+        let kind = struck.and_then(|(name, size)| Some((damage::find_kind(name)?, size)));
+        let recording = kind.map(|(kind, size)| kind.apply(&mut drop, size));
         let recording = recording.unwrap_or_else(|| drop.recorded());
         let truth = drop.motion.truth;
         let scene = SceneFile { scene: drop.scene, stated: drop.stated };
@@ -156,20 +155,20 @@ fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> V
     plans.par_iter().enumerate().filter_map(filed).collect()
 }
 
-/// The same work by a notebook of numpy and scipy that shares no code with the program, where there is a
-/// Python (3.11 or later) that has them.
-fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
+/// Analysis of the same files by a notebook of numpy and scipy that shares no code with the program, if a
+/// Python (3.11 or later) has them.
+fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<TimedAnswers> {
     let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.cask.display());
     let list = drops.iter().map(line).collect::<Vec<_>>().join("\n");
     let path = folder.join("drops.txt");
     std::fs::write(&path, list).ok()?;
     let answered =
         Command::new("python3").args(["-c", include_str!("notebook.py")]).arg(path).output().ok()?;
-    let mut worked = Worked::named("notebook, least squares");
+    let mut worked = TimedAnswers::new("notebook, least squares");
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
         let [seconds, speed_m_s, k] = numbers[..] else { return None };
-        // It states no interval.
+        // The notebook states no interval.
         let number = |value: f64| value.is_finite().then(|| Estimate::new(value, f64::NAN, ""));
         worked.answers.push([speed_m_s, k].map(number));
         worked.times_ns.push(1e9 * seconds);
@@ -177,26 +176,26 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     (worked.answers.len() == drops.len()).then_some(worked)
 }
 
-/// What all classes together are called.
+/// Name of all classes together.
 pub const ALL_CLASSES: &str = "all";
 
-/// What a reading alone is called.
+/// Name of reading alone.
 pub const READING: &str = "reading alone";
 
-/// What a way says of every drop, and how long it takes for each, ns.
-struct Worked {
+/// Answers of one method for every drop, and the time of each, ns.
+struct TimedAnswers {
     name: &'static str,
     answers: Vec<Answer>,
     times_ns: Vec<f64>,
 }
 
-impl Worked {
-    fn named(name: &'static str) -> Self {
+impl TimedAnswers {
+    fn new(name: &'static str) -> Self {
         Self { name, answers: Vec::new(), times_ns: Vec::new() }
     }
 
-    /// One answer more, timed; no answer is an empty one.
-    fn timed(&mut self, work: impl FnOnce() -> Option<Answer>) {
+    /// Runs and times one more answer; no answer gives an empty one.
+    fn time_work(&mut self, work: impl FnOnce() -> Option<Answer>) {
         let begun = Instant::now();
         let answer = black_box(work()).unwrap_or_default();
         self.times_ns.push(1e9 * begun.elapsed().as_secs_f64());
@@ -204,9 +203,9 @@ impl Worked {
     }
 }
 
-/// A point a way and class, and one of all classes; a way that never says anything of the quantity is none
-/// for it. The drops of a class stand together.
-fn scored(quantity: usize, worked: &[Worked], drops: &[FiledDrop]) -> Vec<TrialPoint> {
+/// Scores one point per method and class, and one for all classes; a method without any answer for the
+/// quantity has none. The drops of a class must be adjacent.
+fn score(quantity: usize, worked: &[TimedAnswers], drops: &[FiledDrop]) -> Vec<TrialPoint> {
     let mut classes: Vec<&'static str> = drops.iter().map(|drop| drop.class).collect();
     classes.dedup();
     classes.extend(drops.first().map(|_| ALL_CLASSES));
@@ -215,8 +214,8 @@ fn scored(quantity: usize, worked: &[Worked], drops: &[FiledDrop]) -> Vec<TrialP
     points.filter(|point| point.cases > 0 || point.method == READING).collect()
 }
 
-/// What a way says of the drops of a class, and how long it takes.
-fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> TrialPoint {
+/// Scores the answers of a method for the drops of a class, and its time.
+fn point(quantity: usize, way: &TimedAnswers, drops: &[FiledDrop], class: &str) -> TrialPoint {
     let is_own = |i: &usize| class == ALL_CLASSES || drops[*i].class == class;
     let own: Vec<usize> = (0..drops.len()).filter(is_own).collect();
     let off = |i: &usize| {
@@ -224,9 +223,9 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
         let scale = if quantity == 0 { 100.0 / truth } else { 1.0 };
         Some((scale * (stated.value - truth).abs(), scale * stated.u95))
     };
-    let said: Vec<(f64, f64)> = own.iter().filter_map(off).collect();
-    let held = said.iter().filter(|(error, half_width)| error <= half_width).count();
-    let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.into_iter().unzip();
+    let answers: Vec<(f64, f64)> = own.iter().filter_map(off).collect();
+    let held = answers.iter().filter(|(error, half_width)| error <= half_width).count();
+    let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = answers.into_iter().unzip();
     let cases = errors.len();
     let promised = (cases > 0).then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
     let [median_error, p95_error] = median_and_p95(errors);
@@ -250,7 +249,7 @@ fn point(quantity: usize, way: &Worked, drops: &[FiledDrop], class: &str) -> Tri
     }
 }
 
-/// Median and 95th percentile, each that of a drop; not a number where there is none.
+/// Median and 95th percentile, each the value of a drop; NaN if there is none.
 fn median_and_p95(mut errors: Vec<f64>) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);
     let Some(last) = errors.len().checked_sub(1) else { return [f64::NAN; 2] };

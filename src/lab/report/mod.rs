@@ -1,4 +1,4 @@
-//! A synthetic recording to its files, a trial to its page, pictures and tables.
+//! Files of a synthetic recording; page, pictures and tables of a trial.
 
 mod synthetic;
 mod trial;

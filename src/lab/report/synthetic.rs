@@ -1,18 +1,18 @@
-//! A synthetic recording to the bytes of its three files, the recording, the cask file, the truth: each
-//! channel in a place that the cask file names.
+//! The three files of a synthetic recording: recording, cask file and truth. The cask file names the place of
+//! each channel.
 
 mod cask;
 mod mcap;
 
 use crate::lab::data::{Scene, SceneFile, SyntheticRecording, Truth};
 use crate::numerics::as_f64;
-use crate::report::curves_h5::{filled, text, through_a_file};
+use crate::report::curves_h5::{store, text, through_a_file};
 use crate::report::records::records;
 use crate::report::{ReportError, json};
 use miette::miette;
 use serde::Serialize;
 
-/// How a synthetic recording is written.
+/// Format of a synthetic recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SyntheticFormat {
     /// MCAP with blocks in JSON.
@@ -25,27 +25,28 @@ pub enum SyntheticFormat {
     Csv,
 }
 
-/// Where a channel stands.
+/// Location of a channel in the file.
 struct SyntheticPlace {
     /// Name within the format: of the topic or dataset below `/daq/`, or of the column.
     name: String,
     /// The source as the cask file writes it.
     source: String,
-    /// Times of its own, as the cask file writes them, where the format does not tell.
+    /// Separate times, as the cask file writes them, if the format does not state them.
     time: Option<String>,
 }
 
 /// The files by name: `recording_name`, then the cask file and the truth beside it.
 ///
 /// # Errors
-/// Where the format cannot hold the channels or a writer fails.
+///
+/// Returned if the format cannot hold the channels or a writer fails.
 pub fn synthetic_files(
     scene_file: &SceneFile,
     recording: &SyntheticRecording,
     recording_name: &str,
     format: SyntheticFormat,
 ) -> miette::Result<Vec<(String, Vec<u8>)>> {
-    let recording = &recording.mounted(&scene_file.stated);
+    let recording = &recording.to_mounted(&scene_file.stated);
     let places = places(recording, format);
     let bytes = match format {
         SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
@@ -67,7 +68,7 @@ pub fn synthetic_files(
     Ok(vec![(recording_name.to_owned(), bytes), (cask_name, cask_file), (truth_name, truth)])
 }
 
-/// `….truth.json`; `t_impact` counts from the recording's first sample.
+/// Content of `….truth.json`; `t_impact` counts from the recording's first sample.
 #[derive(Serialize)]
 struct TruthFile<'a> {
     schema: &'static str,
@@ -91,8 +92,8 @@ fn one_rate_hz(recording: &SyntheticRecording) -> miette::Result<f64> {
     })
 }
 
-/// A recording to CSV: comma, point, one header with units; a lost sample is an empty cell, a lost row is
-/// left out.
+/// Writes a recording as CSV: comma, point, one header with units; a lost sample is an empty cell, a lost row
+/// is omitted.
 fn csv_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> miette::Result<Vec<u8>> {
     let (channels, rate_hz) = (&recording.channels, one_rate_hz(recording)?);
     let mut times: Vec<(&str, f64)> = vec![("time_s", 0.0)];
@@ -110,14 +111,14 @@ fn csv_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> miett
     Ok(records(std::iter::once(header.chain(columns).collect::<Vec<String>>()).chain(rows))?)
 }
 
-/// A recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the rest in
-/// `/time_s`.
+/// Writes a recording as HDF5: one dataset per channel in `/daq`; if samples were lost, the remaining times
+/// in `/time_s`.
 fn hdf5_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> Result<Vec<u8>, ReportError> {
     through_a_file(|file| {
         let group = file.create_group("daq")?;
         for (channel, place) in recording.channels.iter().zip(places) {
             let samples: Vec<f32> = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
-            let dataset = filled(&group, &place.name, &samples)?;
+            let dataset = store(&group, &place.name, &samples)?;
             text(&dataset, "unit", &channel.unit)?;
             for (name, value) in
                 [("sample_rate_hz", channel.sample_rate_hz), ("start_time_s", channel.start_s)]
@@ -132,7 +133,7 @@ fn hdf5_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> Resu
                 };
                 let kept = channel.samples.iter().enumerate().filter(|(_, x)| !x.is_nan());
                 let times_s: Vec<f64> = kept.map(|(i, _)| channel.time_s(i)).collect();
-                let times = filled(&times, &place.name, &times_s)?;
+                let times = store(&times, &place.name, &times_s)?;
                 text(&times, "unit", "s")?;
             }
         }
@@ -151,7 +152,7 @@ fn places(recording: &SyntheticRecording, format: SyntheticFormat) -> Vec<Synthe
     let mut taken: Vec<String> = vec!["time".into(), "time_s".into()];
     let mut places = Vec::new();
     for channel in &recording.channels {
-        let name = unused(&channel.name, &taken);
+        let name = unique_name(&channel.name, &taken);
         taken.push(name.to_lowercase());
         let has_own_times = channel.start_s > 0.0;
         let has_gaps = channel.samples.iter().any(|x| x.is_nan());
@@ -170,8 +171,8 @@ fn places(recording: &SyntheticRecording, format: SyntheticFormat) -> Vec<Synthe
     places
 }
 
-/// The name with only letters, digits, `_` and `-`, in no case like another's.
-fn unused(name: &str, taken: &[String]) -> String {
+/// A name with only letters, digits, `_` and `-`, which differs from the others in more than case.
+fn unique_name(name: &str, taken: &[String]) -> String {
     let mut name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
     // A bare number would count columns, and a spreadsheet would compute with a minus in front.
@@ -195,9 +196,9 @@ mod tests {
 
     #[test]
     fn no_two_channels_share_a_place() {
-        assert_eq!(unused("left.side", &[]), "left_side");
-        assert_eq!(unused("Left side", &["left_side".into()]), "Left_side_");
-        assert_eq!(unused("12", &[]), "A12");
-        assert_eq!(unused("time_s", &["time_s".into()]), "time_s_");
+        assert_eq!(unique_name("left.side", &[]), "left_side");
+        assert_eq!(unique_name("Left side", &["left_side".into()]), "Left_side_");
+        assert_eq!(unique_name("12", &[]), "A12");
+        assert_eq!(unique_name("time_s", &["time_s".into()]), "time_s_");
     }
 }

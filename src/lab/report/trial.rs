@@ -1,4 +1,4 @@
-//! A trial to its files: the pages that a site signs, JSON, Markdown, pictures and map.
+//! Files of a trial: the pages that a site signs, JSON, Markdown, pictures and map.
 
 mod document;
 mod pictures;
@@ -6,11 +6,11 @@ mod pictures;
 use crate::lab::data::Trial;
 use crate::report::{ReportError, as_html, as_markdown, as_text, json};
 
-/// The files of a trial; the first is where a reader begins.
+/// Names of the files; a reader begins with the first.
 pub const TRIAL_NAMES: [&str; 5] =
     ["validation.html", "validation.json", "validation.md", "speed.svg", "failures.svg"];
 
-/// What a terminal shows at the end: the limits, and whether the program is accepted.
+/// Text for a terminal at the end: the limits, and if the program is accepted.
 pub fn trial_outcome(trial: &Trial, width: usize) -> String {
     as_text::text(&document::verdict(trial), width)
 }
@@ -18,9 +18,10 @@ pub fn trial_outcome(trial: &Trial, width: usize) -> String {
 /// Every file of a trial by name, in the order of [`TRIAL_NAMES`].
 ///
 /// # Errors
-/// [`ReportError`] where one of them cannot be made; then none is returned.
+///
+/// [`ReportError`] if one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = [pictures::ways(trial), pictures::failures(trial)];
+    let pictures = [pictures::ways_picture(trial), pictures::failures(trial)];
     let document = document::document(trial);
     let page = as_html::page(&document, &pictures).into_bytes();
     let [speed, failures] = pictures.map(|picture| picture.svg.into_bytes());

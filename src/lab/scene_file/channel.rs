@@ -1,7 +1,6 @@
-//! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state
-//! it.
+//! Reads a `[[channel]]` table of a scene file: the true channel, and the channel of the cask file.
 
-use super::{flag, needs, spans_s, value, whole};
+use super::{flag, needs, spans_s, value, whole_number};
 use crate::data::{
     Axis, Cask, ChannelSpec, Coupling, End, OtherSpec, RateSpec, STANDARD_GRAVITY_M_S2, Source, Unit,
 };
@@ -19,24 +18,24 @@ const WHITE_NOISE_G: f64 = 0.1;
 /// A channel as it is, and as stated.
 pub(super) type Both = (SceneChannel, ChannelSpec);
 
-fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
+fn read_end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
     let end = table.word("end", &[("first", End::First), ("second", End::Second)], mend)?;
     end.ok_or_else(|| table.missing("end", mend))
 }
 
 /// One transverse sensor near each end, for a scene without channels.
-pub(super) fn usual(cask: &Cask) -> Vec<Both> {
+pub(super) fn usual_channels(cask: &Cask) -> Vec<Both> {
     let channel = |(name, end)| {
         let mut channel = SceneChannel::perfect(name, end, usual_position_m(cask, end));
         channel.chain.white_noise_m_s2 = WHITE_NOISE_G * STANDARD_GRAVITY_M_S2;
-        let stated = stated(&channel);
+        let stated = stated_spec(&channel);
         (channel, stated)
     };
     [("A1", End::First), ("A2", End::Second)].map(channel).into()
 }
 
-/// What a true cask file says of a channel, its source still to be named.
-fn stated(channel: &SceneChannel) -> ChannelSpec {
+/// Specification of a channel in a true cask file, with its source still unnamed.
+fn stated_spec(channel: &SceneChannel) -> ChannelSpec {
     ChannelSpec { source: Source::Path(String::new()), ..spec(channel) }
 }
 
@@ -52,7 +51,7 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
 pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileError> {
     const HIDDEN: &str =
         "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
-    let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
+    let end = read_end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
     let full_scale = table.given("full_scale")?;
@@ -76,16 +75,16 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
         lateral_m: table.given("stated_lateral_m")?.unwrap_or(channel.lateral_m),
-        ..stated(&channel)
+        ..stated_spec(&channel)
     };
     Ok((channel, stated))
 }
 
-/// The angular-rate sensor of one table, as it is, and as stated.
+/// Reads the angular-rate sensor of one table, true and as stated.
 pub(super) fn rate(table: &Section, cask: &Cask) -> Result<(RateSensor, OtherSpec), CaskFileError> {
     let units = [("deg/s", "deg/s"), ("rad/s", "rad/s")];
     let unit = table.word("unit", &units, "\"deg/s\" (the default) or \"rad/s\"")?.unwrap_or("deg/s");
-    let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
+    let end = read_end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
     let sensor = RateSensor {
         name: table.required_text("name")?,
         position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
@@ -95,7 +94,7 @@ pub(super) fn rate(table: &Section, cask: &Cask) -> Result<(RateSensor, OtherSpe
         offset_rad_s: value(table, "offset_deg_s")?.to_radians(),
         white_noise_rad_s: value(table, "white_noise_deg_s")?.to_radians(),
     };
-    let read = ChannelSpec::plain(&sensor.name, end, "", sensor.position_m);
+    let read = ChannelSpec::new(&sensor.name, end, "", sensor.position_m);
     let rate = Some(RateSpec { polarity: 1.0, calibration: None });
     Ok((sensor, OtherSpec { read, unit: Some(unit.to_owned()), rate }))
 }
@@ -110,8 +109,8 @@ pub(super) fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Opti
     match at.filter(|at| !allowed.contains(at)) {
         None => Ok(at),
         Some(at) => {
-            let what = format!("{key} is {at}");
-            Err(table.outside(key, &what, &allowed, "metres along the axis from the first end"))
+            let problem = format!("{key} is {at}");
+            Err(table.outside(key, &problem, &allowed, "metres along the axis from the first end"))
         }
     }
 }
@@ -138,7 +137,7 @@ fn chain(table: &Section, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFil
         cable_noise_m_s2: in_g("cable_noise_g")?,
         whip: table.given("whip_g")?.map(|whip_g| (whip_g * STANDARD_GRAVITY_M_S2, whip_hz)),
         full_scale_m_s2,
-        bits: whole(table, "bits")?,
+        bits: whole_number(table, "bits")?,
         dropouts_s: spans_s(table, "dropouts_s")?,
         gaps_s: spans_s(table, "gaps_s")?,
         skew_s: value("skew_ms")? * 1e-3,

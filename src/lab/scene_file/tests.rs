@@ -77,7 +77,7 @@ swapped_polarity = true
 "#;
 
 fn of(text: &str) -> Result<SceneFile, CaskFileError> {
-    checked(Path::new("scene.toml"), text)
+    parse(Path::new("scene.toml"), text)
 }
 
 fn near(value: f64, wanted: f64) {

@@ -1,5 +1,5 @@
-//! State of the cask to its rates: a rigid body in the plane with two corners, its bending modes, which ride
-//! on it or, of an elastic body, move its corners, and what is loose in it.
+//! Equations of motion of the cask: a rigid body in the plane with two corners, its bending modes, which ride
+//! on it or, for an elastic body, move its corners, and its loose masses.
 
 use super::contact::CrushingCorner;
 use super::elastic::{self, BodyMode, MOST_ELASTIC};
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.
 pub(super) const CASK_STATE: usize = 6 + 2 * MOST_MODES;
 
-/// The same, then x, z and their rates of each loose mass.
+/// The state of the cask is followed by x, z and their rates for each loose mass.
 pub(super) const WHOLE_STATE: usize = CASK_STATE + 4 * MOST_LOOSE;
 
 /// [`WHOLE_STATE`] of an elastic body.
@@ -20,30 +20,29 @@ pub(super) const ELASTIC_STATE: usize = 6 + 2 * MOST_ELASTIC + 4 * MOST_LOOSE;
 /// Most loose masses of a scene.
 pub const MOST_LOOSE: usize = 2;
 
-/// Share of the loading's √(m/K) in which a corner that sticks loses a rest of sliding: short against any
-/// pulse.
+/// Share of the loading's √(m/K) in which a sticking corner loses the remainder of its sliding: short against
+/// any pulse.
 const HOLD_SHARE: f64 = 0.02;
 
-/// Friction of a rough corner: far above the 1 or so that sticking needs, yet nothing holds it where nothing
-/// presses.
+/// Friction of a rough corner: far above the 1 or so that sticking needs, yet zero without a normal force.
 ///
-/// Held without a bound, a corner that comes back would be thrown off by the hold itself, again and again.
+/// Held without a bound, a returning corner would be thrown off by the hold itself, again and again.
 const ROUGH: f64 = 100.0;
 
-/// Greatest friction at R: there, both ends may be down, and two corners that stick would fight over one
-/// body.
+/// Greatest friction at R: both ends may be on the target there, and two sticking corners would contradict
+/// each other.
 const SECOND_END_FRICTION: f64 = 0.5;
 
-/// Sliding speed over which the friction of R turns its sign, m/s: small against the metres a second of a
+/// Sliding speed over which the friction of R changes its sign, m/s: small against the metres per second of a
 /// slap-down.
 const REVERSAL_M_S: f64 = 0.2;
 
 /// A corner's place relative to S and its motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CornerMotion {
-    /// From S, along the target, m.
+    /// Distance from S along the target, m.
     pub(super) x_m: f64,
-    /// From S, up, m.
+    /// Height above S, m.
     pub(super) z_m: f64,
     /// Above the target, m.
     pub(super) height_m: f64,
@@ -64,8 +63,8 @@ struct Loose<'a> {
     bends: &'a [f64],
 }
 
-/// Where a loose mass is, in body axes from S, and the force of its pads on it.
-struct Blow {
+/// Position of a loose mass, in body axes from S, and the force of its pads on it.
+struct PadForce {
     xi_m: f64,
     /// Across the axis, N.
     force_n: f64,
@@ -79,11 +78,11 @@ pub(super) struct SceneBody<'a> {
     friction: f64,
     hold_s: f64,
     pub(super) modes: Vec<BodyMode>,
-    /// Of each mode at either end, along and across the axis.
+    /// Shape of each mode at either end, along and across the axis.
     pub(super) ends: Vec<[[f64; 2]; 2]>,
-    /// Whether the modes move the corners.
+    /// True if the modes move the corners.
     acts_back: bool,
-    /// Where the state of what is loose begins.
+    /// Index at which the state of the loose masses begins.
     loose_from: usize,
     /// Deflection of each mode where each loose mass lies, at its pads.
     at_pads: Vec<Vec<f64>>,
@@ -110,14 +109,14 @@ impl<'a> SceneBody<'a> {
                 Contact::Coulomb(coefficient) => coefficient,
             },
             hold_s: HOLD_SHARE * (mass_kg / scene.first_end.loading_n_m).sqrt(),
-            ends: modes.iter().map(|mode| [0, 1].map(|end| mode.of_end(end, scene))).collect(),
+            ends: modes.iter().map(|mode| [0, 1].map(|end| mode.corner_shape(end, scene))).collect(),
             modes,
             acts_back,
             loose_from: if acts_back { ELASTIC_STATE - 4 * MOST_LOOSE } else { CASK_STATE },
         }
     }
 
-    /// The state at first contact: L at the target, all of the body at the impact velocity.
+    /// State at first contact: L at the target, the whole body at the impact velocity.
     pub(super) fn at_first_contact(&self) -> [f64; ELASTIC_STATE] {
         let drop = &self.scene.drop;
         let mut y = [0.0; ELASTIC_STATE];
@@ -128,7 +127,7 @@ impl<'a> SceneBody<'a> {
         y[5] = -drop.angular_velocity_rad_s;
         y[4] = -drop.impact_velocity_m_s - y[5] * first.x_m;
         let (sin, cos) = drop.angle_rad.sin_cos();
-        for Loose { at: i, mass: loose, .. } in self.loose() {
+        for Loose { at: i, mass: loose, .. } in self.loose_masses() {
             let xi_m = loose.position_m - self.scene.cask.cog_m;
             let (x_m, z_m) = (xi_m * cos, xi_m * sin);
             let start = [x_m, y[1] + z_m, y[3] - y[5] * z_m, y[4] + y[5] * x_m];
@@ -138,13 +137,13 @@ impl<'a> SceneBody<'a> {
     }
 
     /// The loose masses.
-    fn loose(&self) -> impl Iterator<Item = Loose<'_>> {
+    fn loose_masses(&self) -> impl Iterator<Item = Loose<'_>> {
         let masses = (self.loose_from..).step_by(4).zip(&self.scene.extras.contents);
         masses.zip(&self.at_pads).map(|((at, mass), bends)| Loose { at, mass, bends })
     }
 
-    /// The blow of the pads on a loose mass.
-    fn blow(&self, loose: Loose, y: &[f64]) -> Blow {
+    /// Force of the pads on a loose mass.
+    fn pad_blow(&self, loose: Loose, y: &[f64]) -> PadForce {
         let Loose { at: i, mass: loose, bends } = loose;
         let (sin, cos) = y[2].sin_cos();
         let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
@@ -157,22 +156,23 @@ impl<'a> SceneBody<'a> {
             }
         }
         let stiffness_n_m = loose.mass_kg * (PI / loose.pulse_s).powi(2);
-        // A pad pushes only; this form has no step in the force as the mass meets it (Hunt & Crossley 1975).
+        // A pad only pushes; this formula has no step in the force when the mass meets it (Hunt & Crossley
+        // 1975).
         let pad_n = |crush_m: f64, rate_m_s: f64| {
             stiffness_n_m * crush_m.max(0.0) * (1.0 + loose.damping_s_m * rate_m_s).max(0.0)
         };
         let below_n = pad_n(-loose.gap_m - eta_m, -rising_m_s);
         let above_n = pad_n(eta_m - (loose.play_m - loose.gap_m), rising_m_s);
-        Blow { xi_m, force_n: below_n - above_n }
+        PadForce { xi_m, force_n: below_n - above_n }
     }
 
-    /// Place and motion of L (0) or R (1), as the target meets it.
+    /// Position and motion of L (0) or R (1), as seen from the target.
     pub(super) fn corner(&self, end: usize, y: &[f64]) -> CornerMotion {
-        self.corner_bent_by(if self.acts_back { &self.ends } else { &[] }, end, y)
+        self.bent_corner(if self.acts_back { &self.ends } else { &[] }, end, y)
     }
 
-    /// With the bending of the first of the modes, u along and w across the axis.
-    pub(super) fn corner_bent_by(&self, modes: &[[[f64; 2]; 2]], end: usize, y: &[f64]) -> CornerMotion {
+    /// Adds the bending of the first of the modes, u along and w across the axis.
+    pub(super) fn bent_corner(&self, modes: &[[[f64; 2]; 2]], end: usize, y: &[f64]) -> CornerMotion {
         let cask = &self.scene.cask;
         let ([mut u_m, mut w_m], [mut u_m_s, mut w_m_s]) = ([0.0; 2], [0.0; 2]);
         for (i, (ends, mode)) in modes.iter().zip(&self.modes).enumerate() {
@@ -194,11 +194,11 @@ impl<'a> SceneBody<'a> {
         }
     }
 
-    /// What must stay above zero for the phases of both corners to last.
-    pub(super) fn watches(&self, y: &[f64]) -> [f64; 4] {
+    /// Values that stay above zero while the phases of both corners last.
+    pub(super) fn phase_margins(&self, y: &[f64]) -> [f64; 4] {
         let [first, second] = [0, 1].map(|end| {
             let at = self.corner(end, y);
-            self.corners[end].watches(at.height_m, at.rising_m_s)
+            self.corners[end].phase_margins(at.height_m, at.rising_m_s)
         });
         [first[0], first[1], second[0], second[1]]
     }
@@ -215,39 +215,39 @@ impl<'a> SceneBody<'a> {
         let mut loads = [(0.0, normal_n[0]), (second_n, normal_n[1])];
         if self.corners[0].touches() && self.friction > 0.0 {
             let hold_n = self.hold_n(y, &at[0], &loads);
-            // As far as Coulomb's bound lets it.
+            // The friction stays within Coulomb's bound.
             let bound_n = self.friction_at(at[0].sliding_m_s) * normal_n[0];
             loads[0].0 = hold_n.clamp(-bound_n, bound_n);
         }
         loads
     }
 
-    /// The friction of L where it slides at this speed.
+    /// Friction of L at this sliding speed.
     fn friction_at(&self, sliding_m_s: f64) -> f64 {
         let extras = &self.scene.extras;
-        let returning = extras.returning_friction.filter(|_| self.corners[0].returns());
+        let returning = extras.returning_friction.filter(|_| self.corners[0].is_unloading());
         let held = returning.unwrap_or(self.friction);
         extras
             .falling_friction
             .map_or(held, |(fast, within_m_s)| fast + (held - fast) * (-sliding_m_s.abs() / within_m_s).exp())
     }
 
-    /// From S to where the force on an end acts, along the target, m: as the end flattens it moves inward.
+    /// Lever arm of the force on an end from S, along the target, m: as the end flattens it moves inward.
     fn arm_m(&self, end: usize, at: &CornerMotion) -> f64 {
         let (corner, inward) = (&self.corners[end], if end == 0 { 1.0 } else { -1.0 });
         at.x_m + inward * corner.law.footprint * corner.crush_m(at.height_m)
     }
 
-    /// The tangential force on L that, beside these, stops its sliding within the hold time and keeps it
-    /// stopped, N.
+    /// The additional tangential force on L that stops its sliding within the hold time and keeps it stopped,
+    /// N.
     fn hold_n(&self, y: &[f64], at: &CornerMotion, loads: &Loads) -> f64 {
         let (cask, free) = (&self.scene.cask, self.accelerations(y, loads));
-        // ẍ_C = ẍ_S − φ̈ z − φ̇² x without the force, and what one newton adds to it.
+        // ẍ_C = ẍ_S − φ̈ z − φ̇² x without the force, and the change per newton.
         let mut without_m_s2 = free[0] - free[2] * at.z_m - y[5] * y[5] * at.x_m;
         let mut per_newton = 1.0 / cask.mass_kg + at.z_m * at.z_m / cask.inertia_kg_m2;
         if self.acts_back {
             let (sin, cos) = y[2].sin_cos();
-            // − 2 φ̇ ż′ + ẍ′ of what bends, with its velocity z′ upwards.
+            // Bending adds − 2 φ̇ ż′ + ẍ′, with its velocity z′ upwards.
             without_m_s2 -= 2.0 * y[5] * (at.rising_m_s - (y[4] + y[5] * at.x_m));
             for (i, [[along, across], _]) in self.ends.iter().enumerate() {
                 let towards = along * cos - across * sin;
@@ -258,8 +258,8 @@ impl<'a> SceneBody<'a> {
         (-at.sliding_m_s / self.hold_s - without_m_s2) / per_newton
     }
 
-    /// The rate of the rate of a mode's coordinate under loads on the corners, m/s²: those that bend are the
-    /// forces across the axis and, of an elastic body, those along it below the axis.
+    /// Second derivative of a mode's coordinate under loads on the corners, m/s²: bending comes from the
+    /// forces across the axis and, for an elastic body, from those along it below the axis.
     fn mode_m_s2(&self, i: usize, y: &[f64], loads: &Loads) -> f64 {
         let (sin, cos) = y[2].sin_cos();
         let mass_kg = self.scene.cask.mass_kg;
@@ -285,8 +285,8 @@ impl<'a> SceneBody<'a> {
             normal_n += n;
             moment_n_m += self.arm_m(end, &at) * n - at.z_m * t;
         }
-        for loose in self.loose() {
-            let Blow { xi_m, force_n } = self.blow(loose, y);
+        for loose in self.loose_masses() {
+            let PadForce { xi_m, force_n } = self.pad_blow(loose, y);
             let (sin, cos) = y[2].sin_cos();
             tangential_n += force_n * sin;
             normal_n -= force_n * cos;
@@ -313,9 +313,9 @@ impl<'a> SceneBody<'a> {
         }
         let (sin, cos) = y[2].sin_cos();
         let cask = &self.scene.cask;
-        for each in self.loose() {
+        for each in self.loose_masses() {
             let (i, loose, bends) = (each.at, each.mass, each.bends);
-            let Blow { force_n, .. } = self.blow(each, y);
+            let PadForce { force_n, .. } = self.pad_blow(each, y);
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
             let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
@@ -326,14 +326,14 @@ impl<'a> SceneBody<'a> {
         rates
     }
 
-    /// Greatest angular frequency of what is going on, rad/s: of a corner in contact or of a mode; of an
+    /// Greatest angular frequency of the current state, rad/s: of a corner in contact or of a mode; for an
     /// elastic body a third of it, since its fastest modes have little of the motion.
     pub(super) fn fastest_rad_s(&self) -> f64 {
         let counts = if self.acts_back { 1.0 / 3.0 } else { 1.0 };
         let listed = self.scene.modes.iter().chain(self.modes.iter().map(|mode| &mode.mode));
         let modes = listed.map(|mode| counts * std::f64::consts::TAU * mode.frequency_hz);
         let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
-        let pads = self.loose().map(|loose| PI / loose.mass.pulse_s);
+        let pads = self.loose_masses().map(|loose| PI / loose.mass.pulse_s);
         modes.chain(corners).chain(pads).fold(0.0, f64::max)
     }
 }

@@ -1,4 +1,5 @@
-//! The specific force at each sensor to what its recorder writes: the measuring chain, element by element.
+//! The measuring chain, element by element, from the specific force at each sensor to the samples of the
+//! recorder.
 //!
 //! In order: tilt and cross axis, resonance, AC coupling, anti-alias filter, sampling by the recorder's
 //! clock, offset, zero shift, noise, hum, cable, scale and polarity, converter, dropouts, gaps, stamps.
@@ -10,21 +11,22 @@ use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2, rate_unit_rad_s};
 use crate::lab::data::{
     Chain, MotionStep, RateSensor, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
 };
-use crate::numerics::{as_count, single};
+use crate::numerics::{as_count, to_f32};
 
-/// What a perfect sensor at a channel's place and axis reads at given times, m/s²; one of turning, rad/s.
+/// Reading of a perfect sensor at a channel's place and axis at given times, m/s²; for an angular-rate
+/// sensor, rad/s.
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
 
 /// The drop as the chain sees it.
 struct SensedDrop<'a> {
     force_m_s2: Force<'a>,
-    /// When an end is on the target, s.
+    /// Intervals in which an end is on the target, s.
     contacts_s: Vec<(f64, f64)>,
     /// End of the record, s after first contact.
     end_s: f64,
 }
 
-/// What the recorder of `scene` writes of `motion`. The same scene gives the same bits.
+/// Records `motion` with the recorder of `scene`. The same scene gives the same bits.
 pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     let force = |seat: &SceneChannel, times_s: &[f64]| match rate_unit_rad_s(&seat.unit) {
         Some(_) => super::rotation_rad_s(scene, motion, seat.position_m, times_s),
@@ -36,7 +38,7 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
         contacts_s: contacts_s(motion),
         end_s: motion.truth.slap_t.map_or(last_s, |slap_s| slap_s + scene.after_s),
     };
-    let seats = seated(scene).into_iter().chain(scene.extras.rates.iter().map(turning));
+    let seats = true_seats(scene).into_iter().chain(scene.extras.rates.iter().map(rate_seat));
     let mut channels: Vec<SyntheticChannel> =
         seats.enumerate().map(|(i, seat)| channel(scene, &seat, i, &drive)).collect();
     let earliest_s = channels.iter().map(|c| c.start_s).reduce(f64::min).unwrap_or(0.0);
@@ -45,16 +47,16 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     }
     SyntheticRecording {
         channels,
-        // The recorder counts samples and takes its stated rate for the true one.
+        // The recorder counts samples and treats its stated rate as the true one.
         first_contact_s: scene.before_s * (1.0 + scene.clock_error) - earliest_s,
         truth: motion.truth,
         seed: scene.seed,
     }
 }
 
-/// The channels where they truly sit: with exchanged ends each hangs on the cable of its partner on the other
+/// Channels at their true places: if the ends are exchanged each is on the cable of its partner on the other
 /// end.
-fn seated(scene: &Scene) -> Vec<SceneChannel> {
+fn true_seats(scene: &Scene) -> Vec<SceneChannel> {
     let mut seats = scene.channels.clone();
     if !scene.swapped_ends {
         return seats;
@@ -84,18 +86,18 @@ fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
 fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop) -> SyntheticChannel {
     let rate_hz = seat.sample_rate_hz * (1.0 + scene.clock_error);
     let count = count((scene.before_s + drive.end_s) * rate_hz);
-    let mut samples_m_s2 = analog::sampled(scene, seat, drive, rate_hz, count);
+    let mut samples_m_s2 = analog::sample_analog(scene, seat, drive, rate_hz, count);
     let times = disturbance::SampleTimes { from_s: -scene.before_s, rate_hz };
     disturbance::add(&mut samples_m_s2, (scene.seed, index), &seat.chain, &times, &drive.contacts_s);
     let sign = if seat.chain.swapped_polarity { -1.0 } else { 1.0 };
     for sample in &mut samples_m_s2 {
-        *sample = converted(*sample * seat.chain.scale * sign, &seat.chain);
+        *sample = convert(*sample * seat.chain.scale * sign, &seat.chain);
     }
     hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz, None);
     hold(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz, Some(f64::NAN));
     let of_force = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
     let unit = rate_unit_rad_s(&seat.unit).unwrap_or(of_force);
-    let samples = samples_m_s2.iter().map(|x| single(x / unit)).collect();
+    let samples = samples_m_s2.iter().map(|x| to_f32(x / unit)).collect();
     SyntheticChannel {
         name: seat.name.clone(),
         unit: seat.unit.clone(),
@@ -105,8 +107,8 @@ fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop)
     }
 }
 
-/// The seat of an angular-rate sensor: its chain, in rad/s for m/s².
-fn turning(sensor: &RateSensor) -> SceneChannel {
+/// Channel of an angular-rate sensor with its chain, in rad/s instead of m/s².
+fn rate_seat(sensor: &RateSensor) -> SceneChannel {
     SceneChannel {
         name: sensor.name.clone(),
         position_m: sensor.position_m,
@@ -129,13 +131,13 @@ fn count(number: f64) -> usize {
 
 /// The first index that is not before `number`.
 fn ceiling(number: f64) -> usize {
-    // A time that was meant to fall on a sample does so in spite of rounding.
+    // A time intended to fall on a sample does so in spite of rounding.
     as_count((number - 1e-6).ceil())
 }
 
-/// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step
-/// below it.
-fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
+/// Clips at ± full scale; with bits, rounds to steps of full scale over 2^(bits − 1), the uppermost code a
+/// step below it.
+fn convert(signal_m_s2: f64, chain: &Chain) -> f64 {
     let Some(full_scale_m_s2) = chain.full_scale_m_s2 else { return signal_m_s2 };
     let Some(bits) = chain.bits else { return signal_m_s2.clamp(-full_scale_m_s2, full_scale_m_s2) };
     let codes = 2_f64.powi(i32::from(bits) - 1);
@@ -143,7 +145,7 @@ fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
     (signal_m_s2 / step_m_s2).round().clamp(-codes, codes - 1.0) * step_m_s2
 }
 
-/// Within each span, s after the first sample, the last value before it stays, or all is `lost`.
+/// Repeats the last value within each span, s after the first sample, or replaces all by `lost`.
 fn hold(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64, lost: Option<f64>) {
     for &(from_s, to_s) in spans_s {
         let to = ceiling(to_s * rate_hz).min(samples.len());

@@ -1,4 +1,4 @@
-//! Height of a corner over the target to the normal force on it, with the memory of its dent.
+//! Normal force on a corner from its height above the target, with the memory of its dent.
 
 use crate::lab::data::CrushableEnd;
 
@@ -6,7 +6,7 @@ use crate::lab::data::CrushableEnd;
 /// cycles.
 const SETTLING_DAMPING: f64 = 0.05;
 
-/// What a corner is doing; the force law is smooth within each.
+/// Phase of a corner; the force law is smooth within each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     /// Above the target or its own dent.
@@ -17,13 +17,13 @@ enum Phase {
     Yielding,
     /// Coming out along the unloading line.
     Unloading,
-    /// Fallen back before it left: on the unloading line either way, damped until it rests.
+    /// Returned before it left: on the unloading line either way, damped until it rests.
     ///
-    /// The way out alone has no damping, so that k is that of the two stiffnesses.
+    /// The first unloading has no damping, so that k follows from the two stiffnesses.
     Settling,
 }
 
-/// What a change of phase means for the drop.
+/// Meaning of a change of phase for the drop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CornerPassage {
     /// The corner touches.
@@ -32,7 +32,7 @@ pub(super) enum CornerPassage {
     Leave,
 }
 
-/// One corner: its law and its dent.
+/// One corner: its force law and its dent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CrushingCorner {
     pub(super) law: CrushableEnd,
@@ -51,7 +51,7 @@ impl CrushingCorner {
     /// A corner of a body of `mass_kg` without a dent, at the target or above it.
     pub(super) fn new(mut law: CrushableEnd, mass_kg: f64, touching: bool) -> Self {
         if let Some((_, stiffness_n_m)) = law.lock_up {
-            // An end that unloads more softly than it was loaded would give energy.
+            // An end that unloads more softly than it was loaded would generate energy.
             law.unloading_n_m = law.unloading_n_m.max(law.loading_n_m + stiffness_n_m);
         }
         let phase = if touching { Phase::Loading } else { Phase::Free };
@@ -59,13 +59,12 @@ impl CrushingCorner {
         Self { law, phase, floor_m: 0.0, deepest_m: 0.0, peak_n: 0.0, damping_n_s_m }
     }
 
-    /// Whether it is on the target.
+    /// True if the corner is on the target.
     pub(super) fn touches(&self) -> bool {
         self.phase != Phase::Free
     }
 
-    /// The stiffness that sets the time of what goes on, N/m; a corner that settles is left to the error
-    /// control.
+    /// Stiffness that determines the time scale, N/m; a settling corner is left to the error control.
     pub(super) fn stiffness_n_m(&self) -> f64 {
         match self.phase {
             Phase::Free => 0.0,
@@ -76,12 +75,12 @@ impl CrushingCorner {
         }
     }
 
-    /// Whether it is past its greatest crush.
-    pub(super) fn returns(&self) -> bool {
+    /// True if the corner is past its greatest crush.
+    pub(super) fn is_unloading(&self) -> bool {
         matches!(self.phase, Phase::Unloading | Phase::Settling)
     }
 
-    /// Its greatest crush in this contact so far, m.
+    /// Greatest crush in this contact so far, m.
     pub(super) fn crush_m(&self, height_m: f64) -> f64 {
         match self.phase {
             Phase::Free => 0.0,
@@ -90,12 +89,12 @@ impl CrushingCorner {
         }
     }
 
-    /// The force of the material that a crush of `depth_m` has locked up, N.
+    /// Additional force of material that a crush of `depth_m` has locked up, N.
     fn locked_n(&self, depth_m: f64) -> f64 {
         self.law.lock_up.map_or(0.0, |(from_m, stiffness_n_m)| stiffness_n_m * (depth_m - from_m).max(0.0))
     }
 
-    /// The force as the phase's line has it, N; negative where the corner has left.
+    /// Force on the line of the phase, N; negative if the corner has left.
     fn line_n(&self, height_m: f64, rising_m_s: f64) -> f64 {
         let depth_m = self.floor_m - height_m;
         match self.phase {
@@ -120,8 +119,9 @@ impl CrushingCorner {
         self.line_n(height_m, rising_m_s).max(0.0)
     }
 
-    /// Two values that stay above zero while the phase lasts; which of them falls below says what comes next.
-    pub(super) fn watches(&self, height_m: f64, rising_m_s: f64) -> [f64; 2] {
+    /// Two values that stay above zero while the phase lasts; the one that falls below decides the next
+    /// phase.
+    pub(super) fn phase_margins(&self, height_m: f64, rising_m_s: f64) -> [f64; 2] {
         match self.phase {
             Phase::Free => [height_m - self.floor_m, 1.0],
             Phase::Loading => {
@@ -135,7 +135,7 @@ impl CrushingCorner {
         }
     }
 
-    /// Into the phase that follows when watch number `which` has fallen below zero.
+    /// Changes to the phase that follows when margin number `which` has fallen below zero.
     pub(super) fn switch(&mut self, which: usize, height_m: f64) -> Option<CornerPassage> {
         match (self.phase, which) {
             (Phase::Free, _) => {
@@ -150,7 +150,7 @@ impl CrushingCorner {
                 self.phase = Phase::Unloading;
             }
             (Phase::Unloading | Phase::Settling, 0) => {
-                // The dent stays: the next touch is at its floor, and crushes anew.
+                // The dent stays: the next touch is at its floor, and crushes further.
                 self.phase = Phase::Free;
                 self.floor_m = height_m;
                 return Some(CornerPassage::Leave);
@@ -187,24 +187,24 @@ mod tests {
         assert!((corner.normal_n(-5e-3, 0.0) - 1e4).abs() < 1e-9);
         corner.switch(0, -5e-3);
         assert!((corner.normal_n(-4.5e-3, 0.0) - 6e3).abs() < 1e-9);
-        assert!(corner.returns() && (corner.crush_m(-4.5e-3) - 5e-3).abs() < 1e-15);
+        assert!(corner.is_unloading() && (corner.crush_m(-4.5e-3) - 5e-3).abs() < 1e-15);
     }
 
     #[test]
     fn the_force_follows_the_loading_the_plateau_and_the_unloading() {
         let mut corner = CrushingCorner::new(LAW, 1000.0, true);
         assert!((corner.normal_n(-2e-3, 0.0) - 2e3).abs() < 1e-9);
-        assert!(corner.watches(-2e-3, -1.0).iter().all(|w| *w > 0.0));
-        assert!(corner.watches(-3.1e-3, -1.0)[1] < 0.0);
+        assert!(corner.phase_margins(-2e-3, -1.0).iter().all(|w| *w > 0.0));
+        assert!(corner.phase_margins(-3.1e-3, -1.0)[1] < 0.0);
         assert_eq!(corner.switch(1, -3e-3), None);
         assert!((corner.normal_n(-4e-3, 0.0) - 3e3).abs() < 1e-9);
         assert_eq!(corner.switch(0, -5e-3), None);
         // 3000 N at 5 mm, 4 N/µm back: 1000 N at 4.5 mm, nothing at 4.25 mm.
         assert!((corner.normal_n(-4.5e-3, 0.0) - 1e3).abs() < 1e-9);
-        assert!(corner.watches(-4.2e-3, 1.0)[0] < 0.0);
+        assert!(corner.phase_margins(-4.2e-3, 1.0)[0] < 0.0);
         assert_eq!(corner.switch(0, -4.25e-3), Some(CornerPassage::Leave));
         assert!(!corner.touches());
-        assert!(corner.watches(-4.3e-3, -1.0)[0] < 0.0);
+        assert!(corner.phase_margins(-4.3e-3, -1.0)[0] < 0.0);
         // It meets the floor of its dent and crushes anew.
         assert_eq!(corner.switch(0, -4.25e-3), Some(CornerPassage::Touch));
         assert!((corner.normal_n(-5.25e-3, 0.0) - 1e3).abs() < 1e-9);
@@ -215,11 +215,11 @@ mod tests {
         let mut corner = CrushingCorner::new(LAW, 1000.0, true);
         corner.switch(0, -1e-3);
         assert!((corner.normal_n(-0.9e-3, 0.1) - 600.0).abs() < 1e-9, "the way out is not damped");
-        assert!(corner.watches(-0.9e-3, -0.1)[1] < 0.0);
+        assert!(corner.phase_margins(-0.9e-3, -0.1)[1] < 0.0);
         assert_eq!(corner.switch(1, -0.9e-3), None);
         // c = 0.1 √(4e6 · 1000) = 6325 N s/m.
         assert!((corner.normal_n(-0.9e-3, -0.01) - 663.2).abs() < 0.1);
-        assert!(corner.watches(-1.1e-3, -1.0)[1] < 0.0);
+        assert!(corner.phase_margins(-1.1e-3, -1.0)[1] < 0.0);
         corner.switch(1, -1e-3);
         assert!((corner.normal_n(-2e-3, -1.0) - 2e3).abs() < 1e-9);
     }

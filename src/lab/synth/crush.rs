@@ -1,4 +1,4 @@
-//! A wanted pulse and restitution to the stiffnesses of the end that gives them.
+//! Stiffnesses of an end that give a requested pulse and restitution.
 
 use crate::data::{Cask, Contact, Drop, End};
 use crate::lab::data::{CrushableEnd, WantedImpact};
@@ -6,8 +6,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The end whose impact is `pulse`: K = m_eff (π/2 (1 + k)/T)², K_u = K/k².
 ///
-/// m_eff is the mass that the corner of `end` shows the target: of L at the drop angle under `contact`; of R
-/// with the axis flat and sliding freely. The turn of the body and gravity during the pulse are left out.
+/// m_eff is the effective mass of the corner of `end`: for L at the drop angle under `contact`; for R with
+/// the axis flat and sliding freely. The rotation of the body and gravity during the pulse are neglected.
 pub fn crushable_end(
     cask: &Cask,
     drop: &Drop,
@@ -22,8 +22,8 @@ pub fn crushable_end(
     let (sin, cos) = angle_rad.sin_cos();
     let across_m = reach_m * cos - cask.height_m / 2.0 * sin;
     let up_m = reach_m * sin + cask.height_m / 2.0 * cos;
-    // What a newton does to the corner: upwards and along the target by a normal one, along the target by a
-    // tangential one.
+    // A newton changes the corner's motion by this much: upwards and along the target for a normal one, along
+    // the target for a tangential one.
     let upwards = 1.0 / cask.mass_kg + across_m * across_m / cask.inertia_kg_m2;
     let crosswise = across_m * up_m / cask.inertia_kg_m2;
     let along = 1.0 / cask.mass_kg + up_m * up_m / cask.inertia_kg_m2;
@@ -31,7 +31,7 @@ pub fn crushable_end(
     let friction = match contact {
         Contact::Rough | Contact::Unknown => sticking,
         Contact::Smooth => 0.0,
-        // Friction beyond what sticking needs is not called up.
+        // Friction beyond the need of sticking has no effect.
         Contact::Coulomb(coefficient) => sticking.signum() * coefficient.min(sticking.abs()),
     };
     let effective_kg = 1.0 / (upwards - friction * crosswise);

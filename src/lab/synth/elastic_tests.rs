@@ -175,6 +175,6 @@ fn a_sensor_on_the_corner_moves_as_the_corner_does() {
     for (gained, wanted) in gained.into_iter().zip(wanted) {
         assert!((gained - wanted).abs() < 0.04, "{gained}, not {wanted} m/s");
     }
-    let rigid = body.corner_bent_by(&[], 1, &state(&motion, last));
+    let rigid = body.bent_corner(&[], 1, &state(&motion, last));
     assert!((rigid.rising_m_s - corners[1].rising_m_s).abs() > 0.1, "it rings");
 }

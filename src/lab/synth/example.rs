@@ -1,4 +1,4 @@
-//! Scenes that the tests of the simulation start from.
+//! Scenes for the tests of the simulation.
 
 use crate::data::{Axis, Cask, Contact, Drop, End, block_inertia_kg_m2};
 use crate::lab::data::{CrushableEnd, Scene, SceneChannel, SimulatedMotion};
@@ -18,7 +18,7 @@ pub(super) fn anf18() -> Scene {
         name: "ANF-18".to_owned(),
         seed: 1,
         cask: Cask::block("ANF-18", mass_kg, length_m, height_m),
-        drop: Drop::of_height(9.0, angle_rad),
+        drop: Drop::from_height(9.0, angle_rad),
         contact: Contact::Rough,
         first_end: crush(5e-3, 0.55),
         second_end: crush(4e-3, 0.3),

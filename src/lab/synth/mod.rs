@@ -1,8 +1,8 @@
-//! A scene to the motion of its cask, that motion to what a sensor on the cask reads, and that to what its
+//! Simulates a scene: the motion of its cask, the readings of a sensor on the cask, and the samples that its
 //! recorder writes.
 //!
-//! The motion comes from forces alone: a rigid body in the plane on two corners that crush. Nothing here is
-//! taken from the impact formulas of the analysis, so that either can be held against the other.
+//! The motion follows from forces alone: a rigid body in the plane on two corners that crush. Nothing here
+//! comes from the impact formulas of the analysis, so that each can check the other.
 
 mod body;
 mod chain;

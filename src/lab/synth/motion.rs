@@ -1,4 +1,4 @@
-//! A scene to the motion of its cask, from first contact to past the slap-down.
+//! Simulates the motion of the cask of a scene, from first contact to past the slap-down.
 
 use super::body::{CASK_STATE, ELASTIC_STATE, SceneBody, WHOLE_STATE};
 use super::contact::CornerPassage;
@@ -9,20 +9,20 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Error of one step, relative and absolute in m, rad and their rates.
 ///
-/// A stiff end unloads within micrometres; a tenth of this is the rounding of the force of one that rests.
+/// A stiff end unloads within micrometres; a tenth of this tolerance is the rounding of its force at rest.
 const TOLERANCE: f64 = 1e-11;
 
-/// The same of an elastic body: its modes of kilohertz alone would ask for steps of a microsecond.
+/// Tolerance for an elastic body: its modes of kilohertz alone would require steps of a microsecond.
 const ELASTIC_TOLERANCE: f64 = 1e-9;
 
-/// Longest step in the flight, s: a graze that it could overlook is g step²/8 = 0.3 µm deep.
+/// Longest step in the flight, s: the step could miss a graze of g step²/8 = 0.3 µm depth.
 const LONGEST_STEP_S: f64 = 5e-4;
 
 /// Longest step times the greatest angular frequency: acceleration interpolated between steps is then within
 /// 1e-5.
 const LONGEST_STEP_RAD: f64 = 0.1;
 
-/// The motion is followed no longer than this when R does not strike, s.
+/// Longest motion if R does not strike, s.
 const LONGEST_S: f64 = 3.0;
 
 /// Bounds on the work for a scene that rattles without end: steps, and changes of a contact.
@@ -37,7 +37,7 @@ const HALVINGS: u32 = 60;
 struct Segment<'a> {
     body: &'a SceneBody<'a>,
     tolerance: f64,
-    /// Whether to stop where a contact changes or the cask stands upright.
+    /// True if the integration stops where a contact changes or the cask stands upright.
     watched: bool,
 }
 
@@ -49,27 +49,28 @@ impl<const N: usize> System<f64, SVector<f64, N>> for Segment<'_> {
 
     fn solout(&mut self, _time_s: f64, y: &SVector<f64, N>, _rates: &SVector<f64, N>) -> bool {
         let y = y.as_slice();
-        self.watched && (is_upright(y) || self.body.watches(y).iter().any(|value| *value < 0.0))
+        self.watched && (is_upright(y) || self.body.phase_margins(y).iter().any(|value| *value < 0.0))
     }
 }
 
-/// Past upright the upper corners would strike, which are not part of the scene.
+/// True if the cask stands upright: beyond that the upper corners would strike, which the scene does not
+/// model.
 fn is_upright(y: &[f64]) -> bool {
     y[2].abs() >= FRAC_PI_2
 }
 
 /// Follows the drop from first contact to `after_s` past the slap-down.
 ///
-/// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
-/// `MOST_MODES` are left out. The result is the same to the bit at every run.
+/// If R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
+/// `MOST_MODES` are ignored. The result is the same to the bit at every run.
 pub fn simulate(scene: &Scene) -> SimulatedMotion {
     follow(scene, tolerance(scene), usize::MAX)
 }
 
-/// [`simulate`] for who wants no drop whose L comes back before R strikes: such a one ends there, without a
-/// slap-down.
+/// Like [`simulate`], but stops without a slap-down if L touches again before R strikes.
 ///
-/// A cask that stands on L while its contents rattle takes hundreds of thousands of steps to tell nothing.
+/// A cask that stands on L while its contents rattle needs hundreds of thousands of steps, which show
+/// nothing.
 pub fn simulate_one_flight(scene: &Scene) -> SimulatedMotion {
     follow(scene, tolerance(scene), 0)
 }
@@ -78,10 +79,10 @@ fn tolerance(scene: &Scene) -> f64 {
     if scene.elastic.is_some() { ELASTIC_TOLERANCE } else { TOLERANCE }
 }
 
-/// [`simulate`] at a tolerance, so that its convergence can be tested, and while L comes back so often at
-/// `most`.
+/// Like [`simulate`] with a given tolerance, so that its convergence can be tested, and with at most `most`
+/// returns of L.
 ///
-/// The size of the state is in the integrator's norm of errors: a cask without contents has no places for
+/// The size of the state enters the integrator's norm of errors: a cask without contents has no places for
 /// them.
 fn follow(scene: &Scene, tolerance: f64, most: usize) -> SimulatedMotion {
     if scene.elastic.is_some() {
@@ -98,14 +99,14 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
     let mut events: Vec<ContactChange> = Vec::new();
     let (mut time_s, mut end_s, mut is_over) = (0.0, LONGEST_S, false);
     let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
-    // Room for the most: of it only what is written to takes memory, where a vector that grows leaves holes
-    // of all sizes behind.
+    // The capacity is the maximum: memory is used only for what is written, whereas a growing vector would
+    // leave holes of all sizes.
     let (steps, modes) = (Vec::with_capacity(MOST_STEPS), Vec::with_capacity(MOST_STEPS * body.modes.len()));
     let mut motion = SimulatedMotion { steps, modes, truth: Truth::default() };
     keep(&mut motion, &body, time_s, y.as_slice());
     while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
         let segment = Segment { body: &body, tolerance, watched: true };
-        let (solver, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - motion.steps.len());
+        let (solver, whole) = segment.integrate(&y, end_s - time_s, MOST_STEPS - motion.steps.len());
         let Some(one_before) = solver.x_out().len().checked_sub(2) else { break };
         let step = |i: usize| (solver.x_out()[i], solver.y_out()[i]);
         let [before, last] = [one_before, one_before + 1].map(step);
@@ -120,13 +121,13 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
         if let Some(Fallen { watch, .. }) = change {
             let end = watch / 2;
             let passage = body.corners[end].switch(watch % 2, body.corner(end, now).height_m);
-            // Once more, under the forces of what follows: acceleration may step.
+            // The state is kept twice, also under the forces of the next phase: acceleration may step.
             keep(&mut motion, &body, time_s, now);
             let struck = events.iter().any(|e| e.end == 1);
             if end == 1 && passage == Some(CornerPassage::Touch) && !struck {
                 end_s = time_s + scene.after_s;
             }
-            let [corner, local] = [&[][..], &body.ends].map(|modes| body.corner_bent_by(modes, end, now));
+            let [corner, local] = [&[][..], &body.ends].map(|modes| body.bent_corner(modes, end, now));
             let state = std::array::from_fn(|i| now[i]);
             events.push(ContactChange { passage, end, time_s, state, corner, local });
             let has_returned = most < usize::MAX && end == 0 && passage == Some(CornerPassage::Touch);
@@ -149,13 +150,13 @@ struct Fallen<const N: usize> {
     state: SVector<f64, N>,
 }
 
-/// A state and how long after another it is reached, s.
+/// A state, and the time after another at which it is reached, s.
 type Reached<const N: usize> = (f64, SVector<f64, N>);
 
 impl Segment<'_> {
-    /// The integrator with its steps from `from` on, times from there, and whether it came to its end or a
+    /// The integrator with its steps from `from` on, times from there, and true if it reached its end or a
     /// stop.
-    fn over<const N: usize>(
+    fn integrate<const N: usize>(
         &self,
         from: &SVector<f64, N>,
         span_s: f64,
@@ -170,7 +171,7 @@ impl Segment<'_> {
             *from,
             self.tolerance,
             self.tolerance,
-            // Safety factor, β and the bounds on the change of step: the method's own defaults.
+            // Safety factor, β and the bounds on the change of step are the method's own defaults.
             0.9,
             0.04,
             0.2,
@@ -178,7 +179,7 @@ impl Segment<'_> {
             longest_s,
             0.0,
             u32::try_from(most).unwrap_or(u32::MAX),
-            // No test of stiffness: the error control alone decides the step.
+            // A test of stiffness is omitted: the error control alone decides the step.
             u32::MAX,
             OutputType::Sparse,
         );
@@ -192,20 +193,20 @@ impl Segment<'_> {
             return *from;
         }
         let unwatched = Segment { watched: false, ..*self };
-        unwatched.over(from, offset_s, MOST_STEPS).0.y_out().last().copied().unwrap_or(*from)
+        unwatched.integrate(from, offset_s, MOST_STEPS).0.y_out().last().copied().unwrap_or(*from)
     }
 
-    /// The first watch to fall below zero between two steps.
+    /// The first margin to fall below zero between two steps.
     fn first_change<const N: usize>(&self, before: &Reached<N>, after: &Reached<N>) -> Option<Fallen<N>> {
-        let fallen = self.body.watches(after.1.as_slice());
+        let fallen = self.body.phase_margins(after.1.as_slice());
         let change = |watch: usize| {
-            // The end of the bracket at which the watch has fallen is the change: the next phase begins in
+            // The change is the end of the bracket at which the margin has fallen: the next phase begins in
             // its own range.
             let (mut low_s, mut high_s, mut state) = (0.0, after.0 - before.0, after.1);
             for _ in 0..HALVINGS {
                 let middle_s = f64::midpoint(low_s, high_s);
                 let there = self.state_at(&before.1, middle_s);
-                if self.body.watches(there.as_slice())[watch] < 0.0 {
+                if self.body.phase_margins(there.as_slice())[watch] < 0.0 {
                     (high_s, state) = (middle_s, there);
                 } else {
                     low_s = middle_s;
@@ -218,7 +219,7 @@ impl Segment<'_> {
     }
 }
 
-/// Writes down what is kept of one time.
+/// Records the state of one time.
 fn keep(motion: &mut SimulatedMotion, body: &SceneBody, time_s: f64, y: &[f64]) {
     let loads_n = body.loads(y);
     let all = body.rates(y, &loads_n);

@@ -197,7 +197,7 @@ fn a_blow_of_loose_contents_is_that_of_two_bodies() {
     // Flat and far above the target; the mass comes down on its lower pad at 2 m/s.
     (y[1], y[CASK_STATE], y[CASK_STATE + 1], y[CASK_STATE + 3]) = (10.0, arm_m, 10.0, -2.0);
     let segment = Segment { body: &body, tolerance: TOLERANCE, watched: false };
-    let after = segment.over(&y, 5e-3, MOST_STEPS).0.y_out().last().copied().expect("steps");
+    let after = segment.integrate(&y, 5e-3, MOST_STEPS).0.y_out().last().copied().expect("steps");
     let cask = &scene.cask;
     let shared_kg = 1.0 / (1.0 / mass_kg + 1.0 / cask.mass_kg + arm_m * arm_m / cask.inertia_kg_m2);
     let impulse_n_s = 2.0 * 2.0 * shared_kg;

@@ -1,17 +1,17 @@
-//! A simulated motion to the specific force at a point of the cask.
+//! Specific force at a point of the cask in a simulated motion.
 
 use super::elastic;
 use crate::data::Axis;
 use crate::lab::data::{ModeStep, MotionStep, Scene, SceneChannel, SimulatedMotion};
 
-/// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
+/// Time in which the hook releases, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
 
-/// What a perfect sensor at the channel's true position reads along its axis, m/s², at `times_s` (0 at first
+/// Reading of a perfect sensor at the channel's true position along its axis, m/s², at `times_s` (0 at first
 /// contact).
 ///
-/// Before first contact the cask falls, held back by what guides it; before its release, where the scene
-/// shows it, it hangs at rest. Roll is in the transverse axis, and so is what rides on the rigid motion; the
+/// Before first contact the cask falls, slowed by its guides; before its release, if the scene shows it, it
+/// hangs at rest. Roll affects the transverse axis, as do the modes that ride on the rigid motion; the
 /// sections of an elastic body carry their sensors with them. After the motion's end the last value stays.
 pub fn specific_force_m_s2(
     scene: &Scene,
@@ -24,7 +24,7 @@ pub fn specific_force_m_s2(
     let weight_m_s2 = |angle_rad: f64| {
         drop.gravity_m_s2 * if channel.axis == Axis::Transverse { angle_rad.cos() } else { angle_rad.sin() }
     };
-    // What turns in the fall hung at another angle before it.
+    // A cask that rotates in the fall hung at another angle before it.
     let hanging_m_s2 = weight_m_s2(drop.angle_rad - drop.angular_velocity_rad_s * release_s);
     let guided_m_s2 = scene.extras.guided * weight_m_s2(drop.angle_rad);
     let share = channel.position_m / scene.cask.length_m;
@@ -49,7 +49,7 @@ pub fn specific_force_m_s2(
         let at = Between::new(motion, time_s);
         let (xi_m, eta_m) = (channel.position_m - scene.cask.cog_m, channel.offset_m);
         let [along_m_s2, across_m_s2] = if scene.elastic.is_some() {
-            at.on_section_m_s2(scene, [xi_m, eta_m], &sections)
+            at.section_m_s2(scene, [xi_m, eta_m], &sections)
         } else {
             let [along_m_s2, across_m_s2] = at.rigid_m_s2(scene, [xi_m, eta_m]);
             let bends: f64 =
@@ -63,10 +63,10 @@ pub fn specific_force_m_s2(
     times_s.iter().map(|&t| if t < 0.0 || motion.steps.is_empty() { before(t) } else { during(t) }).collect()
 }
 
-/// How a section of an elastic body stands at a step: w, m, and θ, rad, each with its two rates.
+/// Position of a section of an elastic body at a step: w, m, and θ, rad, each with its two rates.
 type SectionStep = [[f64; 3]; 2];
 
-/// The section that each mode moves by `bending`, w and θ, at every step.
+/// Movement of the section by `bending` in each mode, w and θ, at every step.
 fn sections(motion: &SimulatedMotion, bending: &[[f64; 2]]) -> Vec<SectionStep> {
     let at_step = |modes: &[ModeStep]| {
         let sum = |of: usize, quantity: fn(&ModeStep) -> f64| -> f64 {
@@ -77,7 +77,7 @@ fn sections(motion: &SimulatedMotion, bending: &[[f64; 2]]) -> Vec<SectionStep> 
     motion.modes.chunks_exact(bending.len()).map(at_step).collect()
 }
 
-/// What a perfect angular-rate sensor at this place reads, rad/s, positive brings R down, at `times_s`: the
+/// Reading of a perfect angular-rate sensor at this place, rad/s, positive if R goes down, at `times_s`: the
 /// rotation of the cask, and of its section there as it bends.
 pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, times_s: &[f64]) -> Vec<f64> {
     let length_m = scene.cask.length_m;
@@ -97,7 +97,7 @@ pub fn rotation_rad_s(scene: &Scene, motion: &SimulatedMotion, position_m: f64, 
     times_s.iter().map(|&time_s| reads(time_s)).collect()
 }
 
-/// A time between two of the motion's.
+/// A time between two steps of the motion.
 ///
 /// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an
 /// acceleration whose integral is exactly the change of velocity, whatever the step.
@@ -139,7 +139,7 @@ impl<'a> Between<'a> {
         self.cubic(self.state(i))
     }
 
-    /// Its slope.
+    /// Slope at step `i`.
     fn slope(&self, i: usize) -> f64 {
         self.cubic_slope(self.state(i))
     }
@@ -152,7 +152,7 @@ impl<'a> Between<'a> {
             + s * s * ((1.0 + 2.0 * r) * values[1] - r * h * slopes[1])
     }
 
-    /// Its slope.
+    /// Slope of the cubic.
     fn cubic_slope(&self, [values, slopes]: [[f64; 2]; 2]) -> f64 {
         let (s, r) = (self.share, 1.0 - self.share);
         if self.step_s <= 0.0 {
@@ -174,16 +174,17 @@ impl<'a> Between<'a> {
         let (along, up) = (self.slope(3), self.slope(4));
         let (sin, cos) = angle_rad.sin_cos();
         let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
-        // Acceleration of the point less that of free fall, in the fixed frame, then turned into the body's.
+        // The acceleration of the point less that of free fall, in the fixed frame, is rotated to the body's
+        // axes.
         let point_x = along - alpha * z_m - omega * omega * x_m;
         let point_z = up + alpha * x_m - omega * omega * z_m + scene.drop.gravity_m_s2;
         [point_x * cos + point_z * sin, point_z * cos - point_x * sin]
     }
 
-    /// The same of an elastic body, whose section there moves by w across the axis and turns by θ, in the
-    /// axes of the section: that of the axis at w, with ẅ across and −2 φ̇ ẇ along; then −η (φ̇ + θ̇)² across
-    /// and −η (φ̈ + θ̈) along.
-    fn on_section_m_s2(&self, scene: &Scene, [xi_m, eta_m]: [f64; 2], sections: &[SectionStep]) -> [f64; 2] {
+    /// Acceleration of a point of an elastic body, whose section there moves by w across the axis and turns
+    /// by θ, in the axes of the section: that of the axis at w, with ẅ across and −2 φ̇ ẇ along; then −η (φ̇
+    /// + θ̇)² across and −η (φ̈ + θ̈) along.
+    fn section_m_s2(&self, scene: &Scene, [xi_m, eta_m]: [f64; 2], sections: &[SectionStep]) -> [f64; 2] {
         let between = |which: usize| {
             let [from, to] = self.places.map(|i| sections[i][which]);
             let [places, rates, slopes] = [0, 1, 2].map(|i| [from[i], to[i]]);

@@ -1,4 +1,4 @@
-//! The changes of contact of a simulated drop to what a perfect measurement would say of it.
+//! Derives the results of a perfect measurement from the changes of contact of a simulated drop.
 
 use super::body::CornerMotion;
 use super::contact::CornerPassage;
@@ -17,7 +17,7 @@ pub(super) struct ContactChange {
     pub(super) state: [f64; 6],
     /// The motion of that end's corner without bending.
     pub(super) corner: CornerMotion,
-    /// The same with all that bends.
+    /// Motion of the corner including bending.
     pub(super) local: CornerMotion,
 }
 
@@ -31,15 +31,15 @@ pub(super) struct ContactSpan<'a> {
 }
 
 /// The first touch of R.
-fn strike(events: &[ContactChange]) -> Option<&ContactChange> {
+fn second_end_touch(events: &[ContactChange]) -> Option<&ContactChange> {
     events.iter().find(|e| e.end == 1 && e.passage == Some(CornerPassage::Touch))
 }
 
-/// The contacts of an end, in order, of which L's first begins the drop; [`Truth`] says which pauses part
+/// Contacts of an end, in order; L's first begins the drop, and [`Truth`] defines the pauses that separate
 /// them.
 pub(super) fn contacts<'a>(scene: &Scene, events: &'a [ContactChange], end: usize) -> Vec<ContactSpan<'a>> {
     let period_s = scene.elastic.map_or(0.0, |body| 1.0 / body.first_bending_hz);
-    let struck_s = strike(events).map_or(f64::INFINITY, |e| e.time_s);
+    let struck_s = second_end_touch(events).map_or(f64::INFINITY, |e| e.time_s);
     let begun = |from_s| ContactSpan { from_s, left: None };
     let mut spans: Vec<ContactSpan> = (end == 0).then(|| begun(0.0)).into_iter().collect();
     for event in events.iter().filter(|e| e.end == end) {
@@ -60,10 +60,10 @@ pub(super) fn contacts<'a>(scene: &Scene, events: &'a [ContactChange], end: usiz
     spans
 }
 
-/// Reads the truth off the motion and its events, which are in order; without any, only what the scene itself
-/// says.
+/// Reads the truth off the motion and its events, which are in order; without events, only the values that
+/// the scene itself states.
 pub(super) fn truth(scene: &Scene, motion: &SimulatedMotion, events: &[ContactChange]) -> Truth {
-    let strike = strike(events);
+    let strike = second_end_touch(events);
     let [of_first, of_second] = [0, 1].map(|end| contacts(scene, events, end));
     let leave = of_first.first().and_then(|span| span.left);
     let before_s = strike.map_or(0.0, |e| e.time_s);
@@ -73,7 +73,7 @@ pub(super) fn truth(scene: &Scene, motion: &SimulatedMotion, events: &[ContactCh
     let (v0, cask) = (scene.drop.impact_velocity_m_s, &scene.cask);
     Truth {
         v0,
-        // Free of the last digits of the conversion.
+        // The last digits of the conversion are rounded off.
         angle_deg: (scene.drop.angle_rad.to_degrees() * 1e9).round() / 1e9,
         k: leave.map(|e| e.corner.rising_m_s / v0),
         rebound_velocity: leave.map(|e| e.corner.rising_m_s),
@@ -103,7 +103,7 @@ fn kinetic_j(scene: &Scene, y: &[f64; 6]) -> f64 {
     0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
 }
 
-/// What happens in a contact of an end.
+/// Impact of an end in one contact.
 fn impact(scene: &Scene, motion: &SimulatedMotion, end: usize, span: &ContactSpan) -> Option<ImpactTruth> {
     let until_s = span.left.map_or(f64::INFINITY, |left| left.time_s);
     let from = motion.count_before(|time_s| time_s < span.from_s);

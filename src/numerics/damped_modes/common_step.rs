@@ -1,4 +1,4 @@
-//! How much of what known modes leave of several series a common step at one time explains.
+//! Tests if a common step at one time explains the residual of known modes in several series.
 
 use super::covariance::describe;
 use super::drive::Form;
@@ -8,18 +8,17 @@ use super::series::{Fit, Oscillation, Series};
 use crate::numerics::as_f64;
 use nalgebra::{DMatrix, DVector};
 
-/// Series beside known modes, ready to be asked for a step at any time.
+/// Series with known modes, prepared to test a step at any time.
 pub struct CommonStep<'a> {
     series: &'a [Series],
     without: Fit,
-    /// Sums over the points from each one on, of the basis of the modes and of what they leave of each
-    /// series.
+    /// Sums over the points from each one on, of the basis of the modes and of the residual of each series.
     behind: SharedByTimes<DMatrix<f64>>,
     left_behind: Vec<DVector<f64>>,
 }
 
-/// Sums of each column from each row on, and 0 behind the last.
-fn sums_behind(columns: DMatrix<f64>) -> DMatrix<f64> {
+/// Sums of each column from each row on, and 0 after the last.
+fn suffix_sums(columns: DMatrix<f64>) -> DMatrix<f64> {
     let last = columns.nrows();
     let mut sums = columns.insert_row(last, 0.0);
     for mut column in sums.column_iter_mut() {
@@ -31,23 +30,23 @@ fn sums_behind(columns: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 impl<'a> CommonStep<'a> {
-    /// `None` where the series have too few points for one step more.
+    /// Prepares the series; `None` if they have too few points for one more step.
     pub fn new(series: &'a [Series], modes: &[Oscillation], form: Form) -> Option<Self> {
         let bases = SharedByTimes::new(series, |s| basis(s, modes, form))?;
         let left = |(s, basis): (&Series, &DMatrix<f64>)| {
             let value = DVector::from_column_slice(&s.value);
             let left = &value - basis * basis.tr_mul(&value);
-            sums_behind(DMatrix::from_columns(&[left])).column(0).into_owned()
+            suffix_sums(DMatrix::from_columns(&[left])).column(0).into_owned()
         };
-        let left_behind = series.iter().zip(bases.each()).map(left).collect();
+        let left_behind = series.iter().zip(bases.per_series()).map(left).collect();
         let without = describe(series, modes.to_vec(), form)?;
-        Some(Self { series, without, behind: bases.map(sums_behind), left_behind })
+        Some(Self { series, without, behind: bases.map(suffix_sums), left_behind })
     }
 
-    /// The step of each series after a time, and by how much it lowers the sum of squares; `None` where the
-    /// modes are all there is.
-    pub fn at(&self, after_s: f64) -> Option<Vec<(f64, f64)>> {
-        let each = self.series.iter().zip(self.behind.each()).zip(&self.left_behind);
+    /// The step of each series after a time, and the reduction of the sum of squares; `None` if the modes
+    /// explain everything.
+    pub fn step(&self, after_s: f64) -> Option<Vec<(f64, f64)>> {
+        let each = self.series.iter().zip(self.behind.per_series()).zip(&self.left_behind);
         let step_and_weight = |((series, behind), left): ((&Series, &DMatrix<f64>), &DVector<f64>)| {
             let first = series.time_s.partition_point(|t| *t <= after_s);
             let own = as_f64(series.time_s.len() - first) - behind.row(first).norm_squared();
@@ -56,10 +55,11 @@ impl<'a> CommonStep<'a> {
         each.map(step_and_weight).collect()
     }
 
-    /// The Bayesian information criterion with such a step   (21)
+    /// Bayesian information criterion with such a step   (21)
     pub fn bic(&self, after_s: f64, correlation: f64) -> Option<f64> {
         let mut fit = self.without.clone();
-        for ((own, series), (_, explained)) in fit.series.iter_mut().zip(self.series).zip(self.at(after_s)?) {
+        for ((own, series), (_, explained)) in fit.series.iter_mut().zip(self.series).zip(self.step(after_s)?)
+        {
             let square = own.residual.powi(2) - explained / as_f64(series.value.len());
             own.residual = square.max(0.0).sqrt();
         }

@@ -1,4 +1,4 @@
-//! Modes found to coefficients with their standard uncertainties.
+//! Coefficients of known modes with their standard uncertainties.
 
 use super::drive::Form;
 use super::projection::{Projected, rms};
@@ -7,11 +7,11 @@ use crate::numerics::as_f64;
 use crate::numerics::reduce::finite_block_means;
 use nalgebra::{DMatrix, DVector};
 
-/// Stretches of a series over whose means what is left counts as slow.
+/// Stretches of a series; residuals that remain in the means over them count as slow.
 const STRETCHES: usize = 24;
 
-/// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points
-/// over.
+/// Coefficients, uncertainties and residuals at given modes; `None` if a series has fewer than two points
+/// more than unknowns.
 pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let projected = Projected::new(series, modes.clone(), form)?;
     let mut fit = coefficients(series, modes, form, &projected);
@@ -65,7 +65,7 @@ fn lag_one(residual: &DVector<f64>) -> f64 {
 }
 
 /// Covariance of the plateaus and drifts, s² κ times their part of (JᵀJ)⁻¹, J = [Φ_1 … | ∂Φc/∂θ]: that at
-/// known modes, and what the modes are uncertain by.
+/// known modes, and the contribution of the modes' uncertainty.
 fn uncertainties(series: &[Series], fit: &mut Fit, form: Form, projected: &Projected) -> Option<()> {
     let slopes = projected.slopes(series, form);
     let variances: Vec<f64> = series
@@ -78,7 +78,7 @@ fn uncertainties(series: &[Series], fit: &mut Fit, form: Form, projected: &Proje
         information += &own.information / *variance;
     }
     let of_modes = information.cholesky()?.inverse();
-    let normals = projected.normals.each();
+    let normals = projected.normals.per_series();
     for (((own, slopes), normal), variance) in fit.series.iter_mut().zip(&slopes).zip(normals).zip(variances)
     {
         let u = |coefficient: usize| {

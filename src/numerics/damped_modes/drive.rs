@@ -1,4 +1,4 @@
-//! What drove a series' modes before it begins, to the phase that they begin with.
+//! Force that drove a series' modes before it begins, and the initial phase that follows.
 
 use super::series::Oscillation;
 use crate::numerics::as_f64;
@@ -7,11 +7,11 @@ use nalgebra::Complex;
 /// A force of known shape and unknown size that ended before a series begins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
-    /// How long before t = 0 it began, s.
+    /// Time before t = 0 at which the force began, s.
     pub age_s: f64,
     /// Length of a step, s.
     pub step_s: f64,
-    /// Its integral over each step, in any unit.
+    /// Integral of the force over each step, in any unit.
     pub impulses: Vec<f64>,
 }
 
@@ -19,9 +19,9 @@ impl Drive {
     /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z
     /// e^((−ζ + i) ω t))   (36)
     pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
-        let [turn, half_turn, aged] = self.turns(mode);
+        let [turn, half_turn, aged] = self.mode_factors(mode);
         let nothing = Complex::new(0.0, 0.0);
-        // Four sums beside one another, each of every fourth impulse: a product waits for the one before it.
+        // Four sums run in parallel, each of every fourth impulse: a product waits for the one before it.
         let (head, blocks) = self.impulses.as_rchunks::<4>();
         let head = head.iter().fold(nothing, |z, impulse| z * turn + *impulse);
         let far = turn * turn * turn * turn;
@@ -35,13 +35,13 @@ impl Drive {
 
     /// Change of ln Z with (−ζ + i) ω: the mean age of what drove the mode, s.
     pub(super) fn age_s(&self, mode: Oscillation) -> Complex<f64> {
-        let (driven, by_rate) = self.driven(mode);
+        let (driven, by_rate) = self.integral_and_slope(mode);
         if driven.norm() > 0.0 { by_rate / driven } else { Complex::new(0.0, 0.0) }
     }
 
-    /// Z, and what it changes by with (−ζ + i) ω.
-    fn driven(&self, mode: Oscillation) -> (Complex<f64>, Complex<f64>) {
-        let [turn, half_turn, aged] = self.turns(mode);
+    /// Z, and its derivative with respect to (−ζ + i) ω.
+    fn integral_and_slope(&self, mode: Oscillation) -> (Complex<f64>, Complex<f64>) {
+        let [turn, half_turn, aged] = self.mode_factors(mode);
         let half_s = self.step_s / 2.0;
         let nothing = Complex::new(0.0, 0.0);
         let step = |(z, by_rate): (Complex<f64>, Complex<f64>), impulse: &f64| {
@@ -49,27 +49,27 @@ impl Drive {
             (aged + added, by_rate * turn + aged * self.step_s + added * half_s)
         };
         let (z, by_rate) = self.impulses.iter().fold((nothing, nothing), step);
-        (z * aged, (by_rate + z * self.since_s()) * aged)
+        (z * aged, (by_rate + z * self.time_since_end_s()) * aged)
     }
 
-    /// How long before t = 0 it ended, s.
-    fn since_s(&self) -> f64 {
+    /// Time before t = 0 at which the force ended, s.
+    fn time_since_end_s(&self) -> f64 {
         self.age_s - as_f64(self.impulses.len()) * self.step_s
     }
 
-    /// What a mode does in a step, in half of one, and from the end of the force on.
-    fn turns(&self, mode: Oscillation) -> [Complex<f64>; 3] {
+    /// Factors of a mode for a step, for half a step, and for the time from the end of the force on.
+    fn mode_factors(&self, mode: Oscillation) -> [Complex<f64>; 3] {
         let rate = super::ringing::rate(mode);
-        [self.step_s, self.step_s / 2.0, self.since_s()].map(|time_s| (rate * time_s).exp())
+        [self.step_s, self.step_s / 2.0, self.time_since_end_s()].map(|time_s| (rate * time_s).exp())
     }
 }
 
-/// What a series is made of beside its plateau.
+/// Components of a series beside its plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Form<'a> {
-    /// Whether it drifts.
+    /// True if the series drifts.
     pub drift: bool,
-    /// What drove its modes; `None`: each series has each mode in a phase of its own.
+    /// Force that drove its modes; `None`: each mode has an independent phase in each series.
     pub drive: Option<&'a Drive>,
 }
 
@@ -84,7 +84,7 @@ impl Form<'_> {
         if self.drive.is_some() { 1 } else { 2 }
     }
 
-    /// Coefficients of the modes to amplitudes of cosine and sine.
+    /// Converts coefficients of the modes to amplitudes of cosine and sine.
     pub(super) fn amplitudes(&self, modes: &[Oscillation], coefficients: &[f64]) -> Vec<(f64, f64)> {
         match self.drive {
             Some(drive) => {

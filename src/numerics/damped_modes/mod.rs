@@ -1,4 +1,4 @@
-//! Noisy series to plateau, drift and damped modes that ring on them, by variable projection.
+//! Fits noisy series by plateau, drift and damped modes, by variable projection.
 
 mod common_step;
 mod covariance;
@@ -18,14 +18,14 @@ pub use ringing::{rate, uniform_ringing};
 pub use seeds::Seeds;
 pub use series::{Fit, Oscillation, Series, SeriesFit};
 
-/// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation
-/// that dies within a period can stand for anything.
+/// Largest damping of a mode: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies
+/// within a period can fit anything.
 const MOST_DAMPING: f64 = 0.15;
 
-/// Fits with `start.len() + 1` modes, the new one the best of `seeds`, or with `start` alone where there are
-/// none.
+/// Fits with `start.len() + 1` modes, the new one the best of `seeds`, or with `start` alone if there are no
+/// seeds.
 ///
-/// `None` where a series has fewer points than unknowns or the fit is singular.
+/// `None` if a series has fewer points than unknowns or the fit is singular.
 pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form: Form) -> Option<Fit> {
     let mut modes = start.to_vec();
     if let Some(seeds) = seeds {
@@ -34,7 +34,7 @@ pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form
     if !modes.is_empty() {
         let refined = refine(series, &modes, form);
         let is_mode = |m: &Oscillation| m.damping < MOST_DAMPING && seeds.is_none_or(|s| s.is_near(m));
-        // A refinement that runs out of bounds misses another mode: the seeds stand until that one is found
+        // A refinement that leaves the bounds misses another mode: the seeds are kept until that one is found
         // too.
         if let Some(refined) = refined.filter(|r| r.iter().all(is_mode)) {
             modes = refined;

@@ -1,5 +1,5 @@
-//! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub &
-//! Pereyra 1973).
+//! Best linear coefficients for given frequencies and dampings, and improved frequencies and dampings (Golub
+//! & Pereyra 1973).
 
 use super::drive::Form;
 use super::ringing::Ringing;
@@ -12,12 +12,12 @@ use std::cell::OnceCell;
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
 
-/// Weights beside one another that change by more than this factor are taken anew, at most so many times.
-const WEIGHS_ANEW: f64 = 2.0;
+/// Relative weights that change by more than this factor are computed again, at most this many times.
+const WEIGHT_CHANGE: f64 = 2.0;
 const MOST_ROUNDS: usize = 3;
 
-/// Squares are held this share above what they are, so that rounding leaves a root of their products.
-const ROUNDED: f64 = 1e-12;
+/// Squares are increased by this share, so that rounding leaves a root of their products.
+const ROUNDING_SHARE: f64 = 1e-12;
 
 /// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or
 /// their driven sum.
@@ -41,7 +41,7 @@ pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMa
     matrix
 }
 
-/// Cosine and sine of one mode, or the one sum of both that its drive gives it, by the mode's `ringing`.
+/// Cosine and sine of one mode, or the sum of both that its drive determines, from the mode's `ringing`.
 pub(super) fn mode_columns(
     mut columns: DMatrixViewMut<f64>,
     ringing: impl Iterator<Item = Complex<f64>>,
@@ -68,14 +68,14 @@ pub(super) struct SharedByTimes<T> {
 }
 
 impl<T> SharedByTimes<T> {
-    /// Calls `make` with the first series of each set of times; `None` where `make` gives none.
+    /// Calls `make` with the first series of each set of times; `None` if `make` returns `None`.
     pub(super) fn new(series: &[Series], make: impl Fn(&Series) -> Option<T>) -> Option<Self> {
-        let SharedByTimes { made, places } = SharedByTimes::of(series, make);
+        let SharedByTimes { made, places } = SharedByTimes::from_fn(series, make);
         Some(Self { made: made.into_iter().collect::<Option<_>>()?, places })
     }
 
-    /// The same by what always makes one.
-    pub(super) fn of(series: &[Series], make: impl Fn(&Series) -> T) -> Self {
+    /// Evaluates a function that always gives a value, once for each set of times.
+    pub(super) fn from_fn(series: &[Series], make: impl Fn(&Series) -> T) -> Self {
         let (mut made, mut places) = (Vec::new(), Vec::new());
         for (i, own) in series.iter().enumerate() {
             let before = i.checked_sub(1).map(|i| &series[i]);
@@ -87,17 +87,17 @@ impl<T> SharedByTimes<T> {
         Self { made, places }
     }
 
-    /// What each becomes.
+    /// Applies a function to each value.
     pub(super) fn map<U>(self, of: impl Fn(T) -> U) -> SharedByTimes<U> {
         SharedByTimes { made: self.made.into_iter().map(of).collect(), places: self.places }
     }
 
-    /// That of each series.
-    pub(super) fn each(&self) -> impl Iterator<Item = &T> {
+    /// Iterates over the values, one per series.
+    pub(super) fn per_series(&self) -> impl Iterator<Item = &T> {
         self.places.iter().map(|&place| &self.made[place])
     }
 
-    /// That of each times, beside the series that share them.
+    /// Iterates over the values, each with the series that share its times.
     pub(super) fn groups<'a>(
         &'a self,
         series: &'a [Series],
@@ -141,8 +141,8 @@ impl Normal {
         (solution, residual)
     }
 
-    /// What the columns explain of slopes, in units of the coefficients, and what they leave.
-    fn parted(&self, slopes: DMatrix<f64>) -> [DMatrix<f64>; 2] {
+    /// Splits slopes into the part that the columns explain, in units of the coefficients, and the residual.
+    fn split(&self, slopes: DMatrix<f64>) -> [DMatrix<f64>; 2] {
         let mut explained = self.cholesky.solve(&self.columns.tr_mul(&slopes));
         let left = slopes - &self.columns * &explained;
         for (mut row, scale) in explained.row_iter_mut().zip(&self.scales) {
@@ -151,7 +151,7 @@ impl Normal {
         [explained, left]
     }
 
-    /// Variance of a coefficient where the noise of the values is 1 and the modes are known.
+    /// Variance of a coefficient if the noise of the values is 1 and the modes are known.
     pub fn variance(&self, coefficient: usize) -> f64 {
         let mut unit = DVector::zeros(self.scales.len());
         unit[coefficient] = 1.0;
@@ -160,13 +160,13 @@ impl Normal {
     }
 }
 
-/// What a series changes by with ln f and the damping of each mode, a column each.
+/// Change of a series with ln f and the damping of each mode, one column each.
 pub(super) struct Slopes {
-    /// The coefficients that explain a part of it.
+    /// Coefficients of the part that the columns explain.
     pub explained: DMatrix<f64>,
-    /// Products of what they leave, one column with another …
+    /// Products of the residual slopes, one column with another.
     pub information: DMatrix<f64>,
-    /// … and with what the fit leaves of the series.
+    /// Products of the residual slopes with the residual of the series.
     along: DVector<f64>,
 }
 
@@ -174,24 +174,26 @@ pub(super) struct Slopes {
 pub(super) struct Projected {
     modes: Vec<Oscillation>,
     pub normals: SharedByTimes<Normal>,
-    /// Best linear coefficients of each series and what they leave.
+    /// Best linear coefficients and residuals of each series.
     pub solved: Vec<(DVector<f64>, DVector<f64>)>,
 }
 
 impl Projected {
-    /// `None` where a series has fewer than two points over.
+    /// Solves the linear problem; `None` if a series has fewer than two points more than unknowns.
     pub fn new(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Self> {
         let normals = SharedByTimes::new(series, |s| Normal::new(s, &modes, form))?;
-        let solved = series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect();
+        let solved =
+            series.iter().zip(normals.per_series()).map(|(s, normal)| normal.solve(&s.value)).collect();
         Some(Self { modes, normals, solved })
     }
 
-    /// The slopes of each series; those with the same times share what does not depend on its amplitudes.
+    /// The slopes of each series; those with the same times share the parts that do not depend on its
+    /// amplitudes.
     pub fn slopes(&self, series: &[Series], form: Form) -> Vec<Slopes> {
         let mut solved = self.solved.iter();
         let sharing = self.normals.groups(series).flat_map(|(normal, sharing)| {
             let fixed = fixed_columns(sharing[0], form.drift);
-            let [explained, left] = normal.parted(unit_slopes(sharing[0], &self.modes, form));
+            let [explained, left] = normal.split(unit_slopes(sharing[0], &self.modes, form));
             let products = left.tr_mul(&left);
             let own = solved.by_ref().take(sharing.len()).map(|(solution, residual)| {
                 let mixing = mixing(&form.amplitudes(&self.modes, &solution.as_slice()[fixed..]));
@@ -207,16 +209,16 @@ impl Projected {
     }
 }
 
-/// What e^((−ζ + i) ω t) of each mode changes by with ln f and with its damping: real and imaginary
-/// part of the one, then of the other.
+/// Change of e^((−ζ + i) ω t) of each mode with ln f and with its damping: real and imaginary part of the
+/// first, then of the second.
 fn unit_slopes(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
     let mut slopes = DMatrix::zeros(series.time_s.len(), 4 * modes.len());
     for (i, mode) in modes.iter().enumerate() {
         let omega = std::f64::consts::TAU * mode.frequency_hz;
-        // Both rates of e^((−ζ + i) ω t) are t times a number.
+        // Both derivatives of e^((−ζ + i) ω t) are t times a number.
         let rates = [Complex::new(-mode.damping * omega, omega), Complex::from(-omega)];
         let age_s = form.drive.map_or(Complex::from(0.0), |drive| drive.age_s(*mode));
-        // Its size is one by definition: only the phase of a driven mode goes with the rates.
+        // Its amplitude is one by definition: only the phase of a driven mode depends on the parameters.
         let turns = rates.map(|rate| Complex::new(0.0, (rate * age_s).im));
         for (row, (value, t)) in Ringing::new(*mode, &series.time_s).zip(&series.time_s).enumerate() {
             for (j, (rate, turn)) in rates.iter().zip(turns).enumerate() {
@@ -229,7 +231,7 @@ fn unit_slopes(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f6
     slopes
 }
 
-/// The unit slopes to those of modes of these amplitudes: A cos + B sin = Re((A − iB) e^(iωt)).
+/// Matrix from the unit slopes to those of modes with these amplitudes: A cos + B sin = Re((A − iB) e^(iωt)).
 fn mixing(amplitudes: &[(f64, f64)]) -> DMatrix<f64> {
     let mut mixing = DMatrix::zeros(4 * amplitudes.len(), 2 * amplitudes.len());
     for (i, (a, b)) in amplitudes.iter().enumerate() {
@@ -252,9 +254,9 @@ pub(super) struct Projection<'a> {
     weights: Vec<f64>,
     form: Form<'a>,
     parameters: DVector<f64>,
-    /// The linear problem at these parameters, once it has been asked for …
+    /// Solution of the linear problem at these parameters, computed when first needed.
     here: OnceCell<Option<Projected>>,
-    /// … and the root of those products, the residuals its last column.
+    /// Root of the products in the solution, with the residuals as its last column.
     root: OnceCell<Option<DMatrix<f64>>>,
 }
 
@@ -282,16 +284,16 @@ impl<'a> Projection<'a> {
         Self { series, weights, form, parameters, here: OnceCell::new(), root: OnceCell::new() }
     }
 
-    fn here(&self) -> Option<&Projected> {
+    fn current(&self) -> Option<&Projected> {
         let project = || Projected::new(self.series, to_modes(&self.parameters), self.form);
         self.here.get_or_init(project).as_ref()
     }
 
-    /// [J r]ᵀ[J r] = RᵀR, J = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact
-    /// where nothing is left. R stands for [J r], which has as many rows as points.
+    /// [J r]ᵀ[J r] = RᵀR, J = −P⊥ ∂Φ/∂θ c, with P⊥ subtracting the part that the columns Φ explain (Kaufman
+    /// 1975): exact if nothing remains. R replaces [J r], which has as many rows as points.
     fn root(&self) -> Option<&DMatrix<f64>> {
         let make = || {
-            let here = self.here()?;
+            let here = self.current()?;
             let last = self.parameters.len();
             let mut products = DMatrix::zeros(last + 1, last + 1);
             let slopes = here.slopes(self.series, self.form);
@@ -303,14 +305,14 @@ impl<'a> Projection<'a> {
                 beside_residuals -= own.along.transpose() * square;
                 products[(last, last)] += left.norm_squared() * square;
             }
-            // From the damping to its logit.
+            // The damping is converted to its logit.
             for (i, mode) in here.modes.iter().enumerate() {
                 let by_logit = mode.damping * (1.0 - mode.damping / MAX_DAMPING);
                 products.column_mut(2 * i + 1).scale_mut(by_logit);
                 products.row_mut(2 * i + 1).scale_mut(by_logit);
             }
             for i in 0..=last {
-                products[(i, i)] = products[(i, i)] * (1.0 + ROUNDED) + f64::MIN_POSITIVE;
+                products[(i, i)] = products[(i, i)] * (1.0 + ROUNDING_SHARE) + f64::MIN_POSITIVE;
             }
             let root = products.cholesky()?.l().transpose();
             root.iter().all(|x| x.is_finite()).then_some(root)
@@ -343,20 +345,20 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 }
 
-/// One over what the linear problem leaves of each series, its floor included.
+/// Inverse of the residual of each series, including its floor.
 fn weights(series: &[Series], projected: &Projected) -> Vec<f64> {
     let weight = |(s, (_, left)): (&Series, &(_, DVector<f64>))| 1.0 / rms(left).hypot(s.floor).max(1e-300);
     series.iter().zip(&projected.solved).map(weight).collect()
 }
 
-/// Whether some series weigh more than [`WEIGHS_ANEW`] times as much beside the others as before.
-fn weigh_anew(before: &[f64], after: &[f64]) -> bool {
+/// Whether some series weigh more than [`WEIGHT_CHANGE`] times as much beside the others as before.
+fn has_new_weights(before: &[f64], after: &[f64]) -> bool {
     let changes = || before.iter().zip(after).map(|(before, after)| after / before);
-    changes().fold(0.0, f64::max) > WEIGHS_ANEW * changes().fold(f64::INFINITY, f64::min)
+    changes().fold(0.0, f64::max) > WEIGHT_CHANGE * changes().fold(f64::INFINITY, f64::min)
 }
 
-/// Better frequencies and dampings; each series weighs by what the fit leaves of it, so that a series of
-/// which the first guess left much is not passed over for one of which it left little.
+/// Refines frequencies and dampings. Weights follow the residuals, so a series that the first guess fits
+/// badly still counts.
 pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
     let mut by_weight = weights(series, &Projected::new(series, modes.to_vec(), form)?);
     let mut refined = modes.to_vec();
@@ -368,14 +370,14 @@ pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Op
             .with_xtol(1e-6)
             .with_gtol(1e-8)
             .minimize(problem);
-        // A fit that stopped for lack of patience still stands at its best point; only numbers that are none
-        // are useless.
+        // A fit that reached its limit of evaluations is still valid at its best point; only values that are
+        // not numbers are useless.
         refined = Some(to_modes(&solved.parameters)).filter(|refined| {
             report.objective_function.is_finite()
                 && refined.iter().all(|m| m.frequency_hz.is_finite() && m.damping.is_finite())
         })?;
-        let anew = weights(series, solved.here()?);
-        if !weigh_anew(&solved.weights, &anew) {
+        let anew = weights(series, solved.current()?);
+        if !has_new_weights(&solved.weights, &anew) {
             break;
         }
         by_weight = anew;
@@ -419,7 +421,7 @@ mod tests {
             let mut moved = parameters.clone();
             moved[i] += step;
             problem.set_params(&moved);
-            let solved = &problem.here().expect("a solution").solved;
+            let solved = &problem.current().expect("a solution").solved;
             let weighted = solved
                 .iter()
                 .zip([1.0, 2.0])

@@ -1,11 +1,11 @@
-//! A damped mode and times to e^((−ζ + i) ω t), most of them by turning the last value on.
+//! Values of e^((−ζ + i) ω t) for a damped mode, most of them by multiplying the previous value.
 
 use super::series::Oscillation;
 use crate::numerics::as_f64;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Values turned on before one is computed afresh: 256 products lose 1e-13 of the amplitude.
+/// Values computed by multiplication before one is computed afresh: 256 products lose 1e-13 of the amplitude.
 const LONGEST_RUN: usize = 256;
 
 /// (−ζ + i) ω.
@@ -14,8 +14,8 @@ pub fn rate(mode: Oscillation) -> Complex<f64> {
     Complex::new(-mode.damping * omega, omega)
 }
 
-/// e^((−ζ + i) ω t) at `start_s`, `start_s + step_s` and so on without end: the real part is the cosine, the
-/// imaginary the sine.
+/// Yields e^((−ζ + i) ω t) at `start_s`, `start_s + step_s` and so on without end: the real part is the
+/// cosine, the imaginary the sine.
 pub fn uniform_ringing(mode: Oscillation, start_s: f64, step_s: f64) -> impl Iterator<Item = Complex<f64>> {
     let rate = rate(mode);
     let turn = (rate * step_s).exp();
@@ -27,12 +27,11 @@ pub fn uniform_ringing(mode: Oscillation, start_s: f64, step_s: f64) -> impl Ite
     })
 }
 
-/// Series that are turned on beside one another: each step waits for the one before it.
+/// Series that are computed in parallel: each step waits for the one before it.
 const LANES: usize = 4;
 
-/// The same at given times, where they are evenly spaced and no more than [`LONGEST_RUN`] a lane; else
-/// `None`.
-pub(super) fn even_ringing(mode: Oscillation, time_s: &[f64]) -> Option<Vec<Complex<f64>>> {
+/// Ringing at given times, if they are evenly spaced and at most [`LONGEST_RUN`] per lane; else `None`.
+pub(super) fn evenly_spaced_ringing(mode: Oscillation, time_s: &[f64]) -> Option<Vec<Complex<f64>>> {
     let (&start_s, &second_s) = (time_s.first()?, time_s.get(1)?);
     let step_s = second_s - start_s;
     let is_even = time_s.windows(2).all(|t| (t[1] - t[0] - step_s).abs() < 1e-9 * step_s);
@@ -55,7 +54,7 @@ pub(super) fn even_ringing(mode: Oscillation, time_s: &[f64]) -> Option<Vec<Comp
     Some(values)
 }
 
-/// The same at given increasing times, turned on as long as they are evenly spaced.
+/// Ringing at given increasing times, computed by rotation as long as they are evenly spaced.
 pub(super) struct Ringing<'a> {
     time_s: &'a [f64],
     index: usize,
@@ -111,10 +110,10 @@ mod tests {
     #[test]
     fn lanes_say_the_same() {
         let time_s: Vec<f64> = (0..241).map(|i| 1e-4 + f64::from(i) * 2.5e-4).collect();
-        let values = even_ringing(MODE, &time_s).expect("even times");
+        let values = evenly_spaced_ringing(MODE, &time_s).expect("even times");
         assert_eq!(values.len(), time_s.len());
         assert!(time_s.iter().zip(values).all(|(t, value)| (value - direct(*t)).norm() < 1e-12));
-        assert!(even_ringing(MODE, &[0.0, 1.0, 3.0]).is_none());
+        assert!(evenly_spaced_ringing(MODE, &[0.0, 1.0, 3.0]).is_none());
     }
 
     #[test]

@@ -1,24 +1,24 @@
-//! A further mode sought among many that are tried.
+//! Searches for a further mode among many candidates.
 
 use super::drive::{Drive, Form};
 use super::projection::{SharedByTimes, columns, mode_columns};
-use super::ringing::{Ringing, even_ringing};
+use super::ringing::{Ringing, evenly_spaced_ringing};
 use super::series::{Oscillation, Series};
 use crate::numerics::{as_f64, reduce};
 use nalgebra::{DMatrix, DVector, Dyn, MatrixView, U1};
 
-/// From so many rows on a product of matrices is the fast one; others are filled up with zeros.
+/// From this many rows on a product of matrices is faster; fewer rows are filled up with zeros.
 const FAST_COLUMNS: usize = 8;
 
-/// Series of so many points and more are sought in with means of two: a period that spans five points spans
+/// Series with this many points or more are searched in means of two: a period of five points still spans
 /// more than two of them.
 const LONG: usize = 100;
 
-/// What each column of a mode has along those known so far.
+/// Projection of each column of a mode on the modes known so far.
 type Known<'a> = MatrixView<'a, f64, Dyn, Dyn, U1, Dyn>;
 
-/// The modes that are tried in a band: steps of 7 % and three dampings. Made once for all fits of the same
-/// series and drive.
+/// Candidate modes of a band: steps of 7 % and three dampings. Made once for all fits of the same series and
+/// drive.
 pub struct Seeds {
     band_hz: (f64, f64),
     modes: Vec<Oscillation>,
@@ -28,14 +28,14 @@ pub struct Seeds {
 
 /// The modes at the same times.
 struct Tried {
-    /// Columns of one mode after the other.
+    /// Columns, one mode after the other.
     columns: DMatrix<f64>,
     /// Products of each mode's columns: of the first with itself, of both, of the last with itself.
     products: Vec<[f64; 3]>,
 }
 
 impl Seeds {
-    /// The seeds of a band, Hz, for `series` and what drives them.
+    /// The seeds of a band, Hz, for `series` and its drive.
     pub fn new(series: &[Series], band_hz: (f64, f64), drive: Option<&Drive>) -> Self {
         let form = Form { drift: false, drive };
         let mut modes = Vec::new();
@@ -45,11 +45,11 @@ impl Seeds {
             frequency_hz *= 1.07;
         }
         let series: Vec<Series> = series.iter().map(coarse).collect();
-        let tried = SharedByTimes::of(&series, |s| Tried::new(s, &modes, form));
+        let tried = SharedByTimes::from_fn(&series, |s| Tried::new(s, &modes, form));
         Self { band_hz, modes, series, tried }
     }
 
-    /// Whether a mode lies in the band or close to it.
+    /// True if a mode lies in the band or close to it.
     pub(super) fn is_near(&self, mode: &Oscillation) -> bool {
         (0.8 * self.band_hz.0..1.25 * self.band_hz.1).contains(&mode.frequency_hz)
     }
@@ -61,7 +61,7 @@ impl Tried {
         let mut columns = DMatrix::zeros(series.time_s.len(), width * modes.len());
         for (i, mode) in modes.iter().enumerate() {
             let phase = form.drive.map(|drive| drive.phase(*mode));
-            let ringing = even_ringing(*mode, &series.time_s)
+            let ringing = evenly_spaced_ringing(*mode, &series.time_s)
                 .unwrap_or_else(|| Ringing::new(*mode, &series.time_s).collect());
             mode_columns(columns.columns_mut(width * i, width), ringing.into_iter(), phase);
         }
@@ -83,7 +83,7 @@ fn coarse(series: &Series) -> Series {
     Series { time_s: means(&series.time_s), value: means(&series.value), ..series.clone() }
 }
 
-/// The seed that, added to `start`, leaves least.
+/// The seed that, added to `start`, leaves the smallest residual.
 pub(super) fn best_seed(start: &[Oscillation], seeds: &Seeds, form: Form) -> Option<Oscillation> {
     let width = form.width();
     let mut scores = vec![0.0; seeds.modes.len()];
@@ -95,7 +95,7 @@ pub(super) fn best_seed(start: &[Oscillation], seeds: &Seeds, form: Form) -> Opt
             &value - &basis * basis.tr_mul(&value)
         };
         let rests: Vec<DVector<f64>> = series.iter().map(|own| rest(own)).collect();
-        // Along what the modes known so far explain, and along what they leave: one product for all seeds.
+        // One product for all seeds gives their components along the known modes and along the residual.
         let mut beside = DMatrix::zeros(basis.nrows(), (count + rests.len()).max(FAST_COLUMNS));
         beside.columns_mut(0, count).copy_from(&basis);
         rests.iter().enumerate().for_each(|(j, rest)| beside.set_column(count + j, rest));
@@ -106,21 +106,21 @@ pub(super) fn best_seed(start: &[Oscillation], seeds: &Seeds, form: Form) -> Opt
             for (j, (series, rest)) in series.iter().zip(&rests).enumerate() {
                 let along = [own[(count + j, 0)], own[(count + j, width - 1)]];
                 *score += factor.map_or(f64::NAN, |factor| {
-                    let left = rest.norm_squared() - explained(factor, along);
+                    let left = rest.norm_squared() - explained_square(factor, along);
                     (left.max(0.0) / as_f64(rest.len()) + series.floor.powi(2)).ln()
                 });
             }
         }
     }
-    // Two modes at one place are one mode and a singular fit.
+    // Two modes at one frequency are one mode and make the fit singular.
     let is_free =
         |seed: &Oscillation| start.iter().all(|m| (m.frequency_hz / seed.frequency_hz).ln().abs() >= 0.05);
     let scored = seeds.modes.iter().zip(scores).filter(|(mode, score)| is_free(mode) && !score.is_nan());
     scored.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| *mode)
 }
 
-/// The Cholesky factor of the products of a mode's columns, less what the `known` ones explain of them;
-/// `None` where that is all. Of a single column there is no second row: what is divided by infinity.
+/// The Cholesky factor of the products of a mode's columns, less the part that the `known` ones explain;
+/// `None` if they explain everything. A single column has no second row: it is divided by infinity.
 fn factor([own, both, other]: [f64; 3], known: &Known) -> Option<[f64; 3]> {
     let first = known.column(0);
     let size = Some(own - first.norm_squared()).filter(|size| *size > 0.0)?.sqrt();
@@ -133,15 +133,15 @@ fn factor([own, both, other]: [f64; 3], known: &Known) -> Option<[f64; 3]> {
     (left > 0.0).then(|| [size, shared, left.sqrt()])
 }
 
-/// Square of what a mode explains of a rest that has this along its columns.
-fn explained([size, shared, left]: [f64; 3], along: [f64; 2]) -> f64 {
+/// Square of the residual that a mode explains, given its components along the mode's columns.
+fn explained_square([size, shared, left]: [f64; 3], along: [f64; 2]) -> f64 {
     let first = along[0] / size;
     let second = (along[1] - shared * first) / left;
     first * first + second * second
 }
 
-/// An orthonormal basis of what the modes known so far explain; `None` where one mode more would leave fewer
-/// than two points over.
+/// An orthonormal basis of the known modes; `None` if one more mode would leave fewer than two points more
+/// than unknowns.
 pub(super) fn basis(series: &Series, start: &[Oscillation], form: Form) -> Option<DMatrix<f64>> {
     let matrix = columns(series, start, form);
     (matrix.nrows() >= matrix.ncols() + form.width() + 2).then(|| matrix.qr().q())

@@ -1,8 +1,8 @@
-//! Noisy series, the modes that ring on them, and what a fit says of both.
+//! Noisy series, the modes that ring on them, and the results of a fit.
 
 use crate::numerics::as_f64;
 
-/// One series y(t) to be explained.
+/// One series y(t) to explain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Times from the window's start, s, increasing.
@@ -11,7 +11,7 @@ pub struct Series {
     pub value: Vec<f64>,
     /// Times at which the series may jump by an unknown amount (samples were lost there), s.
     pub steps_s: Vec<f64>,
-    /// RMS that noise alone leaves in such a series.
+    /// RMS of the noise in such a series.
     pub floor: f64,
 }
 
@@ -24,22 +24,22 @@ pub struct Oscillation {
     pub damping: f64,
 }
 
-/// What the fit says of one series; values at t = 0.
+/// Fitted values of one series at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeriesFit {
     /// p.
     pub plateau: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the plateau.
     pub u_plateau: f64,
     /// d, per second.
     pub drift: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the drift.
     pub u_drift: f64,
     /// A and B of each mode.
     pub amplitudes: Vec<(f64, f64)>,
-    /// RMS of what is left.
+    /// RMS of the residual.
     pub residual: f64,
-    /// RMS of its means over a 24th of the series: of what oscillates faster than that next to nothing.
+    /// RMS of the residual's means over a 24th of the series, which hardly contain faster oscillations.
     pub slow_residual: f64,
     /// Jumps at `steps_s`.
     pub jumps: Vec<f64>,
@@ -50,13 +50,13 @@ pub struct SeriesFit {
 pub struct Fit {
     /// The modes, in the order found.
     pub modes: Vec<Oscillation>,
-    /// Whether a drift was fitted.
+    /// True if a drift was fitted.
     pub drift: bool,
-    /// Whether the phases of the modes are those of their drive.
+    /// True if the force determines the phases of the modes.
     pub driven: bool,
-    /// One a series.
+    /// Fitted values of each series.
     pub series: Vec<SeriesFit>,
-    /// By how much serial correlation shrinks the number of independent residuals.
+    /// Factor by which serial correlation reduces the number of independent residuals.
     pub correlation: f64,
     /// Number of free parameters.
     pub parameters: usize,

@@ -1,4 +1,4 @@
-//! Samples through a second-order low-pass in one direction, and back.
+//! Filters samples through a second-order low-pass in one direction, and back.
 
 use rayon::prelude::*;
 
@@ -14,13 +14,13 @@ pub(super) struct StateVariable {
 }
 
 impl StateVariable {
-    /// By g = tan(π f/f_s) and 2R.
+    /// Makes a stage from g = tan(π f/f_s) and 2R.
     pub(super) fn new(g: f64, damping: f64) -> Self {
         let first = 1.0 / (1.0 + g * (g + damping));
         Self { decay: g * (g + damping) * first, second: g * first, third: g * g * first }
     }
 
-    /// Rows of samples, one a series, in the given order through it, from and to the states of its
+    /// Filters rows of samples, one per series, in the given order, and updates the states of its
     /// integrators.
     pub(super) fn run<'a, const N: usize>(
         &self,
@@ -30,7 +30,7 @@ impl StateVariable {
         let Self { decay, second, third } = *self;
         for row in rows {
             for ((x, band), low) in row.iter_mut().zip(band.iter_mut()).zip(low.iter_mut()) {
-                // Only what is added is rounded at its own size: 2 v1 − band and 2 v2 − low would round the
+                // Only the increment is rounded at its own size: 2 v1 − band and 2 v2 − low would round the
                 // states twice.
                 let v3 = *x - *low;
                 let added = second * *band + third * v3;
@@ -42,7 +42,7 @@ impl StateVariable {
     }
 }
 
-/// All samples forward, then all back; each way started in the steady state of its first sample.
+/// Filters all samples forward, then backward; each pass starts in the steady state of its first sample.
 pub(super) fn forward_and_back(stage: &StateVariable, samples: &mut [f64]) {
     rows_forward_and_back(stage, samples.as_chunks_mut::<1>().0);
 }
@@ -54,24 +54,24 @@ fn rows_forward_and_back<const N: usize>(stage: &StateVariable, rows: &mut [[f64
     stage.run(rows.iter_mut().rev(), &mut [[0.0; N], start]);
 }
 
-/// Stretches that go through the filter beside one another: each step of one waits for the one before it.
+/// Stretches that are filtered in parallel: each step of one waits for the one before it.
 const LANES: usize = 4;
-/// A series that is longer than its filter's memory by this factor goes through it in so many stretches.
-const WORTH: usize = 6;
+/// A series that is longer than its filter's memory by this factor is filtered in this many stretches.
+const STRETCH_FACTOR: usize = 6;
 const STRETCHES: usize = 2;
 
-/// The same of each series; those of one length take little longer together than one of them, and long ones
-/// less for being cut in stretches that begin and end `memory` samples farther out than what they are for.
-pub(super) fn each_forward_and_back(stage: &StateVariable, memory: usize, all: &mut [Vec<f64>]) {
+/// Filters each series. Series of one length take little longer together than one of them, and long ones less
+/// if they are cut into stretches that begin and end `memory` samples farther out than their results.
+pub(super) fn filter_all(stage: &StateVariable, memory: usize, all: &mut [Vec<f64>]) {
     let count = all.first().map_or(0, Vec::len);
     if all.iter().any(|series| series.len() != count) {
         all.par_iter_mut().for_each(|series| forward_and_back(stage, series));
         return;
     }
-    let stretches = if count > WORTH * memory { STRETCHES } else { 1 };
+    let stretches = if count > STRETCH_FACTOR * memory { STRETCHES } else { 1 };
     let own = count.div_ceil(stretches);
     let length = (own + 2 * memory).min(count);
-    // Of a stretch: which series, what it is for, and where it begins.
+    // The place of a stretch is its series, the range of its results, and its beginning.
     let place = |stretch: usize| {
         let from = stretch % stretches * own;
         (stretch / stretches, from..(from + own).min(count), from.saturating_sub(memory).min(count - length))
@@ -113,7 +113,7 @@ mod tests {
         for lengths in [&[50, 50, 50][..], &[50, 50, 50, 50, 50], &[50, 40], &[50], &[0, 0], &[]] {
             let mut together: Vec<Vec<f64>> = (0..).zip(lengths).map(|(i, n)| series(i, *n)).collect();
             let mut alone = together.clone();
-            each_forward_and_back(&stage, 10, &mut together);
+            filter_all(&stage, 10, &mut together);
             for series in &mut alone {
                 forward_and_back(&stage, series);
             }
@@ -129,7 +129,7 @@ mod tests {
             |i: u32| (0..20_001_u32).map(move |n| f64::from((n * n + 7 * i) % 31) + 1e-3 * f64::from(n));
         let mut together: Vec<Vec<f64>> = (0..3).map(|i| series(i).collect()).collect();
         let mut alone = together.clone();
-        each_forward_and_back(&stage, memory, &mut together);
+        filter_all(&stage, memory, &mut together);
         for (alone, together) in alone.iter_mut().zip(&together) {
             forward_and_back(&stage, alone);
             let off = alone.iter().zip(together).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Predictions over the angle to critical angles and their bands.
+//! Critical angles and their bands, from predictions over the angle.
 
 use super::Fall;
 use super::peak::{Peak, Sample, peak, with_jumps};
@@ -13,7 +13,7 @@ pub(super) fn critical_angles(
     band_percent: f64,
     (angles_deg, predictions): AtAngles,
 ) -> Vec<CriticalAngle> {
-    let at = |angle_deg: f64| Sample::at(fall, angle_deg);
+    let at = |angle_deg: f64| Sample::predict(fall, angle_deg);
     let traced: Vec<Sample> =
         angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(fall, angle_deg, p)).collect();
     let samples = with_jumps(&traced, &at);
@@ -35,7 +35,7 @@ pub(super) fn critical_angles(
     Criterion::ALL.into_iter().enumerate().map(critical).collect()
 }
 
-/// The highest of some angles' values, where no single impact reaches it: above `largest`, or that is none.
+/// The largest value at angles that no single impact reaches, if above `largest`, or if that is NaN.
 fn highest(values: impl Iterator<Item = (f64, f64)>, largest: f64) -> Option<(f64, f64)> {
     let highest = values.reduce(|top, next| if next.1 > top.1 { next } else { top });
     highest.filter(|top| largest.is_nan() || top.1 > largest)
@@ -51,15 +51,15 @@ mod tests {
     fn critical(height_m: f64, contact: Contact, k: f64, band_percent: f64) -> Vec<CriticalAngle> {
         let file = cask_file(height_m);
         let asked = StudyRequest { band_percent, ..request(vec![contact], vec![k], steps(180, 90.0)) };
-        let fall = Fall { body: super::super::richest(&file), drop: file.drop, contact, k };
-        critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &fall.over(&asked.angles_deg)))
+        let fall = Fall { body: super::super::richest_body(&file), drop: file.drop, contact, k };
+        critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &fall.sweep(&asked.angles_deg)))
     }
 
-    /// Angle and size of the largest of 18 001 single slap-downs, of each criterion.
-    fn scanned(fall: &Fall) -> [(f64, f64); 3] {
+    /// Angle and value of the largest of 18 001 single slap-downs, for each criterion.
+    fn scan(fall: &Fall) -> [(f64, f64); 3] {
         let mut tops = [(0.0, 0.0); 3];
         for i in 0..=18_000 {
-            let sample = Sample::at(fall, f64::from(i) / 200.0);
+            let sample = Sample::predict(fall, f64::from(i) / 200.0);
             for (j, top) in tops.iter_mut().enumerate() {
                 if sample.critical(j) > top.1 {
                     *top = (sample.angle_deg, sample.critical(j));
@@ -72,13 +72,13 @@ mod tests {
     #[test]
     fn a_fine_scan_finds_nothing_larger() {
         for k in [0.3, 1.0] {
-            let tops = scanned(&rough_rod(k));
+            let tops = scan(&rough_rod(k));
             for (found, (angle_deg, largest)) in critical(0.0, Contact::Rough, k, 5.0).iter().zip(tops) {
                 assert!(found.largest >= largest * (1.0 - 1e-12), "{found:?} {largest}");
                 // A smooth maximum lies within a step of the scan's, and so does a jump.
                 assert!((found.angle_deg - angle_deg).abs() <= 5e-3, "{found:?} {angle_deg}");
-                // What a step can add: slopes stay below 100 m/s per radian, and those of the energy ratio
-                // below that number.
+                // A step can add at most this much: slopes stay below 100 m/s per radian, and those of the
+                // energy ratio below that number.
                 assert!(found.largest <= largest + 100.0 * 5e-3_f64.to_radians(), "{found:?} {largest}");
             }
         }
@@ -90,10 +90,10 @@ mod tests {
         // = 0.5 it never does.
         let asked = request(vec![Contact::Rough], vec![1.0], steps(1800, 90.0));
         let fall = rough_rod(1.0);
-        let predictions = fall.over(&asked.angles_deg);
+        let predictions = fall.sweep(&asked.angles_deg);
         let found = &critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &predictions))[0];
         let (angle_deg, speed_m_s) = found.further_impacts.expect("a larger one");
-        let there = fall.at(angle_deg);
+        let there = fall.predict(angle_deg);
         assert!(there.first_end_impacts > 1 && there.slap_down_speed_m_s == Some(speed_m_s));
         assert!(speed_m_s > found.largest && found.angle_deg < 3.0, "{found:?}");
         assert_eq!(critical(0.0, Contact::Rough, 0.5, 5.0)[0].further_impacts, None);
@@ -104,7 +104,8 @@ mod tests {
         // Flight with k just above 0: speed rises from the flat drop, then falls; the maximum is inside.
         let found = &critical(0.0, Contact::Rough, 0.1, 5.0)[0];
         assert!(found.angle_deg > 1.0 && found.angle_deg < 20.0, "{found:?}");
-        let speed = |angle_deg: f64| rough_rod(0.1).at(angle_deg).slap_down_speed_m_s.expect("R strikes");
+        let speed =
+            |angle_deg: f64| rough_rod(0.1).predict(angle_deg).slap_down_speed_m_s.expect("R strikes");
         let step_deg = 0.1;
         let slope =
             (speed(found.angle_deg + step_deg) - speed(found.angle_deg - step_deg)) / (2.0 * step_deg);
@@ -132,20 +133,20 @@ mod tests {
         let fall = Fall { contact: Contact::Smooth, ..rough_rod(1.0) };
         let asked = request(vec![Contact::Smooth], vec![1.0], steps(180, 90.0));
         let found =
-            critical_angles(&fall, 5.0, (&asked.angles_deg, &fall.over(&asked.angles_deg)))[2].clone();
+            critical_angles(&fall, 5.0, (&asked.angles_deg, &fall.sweep(&asked.angles_deg)))[2].clone();
         assert!(found.angle_deg < 60.0 && found.largest < 1.1, "{found:?}");
-        assert!(fall.at(88.9).energy_ratio > Some(1.2));
+        assert!(fall.predict(88.9).energy_ratio > Some(1.2));
     }
 
     #[test]
     fn all_of_a_band_lies_within_its_percentage() {
         for found in critical(0.792, Contact::Smooth, 0.5, 2.0) {
             let fall = Fall {
-                body: super::super::richest(&cask_file(0.792)),
+                body: super::super::richest_body(&cask_file(0.792)),
                 contact: Contact::Smooth,
                 ..rough_rod(0.5)
             };
-            let value = |angle_deg: f64| Sample::at(&fall, angle_deg).critical(found.criterion as usize);
+            let value = |angle_deg: f64| Sample::predict(&fall, angle_deg).critical(found.criterion as usize);
             for &(low_deg, high_deg) in &found.bands_deg {
                 for i in 0..=100 {
                     let angle_deg = low_deg + (high_deg - low_deg) * f64::from(i) / 100.0;

@@ -1,4 +1,4 @@
-//! Predictions over the angle to the curves that are drawn.
+//! Curves for pictures from predictions over the angle.
 
 use super::Fall;
 use crate::data::{AngleCurve, Body, BodyModel, CaskFile, Contact, Prediction};
@@ -6,9 +6,9 @@ use crate::data::{AngleCurve, Body, BodyModel, CaskFile, Contact, Prediction};
 /// Sections of \[P\] Fig. 9 beside the rod, m: 10 × 10 mm and 500 × 600 mm, either way up.
 const SECTIONS_M: [f64; 3] = [0.01, 0.5, 0.6];
 
-/// The curve of predictions made at `angles_deg`; what a prediction does not have is NaN.
+/// The curve of predictions made at `angles_deg`; NaN where a prediction lacks the value.
 pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction]) -> AngleCurve {
-    let each = |value: fn(&Prediction) -> Option<f64>| {
+    let values_of = |value: fn(&Prediction) -> Option<f64>| {
         predictions.iter().map(|p| value(p).unwrap_or(f64::NAN)).collect()
     };
     AngleCurve {
@@ -17,11 +17,11 @@ pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction])
         contact: fall.contact,
         k: fall.k,
         angle_deg: angles_deg.to_vec(),
-        speed_m_s: each(|p| p.slap_down_speed_m_s),
-        vertical_velocity_m_s: each(|p| p.vertical_velocity_m_s),
-        horizontal_velocity_m_s: each(|p| p.horizontal_velocity_m_s),
-        energy_ratio: each(|p| p.energy_ratio),
-        closed_form_speed_m_s: each(|p| p.closed_form_speed_m_s),
+        speed_m_s: values_of(|p| p.slap_down_speed_m_s),
+        vertical_velocity_m_s: values_of(|p| p.vertical_velocity_m_s),
+        horizontal_velocity_m_s: values_of(|p| p.horizontal_velocity_m_s),
+        energy_ratio: values_of(|p| p.energy_ratio),
+        closed_form_speed_m_s: values_of(|p| p.closed_form_speed_m_s),
         turns_over: predictions.iter().map(Prediction::turns_over).collect(),
     }
 }
@@ -31,11 +31,11 @@ pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction])
 pub(super) fn sections(cask_file: &CaskFile, angles_deg: &[f64]) -> Vec<AngleCurve> {
     let rod = super::super::body(&cask_file.cask, BodyModel::Rod);
     let uniform =
-        |height_m: f64| Body { model: BodyModel::Body, ..super::resized(&rod, rod.length_m, height_m) };
-    let own = cask_file.cask.is_body.then(|| super::richest(cask_file));
+        |height_m: f64| Body { model: BodyModel::Body, ..super::resize(&rod, rod.length_m, height_m) };
+    let own = cask_file.cask.is_body.then(|| super::richest_body(cask_file));
     let of_body = |body| {
         let fall = Fall { body, drop: cask_file.drop, contact: Contact::Smooth, k: 1.0 };
-        curve(&fall, angles_deg, &fall.over(angles_deg))
+        curve(&fall, angles_deg, &fall.sweep(angles_deg))
     };
     std::iter::once(rod).chain(SECTIONS_M.map(uniform)).chain(own).map(of_body).collect()
 }
@@ -48,9 +48,9 @@ mod tests {
     #[test]
     fn a_curve_is_the_predictions_one_by_one() {
         let (fall, angles_deg) = (rough_rod(1.0), steps(90, 90.0));
-        let found = curve(&fall, &angles_deg, &fall.over(&angles_deg));
+        let found = curve(&fall, &angles_deg, &fall.sweep(&angles_deg));
         for (i, &angle_deg) in angles_deg.iter().enumerate() {
-            let one = fall.at(angle_deg);
+            let one = fall.predict(angle_deg);
             assert_eq!(one.slap_down_speed_m_s.is_none(), found.speed_m_s[i].is_nan());
             if let Some(speed_m_s) = one.slap_down_speed_m_s {
                 assert_eq!(found.speed_m_s[i].to_bits(), speed_m_s.to_bits());

@@ -1,4 +1,4 @@
-//! A cask file and a request to rows, curves, critical angles and Monte Carlo.
+//! Rows, curves, critical angles and Monte Carlo for a cask file and a request.
 
 mod advice;
 mod critical;
@@ -22,13 +22,13 @@ use rayon::prelude::*;
 const DRAW_ANGLES: usize = 91;
 const STEEP_DEG: f64 = 30.0;
 
-/// All that a study of the drop angle holds, on all cores; the same for any number of them.
+/// Evaluates a study of the drop angle on all cores; the result does not depend on their number.
 ///
-/// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits
-/// of the sine only.
+/// The seed fixes the draws bit by bit; predictions from them differ between machines in the last bits of the
+/// sine only.
 pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     let falls = falls(&bodies(&cask_file.cask), cask_file.drop, &request.contacts, &request.ks);
-    let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.over(&request.angles_deg)).collect();
+    let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.sweep(&request.angles_deg)).collect();
     let (curves, critical): (Vec<_>, Vec<_>) = falls
         .par_iter()
         .zip(&traced)
@@ -39,10 +39,10 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         })
         .unzip();
     let (critical, rows) = (critical.concat(), rows::rows(cask_file, request));
-    let drawn_deg = thinned(&request.angles_deg, DRAW_ANGLES);
+    let drawn_deg = thin(&request.angles_deg, DRAW_ANGLES);
     let contact = request.contacts.first().copied().unwrap_or(cask_file.contact);
-    let base = Fall { body: richest(cask_file), drop: cask_file.drop, contact, k: 0.0 };
-    let draws = monte_carlo::traced(&base, request, &drawn_deg);
+    let base = Fall { body: richest_body(cask_file), drop: cask_file.drop, contact, k: 0.0 };
+    let draws = monte_carlo::trace_draws(&base, request, &drawn_deg);
     let monte_carlo = monte_carlo::monte_carlo(&base, request, &drawn_deg, &draws);
     Study {
         advice: advice::advice(request, (&monte_carlo, &draws), &critical, &rows),
@@ -59,18 +59,18 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     }
 }
 
-/// A fall of which the angle is open.
+/// A fall whose angle is open.
 impl Fall {
     fn drop_at(&self, angle_deg: f64) -> Drop {
         Drop { angle_rad: angle_deg.to_radians(), ..self.drop }
     }
 
-    fn at(&self, angle_deg: f64) -> Prediction {
+    fn predict(&self, angle_deg: f64) -> Prediction {
         predict(&self.body, &self.drop_at(angle_deg), self.contact, self.k)
     }
 
-    fn over(&self, angles_deg: &[f64]) -> Vec<Prediction> {
-        angles_deg.par_iter().map(|&angle_deg| self.at(angle_deg)).collect()
+    fn sweep(&self, angles_deg: &[f64]) -> Vec<Prediction> {
+        angles_deg.par_iter().map(|&angle_deg| self.predict(angle_deg)).collect()
     }
 }
 
@@ -85,7 +85,7 @@ fn falls(bodies: &[Body], drop: Drop, contacts: &[Contact], ks: &[f64]) -> Vec<F
     falls
 }
 
-/// Paths of the richest body drawn at the most: two contact laws with two k each.
+/// Largest number of drawn paths of the richest body: two contact laws with two k each.
 const MOST_PATHS: usize = 4;
 
 fn paths(falls: &[Fall], angle_deg: f64) -> Vec<BodyPath> {
@@ -93,14 +93,14 @@ fn paths(falls: &[Fall], angle_deg: f64) -> Vec<BodyPath> {
     falls.iter().filter(of_richest).filter_map(|fall| poses::path(fall, angle_deg)).take(MOST_PATHS).collect()
 }
 
-/// The body where the cask file describes one, else the rod.
-pub fn richest(cask_file: &CaskFile) -> Body {
+/// The body if the cask file describes one, else the rod.
+pub fn richest_body(cask_file: &CaskFile) -> Body {
     let model = if cask_file.cask.is_body { BodyModel::Body } else { BodyModel::Rod };
     super::body(&cask_file.cask, model)
 }
 
 fn ladders(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Ladder> {
-    let body = richest(cask_file);
+    let body = richest_body(cask_file);
     let drop = Drop { angle_rad: request.angle_deg.to_radians(), ..cask_file.drop };
     let ladders = |&contact: &Contact| request.ks.iter().map(move |&k| ladder(&body, &drop, contact, k));
     request.contacts.iter().flat_map(ladders).collect()
@@ -108,7 +108,7 @@ fn ladders(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Ladder> {
 
 /// The body with another length and section: the centre of gravity keeps its share of the length, Θ ∝ l² +
 /// h².
-fn resized(body: &Body, length_m: f64, height_m: f64) -> Body {
+fn resize(body: &Body, length_m: f64, height_m: f64) -> Body {
     let size_m2 = |l: f64, h: f64| l * l + h * h;
     Body {
         length_m,
@@ -121,7 +121,7 @@ fn resized(body: &Body, length_m: f64, height_m: f64) -> Body {
 }
 
 /// The drop from another height: v0 = √(2 g h); a stated v0 scales with √h.
-fn raised(drop: &Drop, height_m: f64) -> Drop {
+fn raise(drop: &Drop, height_m: f64) -> Drop {
     let impact_velocity_m_s = if drop.impact_velocity_given {
         drop.impact_velocity_m_s * (height_m / drop.height_m).sqrt()
     } else {
@@ -130,8 +130,8 @@ fn raised(drop: &Drop, height_m: f64) -> Drop {
     Drop { height_m, impact_velocity_m_s, ..*drop }
 }
 
-/// At most `most` of the angles (2 or more), evenly picked, the first and last among them.
-fn thinned(angles_deg: &[f64], most: usize) -> Vec<f64> {
+/// Picks at most `most` of the angles (2 or more), evenly, including the first and the last.
+fn thin(angles_deg: &[f64], most: usize) -> Vec<f64> {
     let most = most.min(angles_deg.len());
     let last = angles_deg.len().saturating_sub(1);
     let picked = (0..most).map(|i| (i, angles_deg[i * last / (most - 1)]));
@@ -149,9 +149,9 @@ mod tests {
     /// A uniform cask as long and heavy as ANF-18; a section of 0 makes it the thin rod.
     pub(super) fn cask_file(height_m: f64) -> CaskFile {
         let cask = example::cask(4466.0, 5.512, height_m);
-        CaskFile::plain(
+        CaskFile::new(
             cask,
-            Drop { impact_velocity_m_s: V0_M_S, ..Drop::of_height(9.0, 15_f64.to_radians()) },
+            Drop { impact_velocity_m_s: V0_M_S, ..Drop::from_height(9.0, 15_f64.to_radians()) },
             Contact::Rough,
         )
     }
@@ -179,7 +179,7 @@ mod tests {
 
     pub(super) fn rough_rod(k: f64) -> Fall {
         let file = cask_file(0.0);
-        Fall { body: richest(&file), drop: file.drop, contact: Contact::Rough, k }
+        Fall { body: richest_body(&file), drop: file.drop, contact: Contact::Rough, k }
     }
 
     #[test]
@@ -217,10 +217,10 @@ mod tests {
 
     #[test]
     fn thinning_keeps_both_ends_and_every_third_steep_angle() {
-        let flat: Vec<f64> = thinned(&steps(180, 90.0), 91).into_iter().filter(|a| *a <= STEEP_DEG).collect();
+        let flat: Vec<f64> = thin(&steps(180, 90.0), 91).into_iter().filter(|a| *a <= STEEP_DEG).collect();
         assert_eq!(flat, steps(30, 30.0));
         for angles_deg in [steps(180, 90.0), steps(1000, 90.0), steps(7, 70.0)] {
-            let thin = thinned(&angles_deg, 91);
+            let thin = thin(&angles_deg, 91);
             assert_eq!((thin.first(), thin.last()), (angles_deg.first(), angles_deg.last()));
             assert!(
                 thin.len() <= 52 && thin.windows(2).all(|w| w[0] < w[1] && w[1] - w[0] <= 31.0),
@@ -231,8 +231,8 @@ mod tests {
 
     #[test]
     fn a_uniform_body_stays_uniform_when_resized() {
-        let body = richest(&cask_file(0.792));
-        let other = resized(&body, 4.0, 1.0);
+        let body = richest_body(&cask_file(0.792));
+        let other = resize(&body, 4.0, 1.0);
         // Three roundings of a product: 1e-15 each.
         assert!((other.inertia_kg_m2 / (body.mass_kg * 17.0 / 12.0) - 1.0).abs() < 3e-15);
         assert!((other.cog_m - 2.0).abs() < 1e-15);
@@ -241,8 +241,8 @@ mod tests {
     #[test]
     fn a_stated_speed_scales_with_the_root_of_the_height() {
         let drop = cask_file(0.0).drop;
-        assert!((raised(&drop, 36.0).impact_velocity_m_s / (2.0 * V0_M_S) - 1.0).abs() < 1e-15);
+        assert!((raise(&drop, 36.0).impact_velocity_m_s / (2.0 * V0_M_S) - 1.0).abs() < 1e-15);
         let stated = Drop { impact_velocity_m_s: 13.0, impact_velocity_given: true, ..drop };
-        assert!((raised(&stated, 36.0).impact_velocity_m_s / 26.0 - 1.0).abs() < 1e-15);
+        assert!((raise(&stated, 36.0).impact_velocity_m_s / 26.0 - 1.0).abs() < 1e-15);
     }
 }

@@ -1,19 +1,19 @@
-//! Values over the angle to their largest one, where it is, and the bands of angles near it.
+//! The largest of values over the angle, its angle, and the bands of angles near it.
 
 use super::Fall;
 use crate::data::{FlightRegime, Prediction};
 
-/// Width to which a jump is bracketed, degrees: the value moves by less than 1e-6 m/s over it.
+/// Width to which a jump is bracketed, degrees: the value changes by less than 1e-6 m/s over it.
 const JUMP_DEG: f64 = 1e-7;
 
-/// Width to which a maximum is bracketed, degrees: far below any drop rig's; flat as it is, the value is
-/// exact to rounding.
+/// Width to which a maximum is bracketed, degrees: far below the accuracy of any drop rig; the maximum is
+/// flat, so its value is exact to rounding.
 const PEAK_DEG: f64 = 1e-5;
 
 /// Width to which the end of a band is bracketed, degrees.
 const EDGE_DEG: f64 = 1e-6;
 
-/// Jumps looked for between two neighbouring angles; further ones lie within the cell's last stretch.
+/// Jumps sought between two neighbouring angles; further ones lie within the last stretch of the cell.
 const MOST_JUMPS: usize = 8;
 
 /// A value must exceed another by this share to count as larger: predictions of a plateau differ by rounding.
@@ -23,18 +23,18 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub angle_deg: f64,
-    /// In the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
+    /// Values in the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
     pub values: [f64; 3],
-    /// What L does on the way to a single slap-down: while that stays the same the values are continuous in
-    /// the angle. `None` where there is none.
+    /// Motion of L before a single slap-down: while it stays the same the values are continuous in the angle.
+    /// `None` if there is none.
     pub course: Option<FlightRegime>,
 }
 
 impl Sample {
     pub fn new(fall: &Fall, angle_deg: f64, prediction: &Prediction) -> Self {
         let value = |found: Option<f64>| found.unwrap_or(f64::NEG_INFINITY);
-        // Before L has left its energy is not lost yet; what comes down more slowly than it would fall from
-        // rest was tossed up.
+        // Before L has left, its energy is not lost yet; a cask that comes down more slowly than it would
+        // fall from rest was tossed up.
         let longest_s =
             (2.0 * fall.body.length_m * angle_deg.to_radians().sin() / fall.drop.gravity_m_s2).sqrt();
         let is_driven = |time_s: f64| (fall.drop.contact_duration_s..=longest_s).contains(&time_s);
@@ -49,17 +49,17 @@ impl Sample {
         }
     }
 
-    pub fn at(fall: &Fall, angle_deg: f64) -> Self {
-        Self::new(fall, angle_deg, &fall.at(angle_deg))
+    pub fn predict(fall: &Fall, angle_deg: f64) -> Self {
+        Self::new(fall, angle_deg, &fall.predict(angle_deg))
     }
 
-    /// A criterion where an angle can be critical; minus infinity where none can.
+    /// Value of a criterion if the angle can be critical; minus infinity if it cannot.
     pub fn critical(&self, criterion: usize) -> f64 {
         if self.course.is_some() { self.values[criterion] } else { f64::NEG_INFINITY }
     }
 }
 
-/// Where a criterion is largest, and the angles at which it is near that.
+/// Maximum of a criterion, and the angles at which the value is close to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Peak {
     pub angle_deg: f64,
@@ -67,7 +67,7 @@ pub(super) struct Peak {
     pub bands_deg: Vec<(f64, f64)>,
 }
 
-/// The samples, and between neighbours of different course both sides of each jump.
+/// The samples, and between neighbours with different courses both sides of each jump.
 pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec<Sample> {
     let mut all: Vec<Sample> = Vec::with_capacity(samples.len() + MOST_JUMPS);
     for &right in samples {
@@ -92,13 +92,13 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
     all
 }
 
-/// The largest value of one criterion over samples that hold both sides of each jump, and the bands within
+/// The largest value of one criterion over samples that include both sides of each jump, and the bands within
 /// `percent` of it.
 ///
-/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section.
-/// At a jump the value on the higher side counts: it is the supremum. At the border it is the border's; of a
-/// plateau its lowest sampled angle. A hump that lies between two samples without lifting either above its
-/// neighbours is not seen. `None` where there is no single slap-down at any angle.
+/// Every hump of the samples that may be the highest is refined between its neighbours by golden section. At
+/// a jump the value on the higher side counts: it is the supremum. A maximum at the border has the border's
+/// angle, a plateau its lowest sampled angle. A hump between two samples that lifts neither above its
+/// neighbours is missed. `None` if there is no single slap-down at any angle.
 pub(super) fn peak(
     samples: &[Sample],
     criterion: usize,
@@ -117,10 +117,10 @@ pub(super) fn peak(
             continue;
         }
         take_if_larger(&mut top, (samples[i].angle_deg, value(i)));
-        // A hump rises between its samples by no more than it falls to the next ones.
+        // A hump rises between its samples by at most its fall to the next ones.
         if from_left.max(from_right) > 0.0 && value(i) + from_left.max(from_right) >= highest {
             let end = |s: Option<&Sample>| s.map_or(samples[i].angle_deg, |s| s.angle_deg);
-            take_if_larger(&mut top, golden(end(left), end(right), |a| at(a).critical(criterion)));
+            take_if_larger(&mut top, golden_section(end(left), end(right), |a| at(a).critical(criterion)));
         }
     }
     let (angle_deg, largest) = top;
@@ -143,9 +143,9 @@ fn take_if_larger(top: &mut (f64, f64), other: (f64, f64)) {
     }
 }
 
-/// The highest point met by golden section (Kiefer 1953) between two angles: the maximum where there is one
+/// The highest point found by golden section (Kiefer 1953) between two angles: the maximum if there is one
 /// hump.
-fn golden(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+fn golden_section(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
     let share = (5.0_f64.sqrt() - 1.0) / 2.0;
     let inner = |from: f64, to: f64| {
         let angle_deg = to - share * (to - from);
@@ -214,9 +214,9 @@ mod tests {
         let at = |angle_deg: f64| {
             let drop = crate::data::Drop {
                 impact_velocity_m_s: 13.288,
-                ..crate::data::Drop::of_height(9.0, angle_deg.to_radians())
+                ..crate::data::Drop::from_height(9.0, angle_deg.to_radians())
             };
-            Sample::at(&Fall { body, drop, contact: crate::data::Contact::Smooth, k: 1.0 }, angle_deg)
+            Sample::predict(&Fall { body, drop, contact: crate::data::Contact::Smooth, k: 1.0 }, angle_deg)
         };
         // About 66° it flies for two seconds and turns over twice, faster than at the 18° where it strikes on
         // its first way down.

@@ -1,12 +1,12 @@
-//! The sweeps of a request to one prediction for every combination of their values.
+//! Sweeps of a request: one prediction for every combination of their values.
 
 use super::super::bodies;
-use super::{Fall, falls, raised, resized};
+use super::{Fall, falls, raise, resize};
 use crate::data::{Body, CaskFile, Contact, PredictionRow, StudyRequest, SweepVariable};
 use rayon::prelude::*;
 
-/// Rows of the product of all sweeps, the first outermost; within it of every body, contact law and k that is
-/// not swept.
+/// Rows of the product of all sweeps, the first outermost; within it for every body, contact law and k that
+/// is not swept.
 pub(super) fn rows(cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
     let mut points: Vec<Vec<(SweepVariable, f64)>> = vec![Vec::new()];
     for sweep in &request.sweeps {
@@ -30,15 +30,15 @@ fn rows_at(
     let contacts = swept(SweepVariable::Friction).map(|friction| vec![Contact::Coulomb(friction)]);
     let ks = swept(SweepVariable::K).map(|k| vec![k]);
     let height_m = swept(SweepVariable::DropHeight);
-    let drop = height_m.map_or(cask_file.drop, |height_m| raised(&cask_file.drop, height_m));
+    let drop = height_m.map_or(cask_file.drop, |height_m| raise(&cask_file.drop, height_m));
     let sized = |body: Body| match swept(SweepVariable::Length) {
-        Some(length_m) => resized(&body, length_m, body.height_m),
+        Some(length_m) => resize(&body, length_m, body.height_m),
         None => body,
     };
     let bodies: Vec<Body> = bodies(&cask_file.cask).into_iter().map(sized).collect();
     let contacts = contacts.as_ref().unwrap_or(&request.contacts);
     let row = |fall: Fall| {
-        let prediction = fall.at(angle_deg);
+        let prediction = fall.predict(angle_deg);
         let (length_m, drop_height_m) = (fall.body.length_m, drop.height_m);
         PredictionRow { angle_deg, length_m, drop_height_m, turns_over: prediction.turns_over(), prediction }
     };
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::data::{BodyModel, Sweep};
 
-    fn swept(height_m: f64, sweeps: Vec<(SweepVariable, Vec<f64>)>) -> Vec<PredictionRow> {
+    fn sweep_rows(height_m: f64, sweeps: Vec<(SweepVariable, Vec<f64>)>) -> Vec<PredictionRow> {
         let sweeps = sweeps.into_iter().map(|(variable, values)| Sweep { variable, values }).collect();
         let asked =
             StudyRequest { sweeps, ..request(vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0], vec![]) };
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn without_a_sweep_there_is_one_row_a_case() {
-        let rows = swept(0.792, vec![]);
+        let rows = sweep_rows(0.792, vec![]);
         let cases: Vec<_> =
             rows.iter().map(|r| (r.prediction.model, r.prediction.contact, r.prediction.k)).collect();
         let (rod, body) = (BodyModel::Rod, BodyModel::Body);
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn the_first_sweep_is_outermost_and_a_swept_k_replaces_the_stated() {
-        let rows = swept(
+        let rows = sweep_rows(
             0.0,
             vec![(SweepVariable::Angle, vec![5.0, 10.0]), (SweepVariable::K, vec![0.2, 0.4, 0.6])],
         );
@@ -93,10 +93,10 @@ mod tests {
 
     #[test]
     fn a_swept_friction_replaces_the_contact_law() {
-        let rows = swept(0.0, vec![(SweepVariable::Friction, vec![0.0, 2.0])]);
+        let rows = sweep_rows(0.0, vec![(SweepVariable::Friction, vec![0.0, 2.0])]);
         assert_eq!(rows.len(), 2 * 2);
         let speed = |r: &PredictionRow| r.prediction.slap_down_speed_m_s.expect("R strikes");
-        let borderline = swept(0.0, vec![]);
+        let borderline = sweep_rows(0.0, vec![]);
         // k = 1 without friction is smooth, with more than sticking needs rough; the same sums in another
         // order.
         assert!((speed(&rows[1]) - speed(&borderline[3])).abs() < 1e-11);
@@ -107,8 +107,8 @@ mod tests {
     fn four_times_the_size_doubles_every_speed() {
         // g l / v0² is the only number in the equations of a rod: with l and h four times as large v0 and all
         // speeds double.
-        let small = swept(0.0, vec![]);
-        let large = swept(
+        let small = sweep_rows(0.0, vec![]);
+        let large = sweep_rows(
             0.0,
             vec![(SweepVariable::Length, vec![4.0 * 5.512]), (SweepVariable::DropHeight, vec![36.0])],
         );
@@ -124,8 +124,8 @@ mod tests {
 
     #[test]
     fn a_longer_body_keeps_its_section() {
-        let rows = swept(0.792, vec![(SweepVariable::Length, vec![5.0, 5.512])]);
-        let same = swept(0.792, vec![]);
+        let rows = sweep_rows(0.792, vec![(SweepVariable::Length, vec![5.0, 5.512])]);
+        let same = sweep_rows(0.792, vec![]);
         assert_eq!(rows.len(), 2 * same.len());
         for (row, expected) in rows[same.len()..].iter().zip(&same) {
             assert_eq!(row, expected);

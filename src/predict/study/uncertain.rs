@@ -1,9 +1,9 @@
-//! What is not known before a test to its ranges and tolerances, and to casks and drops drawn from them.
+//! Uncertain inputs before a test: their ranges and tolerances, and casks and drops drawn from them.
 
 use super::super::impact::strike_first_end;
 use super::super::state::State;
-use super::{Fall, resized};
-use crate::data::shown::rounded;
+use super::{Fall, resize};
+use crate::data::shown::round_off;
 use crate::data::{CaskFile, Contact, Drop, StudyRequest, Uncertain};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -12,26 +12,26 @@ use rand_distr::{Distribution, StandardNormal};
 /// Standard deviations in the half-width that holds 95 % of a normal distribution.
 const SIGMAS_OF_95: f64 = 1.959_963_984_540_054;
 
-/// Least share of a length or inertia that a draw leaves: far out of reach of any half-width that a cask file
-/// would state.
+/// Least share of a length or inertia in a draw: far beyond any half-width that a cask file would state.
 const LEAST_SHARE: f64 = 0.1;
 
 /// Curves are drawn at every half degree: finer than a drop can be rigged.
 const CURVE_ANGLES: u32 = 180;
 
-/// How long a first contact lasts that nobody states, s: of bare metal to a soft impact limiter.
+/// Duration of a first contact that nobody states, s: from bare metal to a soft impact limiter.
 const CONTACT_S: (f64, f64) = (0.005, 0.03);
 
-/// Lengths of the contact that draws have in turn, evenly from end to end of the range: what holds for most
-/// draws can then be asked of each length, the shortest and the longest too.
+/// Number of contact durations, which draws use in turn, evenly from end to end of the range: results can
+/// then be required for each duration, including the shortest and the longest.
 pub(super) const CONTACT_LENGTHS: u32 = 6;
 
-/// What a study is asked of a cask file alone: the four borderline cases at its angle, curves from 0 to 90°.
+/// Default request of a study for a cask file alone: the four borderline cases at its angle, curves from 0 to
+/// 90°.
 pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
     StudyRequest {
         contacts: vec![Contact::Rough, Contact::Smooth],
         ks: vec![0.0, 1.0],
-        angle_deg: rounded(cask_file.drop.angle_rad.to_degrees()),
+        angle_deg: round_off(cask_file.drop.angle_rad.to_degrees()),
         sweeps: Vec::new(),
         angles_deg: curve_angles_deg().collect(),
         band_percent: 5.0,
@@ -40,14 +40,14 @@ pub fn usual_request(cask_file: &CaskFile) -> StudyRequest {
 }
 
 fn curve_angles_deg() -> impl Iterator<Item = f64> {
-    (0..=CURVE_ANGLES).map(|i| rounded(90.0 * f64::from(i) / f64::from(CURVE_ANGLES)))
+    (0..=CURVE_ANGLES).map(|i| round_off(90.0 * f64::from(i) / f64::from(CURVE_ANGLES)))
 }
 
-/// Ranges of what a cask file leaves open, and the half-widths of its `[tolerance]`.
+/// Ranges of the inputs that a cask file leaves open, and the half-widths of its `[tolerance]`.
 pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
     let CaskFile { cask, tolerances, contact_duration_s, .. } = cask_file;
     Uncertain {
-        // Unknown before a test: the borderline cases of [P].
+        // The range before a test covers the borderline cases of [P].
         k: (0.0, 1.0),
         friction: match cask_file.contact {
             Contact::Rough => None,
@@ -56,15 +56,15 @@ pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
             Contact::Unknown => Some((0.0, friction_that_sticks(cask_file))),
         },
         contact_s: contact_duration_s.map_or(CONTACT_S, |lasts_s| (lasts_s, lasts_s)),
-        angle_deg: rounded(tolerances.angle_rad.to_degrees()),
+        angle_deg: round_off(tolerances.angle_rad.to_degrees()),
         impact_velocity: tolerances.impact_velocity,
-        angular_velocity_deg_s: rounded(tolerances.angular_velocity_rad_s.to_degrees()),
+        angular_velocity_deg_s: round_off(tolerances.angular_velocity_rad_s.to_degrees()),
         horizontal_velocity_m_s: tolerances.horizontal_velocity_m_s,
         length: tolerances.length,
         height: tolerances.height,
         cog: tolerances.cog_m / cask.length_m,
         inertia: tolerances.inertia,
-        // The 2.5 % quantile then has a standard error of 0.5 % in probability.
+        // With this number the 2.5 % quantile has a standard error of 0.5 % in probability.
         draws: 1000,
         seed: 1,
     }
@@ -72,7 +72,7 @@ pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
 
 /// The friction with which the first end sticks at every angle   (6)
 fn friction_that_sticks(cask_file: &CaskFile) -> f64 {
-    let body = super::richest(cask_file);
+    let body = super::richest_body(cask_file);
     let needed = curve_angles_deg().map(|angle_deg| {
         let before = State::falling(&body, angle_deg.to_radians(), &cask_file.drop);
         strike_first_end(&body, &before, Contact::Rough, 0.0).friction_to_stick
@@ -80,21 +80,20 @@ fn friction_that_sticks(cask_file: &CaskFile) -> f64 {
     (needed.fold(0.0, f64::max) * 100.0).ceil() / 100.0
 }
 
-/// One cask and drop out of the uncertain ones.
+/// One cask and drop drawn from the uncertain inputs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Draw {
     pub fall: Fall,
-    /// What the true angle is above the nominal one, degrees.
+    /// True angle less the nominal one, degrees.
     pub angle_error_deg: f64,
 }
 
-/// The draw of this index: k and friction uniform, the contact's length in turn, all else normal. It depends
-/// on the seed and its index alone, on any machine.
+/// The draw of this index: k and friction uniform, the contact's duration in turn, everything else normal. It
+/// depends on the seed and its index alone, on any machine.
 pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(uncertain.seed);
     rng.set_stream(u64::from(index));
-    // Every number is drawn whether it is used or not, so that one more uncertain input leaves the others as
-    // they were.
+    // Every number is drawn, used or not, so that one more uncertain input leaves the others unchanged.
     let (k_share, friction_share) = (rng.random::<f64>(), rng.random::<f64>());
     let mut normal = |half_width: f64| {
         let z: f64 = StandardNormal.sample(&mut rng);
@@ -108,8 +107,7 @@ pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     let contact_share = f64::from(index % CONTACT_LENGTHS) / f64::from(CONTACT_LENGTHS - 1);
     let scaled = |value: f64, by: f64| value * (1.0 + by).max(LEAST_SHARE);
     let between = |(low, high): (f64, f64), share: f64| low + (high - low) * share;
-    let mut body =
-        resized(&base.body, scaled(base.body.length_m, length), scaled(base.body.height_m, height));
+    let mut body = resize(&base.body, scaled(base.body.length_m, length), scaled(base.body.height_m, height));
     body.cog_m = (body.cog_m + cog * body.length_m).clamp(0.0, body.length_m);
     body.inertia_kg_m2 = scaled(body.inertia_kg_m2, inertia);
     let contact =
@@ -133,7 +131,7 @@ mod tests {
 
     const DRAWS: u32 = 2000;
 
-    fn all(base: &Fall, of: &Uncertain) -> Vec<Draw> {
+    fn draw_all(base: &Fall, of: &Uncertain) -> Vec<Draw> {
         (0..DRAWS).map(|i| draw(base, of, i)).collect()
     }
 
@@ -168,7 +166,7 @@ mod tests {
         assert_eq!(default_uncertain(&file).friction, Some((0.0, 0.75)));
         for angle_deg in [5.0, 26.6, 60.0] {
             let fall = Fall { contact: Contact::Coulomb(0.75), ..rough_rod(0.5) };
-            assert!(fall.at(angle_deg).sticks, "{angle_deg}");
+            assert!(fall.predict(angle_deg).sticks, "{angle_deg}");
         }
     }
 
@@ -185,7 +183,7 @@ mod tests {
     #[test]
     fn what_is_certain_stays_as_it_is() {
         let base = rough_rod(0.0);
-        for Draw { fall, angle_error_deg } in all(&base, &uncertain((0.3, 0.3), DRAWS)) {
+        for Draw { fall, angle_error_deg } in draw_all(&base, &uncertain((0.3, 0.3), DRAWS)) {
             assert_eq!((fall.body, fall.drop, fall.contact), (base.body, base.drop, base.contact));
             assert_eq!((fall.k, angle_error_deg), (0.3, 0.0));
         }
@@ -203,7 +201,7 @@ mod tests {
             ..uncertain((0.0, 1.0), DRAWS)
         };
         let base = rough_rod(0.0);
-        let draws = all(&base, &uncertain);
+        let draws = draw_all(&base, &uncertain);
         // Five standard errors of a mean, σ/√n, and of a standard deviation, σ/√(2n).
         let error = 5.0 / f64::from(DRAWS).sqrt();
         let check = |(mean, deviation): (f64, f64), expected: f64, sigma: f64| {
@@ -249,7 +247,7 @@ mod tests {
             impact_velocity: 3.0,
             ..uncertain((0.0, 1.0), 1)
         };
-        for Draw { fall, .. } in all(&rough_rod(0.0), &drawn) {
+        for Draw { fall, .. } in draw_all(&rough_rod(0.0), &drawn) {
             assert!(fall.body.length_m > 0.0 && fall.body.inertia_kg_m2 > 0.0);
             assert!(fall.drop.impact_velocity_m_s > 0.0);
             assert!((0.0..=fall.body.length_m).contains(&fall.body.cog_m));

@@ -1,4 +1,5 @@
-//! A line of a campaign, a result or why there is none, to columns: every input and result by one name each.
+//! Columns of a campaign's line, a result or the reason why there is none: one name for each input and
+//! result.
 
 use crate::data::Estimate;
 use crate::data::keys::{TABLES, Takes};
@@ -10,19 +11,19 @@ use std::sync::LazyLock;
 /// Columns by name.
 pub(super) type Columns = BTreeMap<String, Value>;
 
-/// A column of `campaign.csv`, or those that go together: of a measured quantity its value and half-width.
+/// A column of `campaign.csv`, or columns that belong together: value and half-width of a measured quantity.
 #[derive(Debug)]
 pub struct CampaignColumn {
     /// The names.
     pub names: Vec<String>,
-    /// What stands in it.
+    /// Content of the column.
     pub meaning: &'static str,
-    /// Where it stands in a line; "-" where it is made of several things.
+    /// Path of the value in a line; "-" if it combines several values.
     place: String,
 }
 
-/// Every column that each `campaign.csv` has, whatever was dropped: those of the table, and the keys of the
-/// cask file but those of channels. What the manifest carries comes behind them.
+/// The columns of every `campaign.csv`: those of the table, and the keys of the cask file except those of
+/// channels. Columns of the manifest follow.
 pub fn campaign_columns() -> &'static [CampaignColumn] {
     static ALL: LazyLock<Vec<CampaignColumn>> = LazyLock::new(|| {
         let mut all: Vec<CampaignColumn> = Vec::new();
@@ -52,15 +53,15 @@ pub(super) fn names<'a>() -> impl Iterator<Item = &'a str> {
     campaign_columns().iter().flat_map(|column| &column.names).map(String::as_str)
 }
 
-/// What the manifest carries, but by no name that is taken.
-pub(super) fn carried(line: &Value) -> impl Iterator<Item = (&String, &Value)> {
+/// Columns of the manifest, except those whose name is in use.
+pub(super) fn extras(line: &Value) -> impl Iterator<Item = (&String, &Value)> {
     let own = line["campaign"]["carried"].as_object().into_iter().flatten();
     own.filter(|(name, _)| names().all(|taken| taken != *name))
 }
 
-/// Every column of a line but what its row says of it.
-pub(super) fn of(line: &Value) -> Columns {
-    let mut columns: Columns = carried(line).map(|(name, value)| (name.clone(), value.clone())).collect();
+/// All columns of a line except those of its row.
+pub(super) fn line_columns(line: &Value) -> Columns {
+    let mut columns: Columns = extras(line).map(|(name, value)| (name.clone(), value.clone())).collect();
     let mut put = |name: &str, value: Option<&Value>| {
         columns.extend(value.filter(|value| is_cell(value)).map(|value| (name.to_owned(), value.clone())));
     };
@@ -79,7 +80,8 @@ pub(super) fn of(line: &Value) -> Columns {
             put(&format!("{name}{end}"), seen.pointer(from).filter(|value| value.is_number()));
         }
     }
-    // Of rod and body first the borderlines, rough and smooth with k of 0 and 1, then the drop's own k.
+    // For rod and body the borderline cases come first, rough and smooth with k of 0 and 1, then the drop's
+    // own k.
     let mut cases = [0; 2];
     for case in line["predictions"].as_array().into_iter().flatten() {
         let [model, contact] = ["model", "contact"].map(|key| case[key].as_str().unwrap_or_default());
@@ -94,14 +96,14 @@ pub(super) fn of(line: &Value) -> Columns {
     columns
 }
 
-/// A measured quantity by what it is called.
+/// A measured quantity with its name.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NamedQuantity {
     pub(super) name: &'static str,
     pub(super) estimate: Estimate,
 }
 
-/// Every measured quantity of a line; times that count from its first sample are of no drop.
+/// All measured quantities of a line; times that count from its first sample do not belong to the drop.
 pub(super) fn quantities(line: &Value) -> Vec<NamedQuantity> {
     let is_of_drop =
         |column: &&CampaignColumn| !["/time", "/start"].iter().any(|end| column.place.ends_with(end));
@@ -112,7 +114,7 @@ pub(super) fn quantities(line: &Value) -> Vec<NamedQuantity> {
     campaign_columns().iter().filter(is_of_drop).filter_map(quantity).collect()
 }
 
-/// Whether a value has room in a cell.
+/// True if a value fits in a cell.
 fn is_cell(value: &Value) -> bool {
     value.is_number() || value.is_boolean() || value.as_str().is_some_and(|text| !text.is_empty())
 }

@@ -1,4 +1,4 @@
-//! An analysis to as many points of the velocity of both ends as a picture of two drops needs.
+//! Points of the velocity of both ends, as many as a picture of two drops needs.
 
 use crate::data::{Analysis, Axis, End};
 use crate::numerics::as_f64;
@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 /// Points of a curve.
 const POINTS: usize = 240;
-/// Before first contact and after the slap-down so much is shown, s; where there is none, so long a flight.
+/// Time shown before first contact and after the slap-down, s; without a slap-down, the length of the flight.
 const BEFORE_S: f64 = 5e-3;
 const AFTER_S: f64 = 15e-3;
 const LONGEST_S: f64 = 0.1;
 
-/// Velocity over time of the first transverse sensor on each end, at even steps from first contact on.
+/// Velocity over time of the first transverse sensor on each end, at equal steps from first contact on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DropCurves {
     from_ms: f64,
@@ -21,7 +21,7 @@ pub struct DropCurves {
     second_end_m_s: Vec<Option<f64>>,
 }
 
-/// The curves of an analysis; none where no first contact was found.
+/// The curves of an analysis; `None` if no first contact was found.
 pub fn drop_curves(analysis: &Analysis) -> Option<DropCurves> {
     let (events, curves) = (&analysis.result.events, &analysis.curves.channels);
     let contact_s = events.first_contact_s()?;
@@ -34,7 +34,7 @@ pub fn drop_curves(analysis: &Analysis) -> Option<DropCurves> {
         let value = |i: usize| {
             let curve = curve?;
             let at = curve.time_s.partition_point(|s| *s < contact_s - BEFORE_S + as_f64(i) * step_s);
-            // A hundredth of a metre a second is less than the width of a line.
+            // A hundredth of a metre per second is less than the width of a line.
             curve.velocity_m_s.get(at).filter(|v| v.is_finite()).map(|v| (v * 100.0).round() / 100.0)
         };
         (0..POINTS).map(value).collect()

@@ -1,18 +1,18 @@
-//! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its
-//! page with the pictures.
+//! Writes a campaign as `campaign.csv` and `campaign.json`, a line at a time, and as its page with the
+//! pictures.
 
 use super::columns::{self, Columns};
 use super::series::{DropSeries, PooledQuantity, RowPlace};
 use super::{Batch, BatchRow, MOST_SERIES, PredictedCurve, page};
 use crate::data::Program;
-use crate::report::json::{in_a_line, pretty};
+use crate::report::json::{pretty, to_line};
 use crate::report::records::{records, text_cell};
 use crate::report::text::json_word;
 use crate::report::{ReportError, as_html};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
-/// A campaign all of whose lines are known, with what the model predicts for its casks.
+/// A complete campaign, with the predictions of the model for its casks.
 pub struct CampaignFiles<'a> {
     batch: &'a Batch,
     series: Vec<DropSeries<'a>>,
@@ -20,20 +20,21 @@ pub struct CampaignFiles<'a> {
 }
 
 impl<'a> CampaignFiles<'a> {
-    /// Of a campaign; `predicted` gives the curves of the series that a row belongs to, over these k and
-    /// angles.
+    /// Starts the files of a campaign; `predicted` gives the curves of the series to which a row belongs,
+    /// over these k and angles.
     pub fn new(
         batch: &'a Batch,
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
     ) -> Self {
-        let series = DropSeries::all(&batch.rows, predicted);
+        let series = DropSeries::from_rows(&batch.rows, predicted);
         Self { batch, places: DropSeries::places(&series), series }
     }
 
     /// A row of `campaign.csv`.
     ///
     /// # Errors
-    /// [`ReportError::Csv`] where the writer fails.
+    ///
+    /// [`ReportError::Csv`] if the writer fails.
     pub fn csv_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
         let own = self.columns(line);
         let carried = self.batch.carried.iter().map(String::as_str);
@@ -43,7 +44,7 @@ impl<'a> CampaignFiles<'a> {
 
     /// Every column of a line.
     fn columns(&self, line: &Value) -> Columns {
-        let mut columns = columns::of(line);
+        let mut columns = columns::line_columns(line);
         let Some(row) = self.row(line) else { return columns };
         let place = self.places.get(&row.at.number).copied().unwrap_or_default();
         let [of_k, of_speed] = [PooledQuantity::K, PooledQuantity::Speed].map(|q| place.e_n[q as usize]);
@@ -68,12 +69,13 @@ impl<'a> CampaignFiles<'a> {
         self.batch.rows.get(usize::try_from(number).ok()?)
     }
 
-    /// What `campaign.json` begins with; the rows follow, with commas between them, then [`Self::JSON_END`].
+    /// Beginning of `campaign.json`; the rows follow, with commas between them, then [`Self::JSON_END`].
     ///
     /// # Errors
-    /// [`ReportError::Json`] where the writer fails.
+    ///
+    /// [`ReportError::Json`] if the writer fails.
     pub fn json_head(&self) -> Result<Vec<u8>, ReportError> {
-        let program = Program::this();
+        let program = Program::current();
         let pools: Vec<Value> = self.series.iter().flat_map(DropSeries::records).collect();
         let head = json!({
             "cask": self.batch.source, "count": self.batch.rows.len(), "pools": pools,
@@ -85,7 +87,7 @@ impl<'a> CampaignFiles<'a> {
         Ok(format!("{{\n{schema},\n{inner},\n  \"recordings\": [\n    ").into_bytes())
     }
 
-    /// What stands between two rows of `campaign.json`, and behind the last.
+    /// Text between two rows of `campaign.json`, and after the last.
     pub const JSON_BETWEEN: &'static str = ",\n    ";
     /// See above.
     pub const JSON_END: &'static str = "\n  ]\n}\n";
@@ -93,11 +95,12 @@ impl<'a> CampaignFiles<'a> {
     /// A row of `campaign.json`.
     ///
     /// # Errors
-    /// [`ReportError::Json`] where the writer fails.
+    ///
+    /// [`ReportError::Json`] if the writer fails.
     pub fn json_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
         let mut row = serde_json::to_value(self.row(line))?;
         row["columns"] = self.columns(line).into_iter().collect();
-        Ok(in_a_line(&row)?.into_bytes())
+        Ok(to_line(&row)?.into_bytes())
     }
 
     /// `campaign.html` and its pictures.
@@ -112,27 +115,28 @@ impl<'a> CampaignFiles<'a> {
 }
 
 /// The smallest and the largest value of each channel that takes no part in the motion, as JSON in a cell;
-/// null where there are none.
+/// null if there are none.
 fn extremes(line: &Value) -> Option<String> {
-    let told = |other: &Value| {
+    let reason_of = |other: &Value| {
         let [smallest, largest] = ["smallest", "largest"].map(|key| &other[key]["value"]);
         json!({"name": other["name"], "unit": other["unit"], "smallest": smallest, "largest": largest})
     };
-    Some(line["other_channels"].as_array()?.iter().map(told).collect::<Value>().to_string())
+    Some(line["other_channels"].as_array()?.iter().map(reason_of).collect::<Value>().to_string())
 }
 
 impl Batch {
     /// The first line of `campaign.csv`.
     ///
     /// # Errors
-    /// [`ReportError::Csv`] where the writer fails.
+    ///
+    /// [`ReportError::Csv`] if the writer fails.
     pub fn csv_head(&self) -> Result<Vec<u8>, ReportError> {
         let carried = self.carried.iter().map(|name| text_cell(name));
         records([columns::names().map(str::to_owned).chain(carried)])
     }
 }
 
-/// A value as a cell; a number that was carried as text stays one.
+/// Formats a value as a cell; a number that the manifest carried as text stays a number.
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

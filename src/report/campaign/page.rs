@@ -1,19 +1,19 @@
-//! A campaign to the document of its page: outliers first and what is not to be used, then a chapter a cask,
-//! then every recording with a link to its report.
+//! Page of a campaign: outliers and unusable results first, then a chapter per cask, then every recording
+//! with a link to its report.
 
 use super::columns::NamedQuantity;
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, is_usable, scatter_words};
-use super::summary::{Oddity, few, oddities, tag};
+use super::summary::{Oddity, first_five, oddities, tag};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES};
 use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::report::document::{
     Chapter, ChapterPart, Frame, PartContent, ReportDocument, ReportTable, TableCell, Tone,
 };
-use crate::report::json::in_a_line;
+use crate::report::json::to_line;
 use crate::report::rounding::{
     MISSING, interval, optional, optional_fixed, pair, percent, plain, significant,
 };
-use crate::report::text::{Style, counted};
+use crate::report::text::{Style, plural};
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
 
@@ -39,14 +39,15 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let banner = Tone(worst, format!("{pass} of {count} sound"));
     let angles = series.iter().flat_map(|series| &series.pools).map(|pool| pool.angles_deg[0].to_bits());
     let angles = angles.collect::<BTreeSet<u64>>().len();
-    let heading = format!("Drop tests: {}", few(series.iter().map(|series| series.name.clone())));
-    let banner = Chapter::new("").with(PartContent::Banner(banner, batch.sum(&odd)));
+    let heading = format!("Drop tests: {}", first_five(series.iter().map(|series| series.name.clone())));
+    let banner = Chapter::new("").then(PartContent::Banner(banner, batch.sum(&odd)));
     let mut chapters = vec![banner, outliers(&odd)];
     chapters.extend(reasons(batch));
-    chapters.extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| of_series(series, i + 1)));
+    chapters
+        .extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| series_chapter(series, i + 1)));
     let more =
         format!("The first {MOST_SERIES} of {} casks: campaign.json has the pools of all.", series.len());
-    chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").with(ChapterPart::note(more))));
+    chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").then(ChapterPart::note(more))));
     let places = DropSeries::places(series);
     let rows = in_order(batch, &places);
     chapters.push(recordings(batch, &rows, &places));
@@ -57,9 +58,9 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
             heading,
             about: [
                 batch.source.clone(),
-                counted(count, "recording"),
-                counted(series.len(), "cask"),
-                counted(angles, "angle"),
+                plural(count, "recording"),
+                plural(series.len(), "cask"),
+                plural(angles, "angle"),
             ]
             .join(" · "),
             footer: "campaign.csv and campaign.json have the results and settings of every recording as \
@@ -73,7 +74,8 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     }
 }
 
-/// The rows as the list has them: the farthest outlier first, then what gave no result, then the others.
+/// Rows in the order of the list: the farthest outlier first, then recordings without a result, then the
+/// others.
 fn in_order<'a>(batch: &'a Batch, places: &HashMap<u32, RowPlace>) -> Vec<&'a BatchRow> {
     let key = |row: &BatchRow| match places.get(&row.at.number) {
         Some(place) if place.is_out => -place.e_n.into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs())),
@@ -97,7 +99,7 @@ fn data(rows: &[&BatchRow]) -> String {
         json!({"numbers": numbers.collect::<Vec<_>>(), "curves": row.curves})
     };
     let rows: Vec<_> = rows.iter().map(row).collect();
-    in_a_line(&rows).unwrap_or_default().replace('<', "\\u003c")
+    to_line(&rows).unwrap_or_default().replace('<', "\\u003c")
 }
 
 /// The day of a test.
@@ -107,35 +109,35 @@ fn date(row: &BatchRow) -> Option<&str> {
 
 /// Drops that disagree with their repeats, or lie outside both intervals of measurement and prediction.
 fn outliers(odd: &[Oddity]) -> Chapter {
-    let table = ReportTable::of(odd)
+    let table = ReportTable::from_rows(odd)
         .caption("The largest E_n first. One in twenty sound drops lies outside a 95 % interval by chance.")
-        .head("test", |odd| linked(odd.row))
+        .head("test", |odd| link_cell(odd.row))
         .text("why", |odd| format!("{}: {}", odd.what, odd.against))
         .text("findings", |odd| odd.row.codes.join(", "))
-        .if_any(odd.iter().any(|odd| !odd.row.codes.is_empty()))
-        .most(MOST_ROWS, 50, "the column E_n of the recordings");
+        .show_if(odd.iter().any(|odd| !odd.row.codes.is_empty()))
+        .limit_rows(MOST_ROWS, 50, "the column E_n of the recordings");
     let chapter = Chapter::new("Outliers");
-    if odd.is_empty() { chapter.with(ChapterPart::text("None.")) } else { chapter.with(table) }
+    if odd.is_empty() { chapter.then(ChapterPart::text("None.")) } else { chapter.then(table) }
 }
 
-/// What was not analysed, and what was found in the others; those of one reason together.
+/// Chapter on recordings without a result, and on findings in the others, grouped by reason.
 fn reasons(batch: &Batch) -> Option<Chapter> {
     let name = |rows: &[&BatchRow]| match rows {
-        [row] => linked(row),
-        rows => few(rows.iter().map(|row| row.id.clone())).into(),
+        [row] => link_cell(row),
+        rows => first_five(rows.iter().map(|row| row.id.clone())).into(),
     };
-    let any = batch.rows.iter().any(|row| !row.why().is_empty());
-    any.then(|| Chapter::new("Not analysed, or with findings").with(batch.reasons(name)))
+    let any = batch.rows.iter().any(|row| !row.reason().is_empty());
+    any.then(|| Chapter::new("Not analysed, or with findings").then(batch.reasons(name)))
 }
 
-fn of_series(series: &DropSeries, number: usize) -> Chapter {
+fn series_chapter(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| format!("{} at {}", pool.quantity.words()[2], pool.angle_words());
     let unit = |pool: &Pool| if pool.quantity == PooledQuantity::K { "" } else { " m/s" };
     let word = |pool: &Pool| match pool.pooled.word() {
         _ if pool.is_contradictory() => "that of drops which contradict each other",
         word => word.map_or(MISSING, scatter_words),
     };
-    let repeats = ReportTable::of(&series.pools)
+    let repeats = ReportTable::from_rows(&series.pools)
         .caption("Repeats")
         .head("quantity", pool)
         .number("drops", |pool| match pool.members.len() - pool.pooled.count {
@@ -159,20 +161,20 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
         .text("scatter is", word);
     let chapter = Chapter::new(series.name.clone());
     if series.pools.is_empty() {
-        return chapter.with(ChapterPart::text("No recording of this cask gave a number."));
+        return chapter.then(ChapterPart::text("No recording of this cask gave a number."));
     }
-    let name = |quantity| ChapterPart::picture(&DropSeries::name_of(number, quantity), "");
-    chapter.with_all(series.drawn_quantities().map(name)).with(repeats)
+    let name = |quantity| ChapterPart::picture(&DropSeries::picture_name(number, quantity), "");
+    chapter.with_all(series.drawn_quantities().map(name)).then(repeats)
 }
 
 /// A row's name, leading to its report.
-fn linked(row: &BatchRow) -> TableCell {
-    let link = row.report.as_deref().map(encoded).unwrap_or_default();
+fn link_cell(row: &BatchRow) -> TableCell {
+    let link = row.report.as_deref().map(encode_path).unwrap_or_default();
     TableCell { link, ..row.id.clone().into() }
 }
 
 /// A path as a relative address.
-fn encoded(path: &str) -> String {
+fn encode_path(path: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
     path.bytes()
         .map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") })
@@ -182,35 +184,35 @@ fn encoded(path: &str) -> String {
 fn recordings(batch: &Batch, rows: &[&BatchRow], places: &HashMap<u32, RowPlace>) -> Chapter {
     let place = |row: &BatchRow| places.get(&row.at.number).copied().unwrap_or_default();
     let e_n = |row: &BatchRow, quantity: PooledQuantity| optional_fixed(place(row).e_n[quantity as usize], 2);
-    let both = |values: [Option<f64>; 2], factor: f64| {
+    let scaled = |values: [Option<f64>; 2], factor: f64| {
         values.map(|value| optional(value.map(|value| value / factor), 3)).join(" · ")
     };
-    let table = ReportTable::of(rows)
+    let table = ReportTable::from_rows(rows)
         .class("many sortable")
-        .chosen(|row| place(row).is_out)
+        .mark_chosen(|row| place(row).is_out)
         .head("test", |row| TableCell {
             mark: ["", "outlier"][usize::from(place(row).is_out)],
-            ..linked(row)
+            ..link_cell(row)
         })
-        .soft("recording", |row| row.recording.rsplit('/').next().unwrap_or_default())
-        .if_any(batch.has_ids())
+        .line("recording", |row| row.recording.rsplit('/').next().unwrap_or_default())
+        .show_if(batch.has_ids())
         .tag("verdict", |row| tag(row))
-        .soft("cask", |row| row.at.cask.clone())
+        .line("cask", |row| row.at.cask.clone())
         .number("angle °", |row| {
             row.at.angle_deg.map_or_else(|| MISSING.to_owned(), |angle| plain(angle, 4))
         })
-        .soft("date", |row| date(row).unwrap_or_default())
+        .line("date", |row| date(row).unwrap_or_default())
         .number("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
         .number("k", |row| interval(row.k.as_ref()))
         .number("measured / predicted", |row| percent(row.comparison.map(|c| c.difference_percent)))
         .number("E_n of k", |row| e_n(row, PooledQuantity::K))
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
-        .number("peaks g", |row| both(row.at.peaks_m_s2, STANDARD_GRAVITY_M_S2))
-        .number("energies kJ", |row| both(row.at.energies_j, 1e3))
+        .number("peaks g", |row| scaled(row.at.peaks_m_s2, STANDARD_GRAVITY_M_S2))
+        .number("energies kJ", |row| scaled(row.at.energies_j, 1e3))
         .text("findings", |row| row.codes.join(", "))
-        .if_any(rows.iter().any(|row| !row.codes.is_empty()));
+        .show_if(rows.iter().any(|row| !row.codes.is_empty()));
     let table = batch.carried.iter().fold(table, |table, name| {
-        table.soft(&name[..], |row| row.carried.get(name).and_then(Value::as_str).unwrap_or_default())
+        table.line(&name[..], |row| row.carried.get(name).and_then(Value::as_str).unwrap_or_default())
     });
     let more = (rows.len() < batch.rows.len())
         .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
@@ -218,5 +220,5 @@ fn recordings(batch: &Batch, rows: &[&BatchRow], places: &HashMap<u32, RowPlace>
                    within ±1 they agree. Peaks: largest deceleration of the struck end of the rigid body, \
                    and energies absorbed, in the first and the second impact.";
     let notes = [REPEATS, columns].map(ChapterPart::note);
-    Chapter::new("Recordings").with_all(more).with(table).with_all(notes)
+    Chapter::new("Recordings").with_all(more).then(table).with_all(notes)
 }

@@ -1,15 +1,15 @@
-//! Rows of a campaign to series, the drops of one cask from one height, and these to pools, its repeats at
-//! one angle: k holds for one angle, and a drop at another is no outlier.
+//! Groups the rows of a campaign into series, the drops of one cask from one height, and these into pools,
+//! its repeats at one angle: k holds for one angle, and a drop at another is no outlier.
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
 use crate::numerics::as_f64;
-use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
+use crate::numerics::pooled::{Pooled, ScatterWord, compare_with_others, pooled};
 use crate::report::rounding::plain;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 
-/// How far beyond the angles of the tests the predicted curves go, degrees.
+/// Extension of the predicted curves beyond the angles of the tests, degrees.
 const BEYOND_DEG: f64 = 5.0;
 
 /// The predicted slap-down speed over the angle.
@@ -19,7 +19,7 @@ pub struct PredictedCurve {
     pub model: BodyModel,
     /// The contact law.
     pub contact: Contact,
-    /// Of one k: angle, degrees, and speed, m/s.
+    /// Points of one k: angle, degrees, and speed, m/s.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -33,14 +33,14 @@ pub(super) enum PooledQuantity {
 impl PooledQuantity {
     const ALL: [Self; 2] = [Self::K, Self::Speed];
 
-    pub(super) fn of(self, row: &BatchRow) -> Option<Estimate> {
+    pub(super) fn value(self, row: &BatchRow) -> Option<Estimate> {
         match self {
             Self::K => row.k,
             Self::Speed => row.slap_down_speed,
         }
     }
 
-    /// Its name in JSON, its unit, and what a person calls it.
+    /// Name in JSON, unit, and name for a reader.
     pub(super) fn words(self) -> [&'static str; 3] {
         match self {
             Self::K => ["k", "1", "k"],
@@ -49,7 +49,7 @@ impl PooledQuantity {
     }
 }
 
-/// A row among its repeats: E_n against the others, and whether it is an outlier.
+/// A row among its repeats: E_n against the others, and true for an outlier.
 pub(super) struct PoolMember<'a> {
     pub(super) row: &'a BatchRow,
     pub(super) e_n: Option<f64>,
@@ -58,32 +58,32 @@ pub(super) struct PoolMember<'a> {
 
 /// One quantity of the sound drops at one angle.
 pub(super) struct Pool<'a> {
-    /// The least and the largest of the stated angles, which count as one within their tolerances.
+    /// The least and the largest of the stated angles, which count as equal within their tolerances.
     pub(super) angles_deg: [f64; 2],
     pub(super) quantity: PooledQuantity,
     pub(super) members: Vec<PoolMember<'a>>,
-    /// Of those that are no outliers.
+    /// Combined value of the repeats that are no outliers.
     pub(super) pooled: Pooled,
 }
 
 impl Pool<'_> {
-    /// Whether each of the repeats contradicts the others.
+    /// True if each of the repeats contradicts the others.
     pub(super) fn is_contradictory(&self) -> bool {
         self.members.iter().all(|member| member.is_out)
     }
 }
 
-/// Where a row stands among its repeats at its angle.
+/// Position of a row among its repeats at its angle.
 #[derive(Clone, Copy, Default)]
 pub(super) struct RowPlace {
     /// E_n of k and of the speed against the others.
     pub(super) e_n: [Option<f64>; 2],
     pub(super) is_out: bool,
-    /// How far beside its angle it is drawn, degrees.
+    /// Shift of its point beside its angle, degrees.
     pub(super) beside_deg: f64,
 }
 
-/// Repeats at one angle stand beside one another, so far apart, degrees.
+/// Distance at which repeats at one angle are drawn, degrees.
 const BESIDE_DEG: f64 = 0.16;
 
 /// The drops of one cask from one height.
@@ -94,14 +94,14 @@ pub(super) struct DropSeries<'a> {
     pub(super) pools: Vec<Pool<'a>>,
     pub(super) curves: Vec<PredictedCurve>,
     places: HashMap<u32, RowPlace>,
-    /// Lowest and highest k measured, but for outliers.
+    /// Lowest and highest measured k, without outliers.
     pub(super) k: Option<[f64; 2]>,
 }
 
 impl<'a> DropSeries<'a> {
-    /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over
-    /// these k and angles.
-    pub(super) fn all(
+    /// Groups the rows into series, in the order in which their casks come; `predicted` gives the curves of a
+    /// row's cask over these k and angles.
+    pub(super) fn from_rows(
         rows: &'a [BatchRow],
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
     ) -> Vec<Self> {
@@ -122,9 +122,9 @@ impl<'a> DropSeries<'a> {
             series.pools = pools(&series.rows);
             series.set_places();
             let sound = series.rows.iter().filter(|row| is_usable(row) && !series.place(row).is_out);
-            series.k = ends(sound.filter_map(|row| Some(row.k?.value)));
+            series.k = lowest_and_highest(sound.filter_map(|row| Some(row.k?.value)));
             if let (Some(k), Some([from, to]), 0..MOST_SERIES) =
-                (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)), number)
+                (series.k, lowest_and_highest(series.rows.iter().filter_map(|row| row.at.angle_deg)), number)
             {
                 let angles = [(from - BEYOND_DEG).max(0.5), (to + BEYOND_DEG).min(90.0)];
                 series.curves = predicted(series.rows[0], k.map(|k| k.clamp(0.0, 1.0)), angles);
@@ -133,7 +133,7 @@ impl<'a> DropSeries<'a> {
         series
     }
 
-    /// The places of all rows by their numbers.
+    /// Positions of all rows by their numbers.
     pub(super) fn places(series: &[Self]) -> HashMap<u32, RowPlace> {
         series
             .iter()
@@ -141,7 +141,7 @@ impl<'a> DropSeries<'a> {
             .collect()
     }
 
-    /// The place of a row among its repeats.
+    /// Position of a row among its repeats.
     pub(super) fn place(&self, row: &BatchRow) -> RowPlace {
         self.places.get(&row.at.number).copied().unwrap_or_default()
     }
@@ -185,7 +185,7 @@ impl<'a> DropSeries<'a> {
     }
 }
 
-/// What a scatter is beside the stated intervals.
+/// Says how the scatter compares with the stated intervals.
 pub(super) fn scatter_words(word: ScatterWord) -> &'static str {
     match word {
         ScatterWord::Smaller => "smaller than stated",
@@ -194,22 +194,22 @@ pub(super) fn scatter_words(word: ScatterWord) -> &'static str {
     }
 }
 
-/// Whether the numbers enter a mean: after an error they rest on what replaces a lost velocity step.
+/// True if the numbers enter a mean: after an error they depend on the replacement of a lost velocity step.
 pub(super) fn is_usable(row: &BatchRow) -> bool {
     row.verdict.is_some_and(|verdict| verdict != Verdict::Fail)
 }
 
 impl Pool<'_> {
-    /// "15°", or "14.8 to 15°" where the angles are not stated alike.
+    /// Formats "15°", or "14.8 to 15°" if the stated angles differ.
     pub(super) fn angle_words(&self) -> String {
         let [least, largest] = self.angles_deg.map(|angle| plain(angle, 4));
         if least == largest { format!("{least}°") } else { format!("{least} to {largest}°") }
     }
 }
 
-/// Both quantities at every angle.
+/// Pools of both quantities at every angle.
 fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
-    // One recording is one drop, however often it is listed.
+    // A recording that is listed several times is one drop.
     let drops = rows.iter().filter(|row| row.same_recording_as.is_none());
     let mut drops: Vec<(f64, &BatchRow)> =
         drops.filter_map(|row| Some((row.at.angle_deg.filter(|a| a.is_finite())?, *row))).collect();
@@ -233,21 +233,22 @@ fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
 
 fn pool<'a>(angles_deg: [f64; 2], quantity: PooledQuantity, rows: &[&'a BatchRow]) -> Option<Pool<'a>> {
     let measured = |row: &&'a BatchRow| {
-        let estimate = quantity.of(row).filter(|e| e.value.is_finite() && e.u95.is_finite() && e.u95 > 0.0);
+        let estimate =
+            quantity.value(row).filter(|e| e.value.is_finite() && e.u95.is_finite() && e.u95 > 0.0);
         estimate.filter(|_| is_usable(row)).map(|e| (*row, (e.value, e.u95)))
     };
     let (rows, values): (Vec<&BatchRow>, Vec<(f64, f64)>) = rows.iter().filter_map(measured).unzip();
-    let found = apart(&values);
+    let found = compare_with_others(&values);
     let kept: Vec<(f64, f64)> =
         values.iter().zip(&found).filter(|(_, (_, is_out))| !is_out).map(|(value, _)| *value).collect();
-    // Where all contradict one another none is the better one, and their mean is not shown.
+    // If all contradict one another none is more credible, and their mean is not shown.
     let pooled = pooled(if kept.is_empty() { &values } else { &kept })?;
     let members = rows.into_iter().zip(found).map(|(row, (e_n, is_out))| PoolMember { row, e_n, is_out });
     Some(Pool { angles_deg, quantity, members: members.collect(), pooled })
 }
 
 /// The lowest and the highest.
-fn ends(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+fn lowest_and_highest(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     values.filter(|value| value.is_finite()).fold(None, |ends, value| {
         Some(ends.map_or([value, value], |[low, high]: [f64; 2]| [low.min(value), high.max(value)]))
     })
@@ -273,7 +274,7 @@ mod tests {
         let angles = [15.0, 30.0, 15.0, 15.3, 30.0, 30.0, 22.0];
         let ks = [0.43, 0.51, 0.44, 0.42, 0.52, 0.50, 0.9];
         let rows: Vec<BatchRow> = (1..).zip(angles).zip(ks).map(|((i, angle), k)| row(i, angle, k)).collect();
-        let series = DropSeries::all(&rows, |_, _, _| Vec::new());
+        let series = DropSeries::from_rows(&rows, |_, _, _| Vec::new());
         let pools: Vec<(String, usize, f64)> = series[0]
             .pools
             .iter()
@@ -287,7 +288,7 @@ mod tests {
     #[test]
     fn angles_farther_apart_than_their_tolerance_are_two() {
         let rows = [(1, 15.0), (2, 15.3), (3, 15.6)].map(|(number, angle)| row(number, angle, 0.5));
-        let series = DropSeries::all(&rows, |_, _, _| Vec::new());
+        let series = DropSeries::from_rows(&rows, |_, _, _| Vec::new());
         // The third lies within the tolerance of the second, but not of the first.
         assert_eq!(series[0].pools.iter().map(|pool| pool.members.len()).collect::<Vec<_>>(), [2, 1]);
     }

@@ -1,23 +1,24 @@
-//! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8),
+//! Pictures of curves over the drop angle: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8),
 //! sections (Fig. 9).
 
 use super::super::rounding::plain;
 use super::super::words::{case_words, contact_words};
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::look::{
-    DASHES, HELD_STROKE, Look, NO_SLAP_DOWN, angle_panel, apart, body_words, from_zero, line_sentences,
+    DASHES, HELD_STROKE, Look, NO_SLAP_DOWN, angle_panel, body_words, line_sentences, range_from_zero,
+    split_turnovers,
 };
 use super::panel::{COLOURS, Curve, Dash, Panel};
 use crate::data::{AngleCurve, BodyModel, Contact, Study};
 
 const SPEED_LABEL: &str = "slap-down speed, m/s";
 
-/// How the closed form for k = 0 is named in every legend.
+/// Name of the closed form for k = 0 in every legend.
 const HELD: &str = "held on the target";
 
 /// |vx|, |vz| and the magnitude over the angle for one contact law, lowest and highest k.
 pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture {
-    let look = Look::of(&[contact], &study.request.ks).with_ends();
+    let look = Look::new(&[contact], &study.request.ks).with_ends();
     let panels = panels(study, &look, "speed, m/s", |curve| {
         let dash = DASHES[look.place(curve.contact, curve.k).unwrap_or_default()[1]];
         let parts: [(&str, &[f64]); 3] = [
@@ -27,10 +28,11 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture
         ];
         let line = |(i, (words, values)): (usize, (&str, &[f64]))| {
             let label = format!("{words}, k = {}", plain(curve.k, 3));
-            // Broad under the others: at small angles the magnitude all but coincides with the vertical part.
+            // The magnitude is broad under the others: at small angles it all but coincides with the vertical
+            // part.
             let stroke = if i == 0 { 8 } else { 4 };
-            let line = Curve { stroke, ..Curve::new(COLOURS[i], over_angle(curve, values)) };
-            apart(line.named(label).broken(dash), &curve.turns_over)
+            let line = Curve { stroke, ..Curve::new(COLOURS[i], points_over_angle(curve, values)) };
+            split_turnovers(line.label(label).broken(dash), &curve.turns_over)
         };
         let held = held_line(curve, Curve::new(COLOURS[0], Vec::new()), "magnitude");
         parts.into_iter().enumerate().flat_map(line).chain(held).collect()
@@ -48,21 +50,21 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture
         line_sentences(&panels),
         if left_out { " Only the lowest and the highest k are drawn." } else { "" }
     );
-    Plate::new(name, format!("Components of the slap-down velocity, {contact}"), caption)
-        .or(NO_SLAP_DOWN)
+    Figure::new(name, format!("Components of the slap-down velocity, {contact}"), caption)
+        .empty(NO_SLAP_DOWN)
         .picture(&panels)
 }
 
-/// Magnitudes of every case.
+/// Picture of the magnitudes of every case.
 pub(super) fn speeds(study: &Study, name: &str) -> Picture {
-    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let look = Look::new(&study.request.contacts, &study.request.ks);
     let panels = panels(study, &look, SPEED_LABEL, |curve| {
         let line = case_line(&look, curve, &curve.speed_m_s);
         // The third k is dotted itself.
         let held = (look.ks.len() <= 2)
             .then(|| held_line(curve, line.clone(), &contact_words(curve.contact)))
             .flatten();
-        apart(line, &curve.turns_over).into_iter().chain(held).collect()
+        split_turnovers(line, &curve.turns_over).into_iter().chain(held).collect()
     });
     let (title, figure) = if name == "smooth-rough" {
         ("Slap-down speed, smooth against rough", " ([P] Fig. 7)")
@@ -73,46 +75,46 @@ pub(super) fn speeds(study: &Study, name: &str) -> Picture {
         "Magnitude of the velocity of the second end just before it strikes, over the drop angle{figure}. \
          {}{}",
         line_sentences(&panels),
-        look.left_out()
+        look.left_out_sentence()
     );
-    Plate::new(name, title, caption).or(NO_SLAP_DOWN).picture(&panels)
+    Figure::new(name, title, caption).empty(NO_SLAP_DOWN).picture(&panels)
 }
 
-/// Ratio of kinetic energies of every case.
+/// Picture of the ratio of kinetic energies of every case.
 pub(super) fn energies(study: &Study, name: &str) -> Picture {
-    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let look = Look::new(&study.request.contacts, &study.request.ks);
     let panels = panels(study, &look, "kinetic energy ratio", |curve| {
-        apart(case_line(&look, curve, &curve.energy_ratio), &curve.turns_over)
+        split_turnovers(case_line(&look, curve, &curve.energy_ratio), &curve.turns_over)
     });
     let caption = format!(
         "Kinetic energy just before the slap-down over that just before the first impact ([P] Fig. 8). Above \
          1 the fall of the mass centre between the impacts adds more than the first impact took. {}{}",
         line_sentences(&panels),
-        look.left_out()
+        look.left_out_sentence()
     );
-    Plate::new(name, "Energy left for the second impact", caption).or(NO_SLAP_DOWN).picture(&panels)
+    Figure::new(name, "Energy left for the second impact", caption).empty(NO_SLAP_DOWN).picture(&panels)
 }
 
-/// The cask's length with different sections, smooth and elastic.
+/// Picture of the cask's length with different sections, smooth and elastic.
 pub(super) fn sections(study: &Study, name: &str) -> Picture {
     let own_m = study.cask_file.cask.height_m;
     let mut panel = angle_panel(&study.request, "Smooth, k = 1", SPEED_LABEL);
     panel.height = 520;
     for (i, curve) in study.sections.iter().enumerate() {
         let section = format!("{} mm", plain(curve.height_m * 1e3, 4));
-        // The last one is the cask's own, with its centre of gravity and inertia.
+        // The last one is the cask itself, with its centre of gravity and inertia.
         let own = i > 0 && i + 1 == study.sections.len() && (curve.height_m - own_m).abs() < 1e-9;
         let label = match (curve.height_m > 0.0, own) {
             (_, true) => format!("the cask's own {section}"),
             (false, false) => "thin rod".to_owned(),
             (true, false) => section,
         };
-        // The thin rod and 10 mm all but coincide: the one is wide and pale under the other.
+        // The thin rod and 10 mm all but coincide: one is wide and pale under the other.
         let (stroke, opacity) = if i == 0 { (14, 0.35) } else { (4, 1.0) };
         let dash = if i == 1 { Dash::Dashed } else { Dash::Solid };
-        let line = Curve::new(COLOURS[i % COLOURS.len()], over_angle(curve, &curve.speed_m_s));
-        let line = Curve { opacity, stroke, ..line.named(label).broken(dash) };
-        panel.lines.extend(apart(line, &curve.turns_over));
+        let line = Curve::new(COLOURS[i % COLOURS.len()], points_over_angle(curve, &curve.speed_m_s));
+        let line = Curve { opacity, stroke, ..line.label(label).broken(dash) };
+        panel.lines.extend(split_turnovers(line, &curve.turns_over));
     }
     let caption = format!(
         "Slap-down speed over the drop angle for {} m of length and different sections in the plane of the \
@@ -120,13 +122,13 @@ pub(super) fn sections(study: &Study, name: &str) -> Picture {
         plain(study.cask_file.cask.length_m, 4),
         line_sentences(std::slice::from_ref(&panel))
     );
-    Plate::new(name, "The section of the cask against the thin rod", caption)
-        .or(NO_SLAP_DOWN)
+    Figure::new(name, "The section of the cask against the thin rod", caption)
+        .empty(NO_SLAP_DOWN)
         .picture(&[panel])
 }
 
-/// A panel for each body with the lines that `lines` makes of each of its curves: by contact law as asked
-/// for, the highest k first.
+/// A panel for each body with the lines that `lines` makes of each of its curves: by contact law as
+/// requested, the highest k first.
 fn panels(
     study: &Study,
     look: &Look,
@@ -141,9 +143,9 @@ fn panels(
         let mut curves: Vec<&AngleCurve> = study.curves.iter().filter(is_shown).collect();
         curves.sort_by_key(place);
         panel.lines = curves.into_iter().flat_map(&lines).collect();
-        // Closed forms last, so that the legend names the cases first.
+        // Closed forms come last, so that the legend names the cases first.
         panel.lines.sort_by_key(|line| line.stroke == HELD_STROKE);
-        panel.y.range = from_zero(&panel);
+        panel.y.range = range_from_zero(&panel);
         panel
     };
     [BodyModel::Rod, BodyModel::Body].map(panel).into()
@@ -152,18 +154,18 @@ fn panels(
 /// The line of a case in its look.
 fn case_line(look: &Look, curve: &AngleCurve, values: &[f64]) -> Curve {
     let (contact, k) = (curve.contact, curve.k);
-    look.line(contact, k, over_angle(curve, values)).named(case_words(contact, k))
+    look.line(contact, k, points_over_angle(curve, values)).label(case_words(contact, k))
 }
 
 /// The closed form in the colour of `like`, where the curve has one.
 fn held_line(curve: &AngleCurve, like: Curve, what: &str) -> Option<Curve> {
     let any = curve.closed_form_speed_m_s.iter().any(|v| v.is_finite());
-    let points = over_angle(curve, &curve.closed_form_speed_m_s);
+    let points = points_over_angle(curve, &curve.closed_form_speed_m_s);
     let held = Curve { stroke: HELD_STROKE, points, dash: Dash::Dotted, ..like };
-    any.then(|| held.named(format!("{what}, {HELD}")))
+    any.then(|| held.label(format!("{what}, {HELD}")))
 }
 
 /// Magnitudes of the values over the angle.
-fn over_angle(curve: &AngleCurve, values: &[f64]) -> Vec<(f64, f64)> {
+fn points_over_angle(curve: &AngleCurve, values: &[f64]) -> Vec<(f64, f64)> {
     curve.angle_deg.iter().copied().zip(values.iter().map(|v| v.abs())).collect()
 }

@@ -1,14 +1,14 @@
-//! One panel to its axes, areas, lines, points and marks.
+//! Draws one panel: axes, areas, lines, points and marks.
 
-use super::legend::{self, LEFT, RIGHT, point, width_of};
+use super::legend::{self, LEFT, RIGHT, point, text_width};
 use super::live::runs;
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::numerics::as_f64;
 use std::ops::Range;
 
-/// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the
-/// page, 0.3 mm of paper.
+/// Width of the columns in which a line keeps its lowest and highest point, in units: a pixel and a half of
+/// the page, 0.3 mm of paper.
 const COLUMN: f64 = 3.0;
 /// Height of a row of the marks' words.
 const MARK_ROW: f64 = 34.0;
@@ -22,7 +22,7 @@ pub(super) fn height(panel: &Panel, width: f64) -> f64 {
     head(panel, width) + f64::from(panel.height) + bottom(panel) + GAP
 }
 
-/// Height of what stands above the axes.
+/// Height of the parts above the axes.
 fn head(panel: &Panel, width: f64) -> f64 {
     let rows = mark_places(panel, width).iter().map(|(_, row)| row + 1).max().unwrap_or(0);
     legend::height(panel, width) + MARK_ROW * as_f64(rows)
@@ -37,14 +37,14 @@ fn sides(panel: &Panel) -> (f64, f64) {
     panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()))
 }
 
-/// Where the words of the marks stand along the axis, clear of the numbers beside it, and in which rows, so
-/// that none writes over its neighbour.
+/// Positions of the marks' words along the axis, clear of the numbers beside it, and their rows, so that none
+/// covers its neighbour.
 fn mark_places(panel: &Panel, width: f64) -> Vec<(f64, usize)> {
     let mut ends: Vec<f64> = Vec::new();
-    let along = along(&panel.x, &panel.x_range());
+    let along = position_on(&panel.x, &panel.x_range());
     let (left, right) = sides(panel);
     let place = |mark: &Mark| {
-        let half = width_of(&mark.label, 7.0) + 8.0;
+        let half = text_width(&mark.label, 7.0) + 8.0;
         let at = along(mark.at) * (width - left - right);
         let middle = at.min(width - left - half).max(half - 8.0);
         let row = ends.iter().position(|end| middle - half > *end).unwrap_or(ends.len());
@@ -55,8 +55,8 @@ fn mark_places(panel: &Panel, width: f64) -> Vec<(f64, usize)> {
     panel.marks.iter().map(place).collect()
 }
 
-/// From a value to how far along its axis it lies, 0 to 1; not finite where the axis has no place for it.
-fn along<'a>(axis: &'a PanelAxis, range: &Range<f64>) -> impl Fn(f64) -> f64 + use<'a> {
+/// Maps a value to its position along its axis, 0 to 1; not finite if the axis has no place for it.
+fn position_on<'a>(axis: &'a PanelAxis, range: &Range<f64>) -> impl Fn(f64) -> f64 + use<'a> {
     let (from, to) = (axis.place(range.start), axis.place(range.end));
     move |value| (axis.place(value) - from) / (to - from)
 }
@@ -78,7 +78,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
     let frame = PlotFrame { panel, x, y, width: width - left - right, height: panel.height.into() };
     svg.from((left, head(panel, width)), |svg| {
         frame.grid(svg);
-        svg.within((frame.width, frame.height), |svg| frame.curves(svg));
+        svg.clip_to((frame.width, frame.height), |svg| frame.curves(svg));
         for points in &panel.points {
             let places = points.at.iter().copied().map(frame.place());
             places.filter(|(x, y)| x.is_finite() && y.is_finite()).for_each(|at| point(svg, points, at));
@@ -97,9 +97,9 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
 }
 
 impl PlotFrame<'_> {
-    /// From a point to its place in the rectangle.
+    /// Maps a point to its place in the rectangle.
     fn place(&self) -> impl Fn((f64, f64)) -> (f64, f64) {
-        let (along_x, along_y) = (along(&self.panel.x, &self.x), along(&self.panel.y, &self.y));
+        let (along_x, along_y) = (position_on(&self.panel.x, &self.x), position_on(&self.panel.y, &self.y));
         move |(x, y)| (along_x(x) * self.width, (1.0 - along_y(y)) * self.height)
     }
 
@@ -110,7 +110,7 @@ impl PlotFrame<'_> {
         let most = if width < WIDTH / 2.0 { 8 } else { 14 };
         let x = ticks(&panel.x, &self.x, most);
         let y = ticks(&panel.y, &self.y, 8);
-        let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
+        let (along_x, along_y) = (position_on(&panel.x, &self.x), position_on(&panel.y, &self.y));
         let across = |value: f64| (along_x(value) * width).round();
         let up = |value: f64| ((1.0 - along_y(value)) * height).round();
         let upright = |value: f64| vec![(across(value), 0.0), (across(value), height)];
@@ -125,7 +125,7 @@ impl PlotFrame<'_> {
             svg.line(&line(1.0, vec![(at, height), (at, height + 5.0)]));
             let number = tick(*value, &panel.x);
             // The last number ends within the picture.
-            let most = width + sides(panel).1 - width_of(&number, 7.0);
+            let most = width + sides(panel).1 - text_width(&number, 7.0);
             svg.word(&number, (at.min(most), height + 22.0), Anchor::Middle);
         }
         for value in &y.bold {
@@ -134,7 +134,7 @@ impl PlotFrame<'_> {
         }
     }
 
-    /// Areas, and lines over them; what is faint lies under what is bold.
+    /// Draws areas, and lines over them; faint lines lie under bold ones.
     fn curves(&self, svg: &mut Svg) {
         for fill in &self.panel.fills {
             for area in &fill.areas {
@@ -182,15 +182,15 @@ impl PlotFrame<'_> {
     }
 }
 
-/// Where an axis has numbers, and where lines alone.
+/// Positions of numbers and of lines on an axis.
 #[derive(Default)]
 struct Ticks {
     bold: Vec<f64>,
     fine: Vec<f64>,
 }
 
-/// At round numbers, `most` of them or one more; of powers of ten each one or every second, third …, and the
-/// steps between in fine lines.
+/// Ticks at round numbers, `most` of them or one more; for powers of ten each one or every second, third …,
+/// and the steps between in fine lines.
 #[allow(clippy::cast_possible_truncation, reason = "whole steps, cut to a few hundred")]
 fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     let (from, to) = (axis.place(range.start), axis.place(range.end));
@@ -220,7 +220,7 @@ fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     }
 }
 
-/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
+/// A tick's number: as short as possible, powers of ten on a logarithmic axis.
 fn tick(value: f64, axis: &PanelAxis) -> String {
     if axis.scale == AxisScale::Logarithmic && !(1e-4..1e5).contains(&value) {
         return format!("{value:.0e}").replace('-', "−");
@@ -238,13 +238,13 @@ mod tests {
         let marks = [("first contact", 0.0), ("separation", 6.0), ("slap-down", 60.0)];
         let marks = marks.map(|(label, at)| Mark { at, label: label.into() }).into();
         let panel =
-            Panel { x: PanelAxis::new("time, ms").over(Some((-10.0, 100.0))), marks, ..Panel::default() };
+            Panel { x: PanelAxis::new("time, ms").range(Some((-10.0, 100.0))), marks, ..Panel::default() };
         let places = mark_places(&panel, WIDTH);
         assert!(places.iter().map(|(_, row)| *row).eq([0, 1, 0]), "{places:?}");
         // A word at the left edge begins at the axis, and so beside the numbers of the other one.
-        let at_edge = Panel { x: panel.x.over(Some((0.0, 100.0))), ..panel };
+        let at_edge = Panel { x: panel.x.range(Some((0.0, 100.0))), ..panel };
         let (middle, _) = mark_places(&at_edge, WIDTH)[0];
-        assert!(middle - width_of("first contact", 7.0) >= 0.0, "{middle}");
+        assert!(middle - text_width("first contact", 7.0) >= 0.0, "{middle}");
     }
 
     #[test]
@@ -267,6 +267,6 @@ mod tests {
         assert_eq!(found.bold, [10.0, 100.0, 1000.0]);
         assert_eq!((found.fine.first(), found.fine.last()), (Some(&5.0), Some(&2000.0)));
         assert!(ticks(&logarithmic, &(1e-17..1e3), 8).bold.len() <= 8);
-        assert!(ticks(&Panel::of_rows(Vec::new(), 1, (0, 0)).y, &(0.0..1.0), 8).bold.is_empty());
+        assert!(ticks(&Panel::from_rows(Vec::new(), 1, (0, 0)).y, &(0.0..1.0), 8).bold.is_empty());
     }
 }

@@ -1,15 +1,15 @@
-//! Measured beside predicted slap-down speed to one picture: a row a prediction, a band for the measurement.
+//! Picture of measured and predicted slap-down speed: a row per prediction, a band for the measurement.
 
 use super::super::rounding::{fixed, interval, pair, plain};
 use super::super::words::contact_words;
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::panel::{COLOURS, Curve, Fill, Mark, Panel, PanelAxis, PointShape, Points, RowWords};
 use crate::data::{Analysis, Estimate, Prediction};
 
 /// Height of a row.
 const ROW: u32 = 52;
 
-/// One row: its words, speed, half-width and whether it is made with the measured k.
+/// One row: its words, speed, half-width and true if it is made with the measured k.
 struct ComparedRow {
     words: RowWords,
     speed_m_s: f64,
@@ -23,7 +23,7 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
     let caption = "Speed of the second end just before it strikes. Dots: the analytical models with the \
                    borderline k; squares: with the measured k, with their 95 % intervals where known. Dashed \
                    line and band: the measurement and its 95 % interval.";
-    Plate::new("comparison", "Measured beside predicted", caption).picture(&[panel])
+    Figure::new("comparison", "Measured beside predicted", caption).picture(&[panel])
 }
 
 fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
@@ -51,7 +51,7 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
 
 fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
     let words = rows.iter().map(|row| row.words.clone()).collect();
-    let mut panel = Panel::of_rows(words, ROW, (560, 230));
+    let mut panel = Panel::from_rows(words, ROW, (560, 230));
     panel.x = PanelAxis::new("slap-down speed, m/s");
     if let Some(speed) = measured {
         let u95 = if speed.u95.is_finite() { speed.u95 } else { 0.0 };
@@ -62,7 +62,7 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
     for (i, row) in rows.iter().enumerate() {
         let y = panel.row_middle(i);
         let look = usize::from(row.own_k);
-        let (colour, shape) = (COLOURS[look], PointShape::of(look));
+        let (colour, shape) = (COLOURS[look], PointShape::from_index(look));
         if let Some(u95) = row.u95_m_s {
             let (low, high) = (row.speed_m_s - u95, row.speed_m_s + u95);
             let ends = [low, high].map(|x| vec![(x, y - 0.21), (x, y + 0.21)]);

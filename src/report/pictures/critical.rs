@@ -1,8 +1,8 @@
-//! Critical angles to one picture: a row a case, a bar for its band and a dot for where it is largest.
+//! Picture of critical angles: a row per case, a bar for its band and a dot for the maximum.
 
 use super::super::rounding::{MISSING, plain};
 use super::super::words::{case_words, criterion_value, criterion_words, degrees};
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::look::{Look, NO_SLAP_DOWN, angle_axis, angle_panel};
 use super::panel::{Curve, Fill, Panel, PointShape, Points, RowWords};
 use crate::data::{Criterion, CriticalAngle, Study};
@@ -10,7 +10,7 @@ use crate::data::{Criterion, CriticalAngle, Study};
 /// Height of a row.
 const ROW: u32 = 46;
 
-/// One row of the picture: a case with its words; a heading has words alone.
+/// One row of the picture: a case with its words; a heading has only words.
 struct CriticalRow<'a> {
     words: RowWords,
     case: Option<&'a CriticalAngle>,
@@ -18,27 +18,27 @@ struct CriticalRow<'a> {
 
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
-    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let look = Look::new(&study.request.contacts, &study.request.ks);
     let rows = rows(study, &look);
     let panel = angle_axis(&study.request).range.map(|_| panel(study, &look, &rows));
-    Plate::new(name, "Critical angles", caption(study, &look, &rows))
-        .or(NO_SLAP_DOWN)
+    Figure::new(name, "Critical angles", caption(study, &look, &rows))
+        .empty(NO_SLAP_DOWN)
         .picture(panel.as_slice())
 }
 
 fn caption(study: &Study, look: &Look, rows: &[CriticalRow]) -> String {
     let rings = " Rings: angles at which the first end strikes again and the value is larger still; it jumps \
                  there from angle to angle.";
-    let said = |is_so: bool, words| if is_so { words } else { "" };
+    let words_if = |is_so: bool, words| if is_so { words } else { "" };
     let is_larger = |row: &CriticalRow| row.case.is_some_and(|case| case.further_impacts.is_some());
     format!(
         "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the \
          value at the right. Bars: the angles within {} % of it.{} Dashed: {}°.{}{}",
         plain(study.request.band_percent, 3),
-        said(rows.iter().any(is_larger), rings),
+        words_if(rows.iter().any(is_larger), rings),
         plain(study.request.angle_deg, 4),
-        look.left_out(),
-        said(is_crowded(study, look), " Single cases of the body only.")
+        look.left_out_sentence(),
+        words_if(is_crowded(study, look), " Single cases of the body only.")
     )
 }
 
@@ -62,7 +62,7 @@ fn rows<'a>(study: &'a Study, look: &Look) -> Vec<CriticalRow<'a>> {
     rows
 }
 
-/// More cases than this, and the rod gives way to the body: the picture must fit a page.
+/// With more cases than this the rod is omitted in favour of the body: the picture must fit a page.
 const MOST_CASES: usize = 12;
 
 fn is_crowded(study: &Study, look: &Look) -> bool {
@@ -70,7 +70,8 @@ fn is_crowded(study: &Study, look: &Look) -> bool {
     speeds.filter(|c| look.shows(c.contact, c.k)).count() > MOST_CASES
 }
 
-/// "body, rough, k = 0.5" at the left; at the right "25.04 m/s at 12.5°", or the dash where there is none.
+/// Words of a row: "body, rough, k = 0.5" at the left; "25.04 m/s at 12.5°" at the right, or the dash if
+/// there is none.
 fn words(case: &CriticalAngle) -> RowWords {
     let right = if case.largest.is_finite() && case.angle_deg.is_finite() {
         format!("{} at {}°", criterion_value(case.criterion, case.largest), degrees(case.angle_deg))
@@ -84,7 +85,7 @@ fn words(case: &CriticalAngle) -> RowWords {
 fn panel(study: &Study, look: &Look, rows: &[CriticalRow]) -> Panel {
     let Panel { x, marks, .. } = angle_panel(&study.request, "", "");
     let words = rows.iter().map(|row| row.words.clone()).collect();
-    let mut panel = Panel { x, marks, ..Panel::of_rows(words, ROW, (400, 330)) };
+    let mut panel = Panel { x, marks, ..Panel::from_rows(words, ROW, (400, 330)) };
     for (i, row) in rows.iter().enumerate() {
         if let Some(case) = row.case {
             let y = panel.row_middle(i);
@@ -94,7 +95,7 @@ fn panel(study: &Study, look: &Look, rows: &[CriticalRow]) -> Panel {
     panel
 }
 
-/// The band of a case as a bar, its critical angle as a dot, a larger value further on as a ring.
+/// Draws the band of a case as a bar, its critical angle as a dot, a larger value at another angle as a ring.
 fn add_case(panel: &mut Panel, look: &Look, case: &CriticalAngle, y: f64) {
     /// Half the height of a bar.
     const HALF: f64 = 0.24;

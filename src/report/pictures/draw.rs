@@ -1,4 +1,4 @@
-//! Panels to the SVG text of a picture.
+//! Draws panels as the SVG text of a picture.
 
 use super::panel::{AxisScale, Panel, WIDTH};
 use super::svg::{Anchor, Svg};
@@ -9,35 +9,35 @@ use crate::numerics::as_f64;
 pub(crate) struct Picture {
     /// The name of its file, without ".svg".
     pub(crate) name: String,
-    /// Its heading.
+    /// Heading of the picture.
     pub(crate) title: String,
-    /// What it shows, for a reader who cannot see it.
+    /// Description for a reader who cannot see the picture.
     pub(crate) alt: String,
-    /// What the reader should know beside it.
+    /// Caption below the picture.
     pub(crate) caption: String,
     /// The drawing.
     pub(crate) svg: String,
-    /// Its numbers as JSON, for pages that draw it again to be zoomed; empty where they don't.
+    /// Numbers as JSON, for pages that redraw the picture when zooming; empty if they do not.
     pub(crate) live: String,
 }
 
-/// What a picture is called, and what it says where it is empty.
-pub(crate) struct Plate {
+/// Name and title of a picture, and its sentence if it is empty.
+pub(crate) struct Figure {
     pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) caption: String,
-    /// The sentence of the empty picture, and its caption.
+    /// Sentence and caption of the empty picture.
     pub(crate) nothing: (&'static str, &'static str),
     /// Panels beside one another.
     pub(crate) columns: usize,
-    /// The picture whose lines a page takes to draw it again, to be zoomed; "" for its own, `None` for none.
+    /// The picture whose lines a page redraws for zooming; "" for its own, `None` for none.
     pub(crate) live_of: Option<&'static str>,
-    /// What a page says of samples that were left out before; `None`: none were.
+    /// Sentence of a page on samples that were omitted before; `None` if none were.
     pub(crate) thinned: Option<String>,
 }
 
-impl Plate {
-    /// Of the panels one below the other.
+impl Figure {
+    /// Specifies a picture of panels one below the other.
     pub(crate) fn new(name: &str, title: impl Into<String>, caption: impl Into<String>) -> Self {
         let nothing =
             ("There is nothing to show: see the findings.", "The recording did not yield this picture.");
@@ -52,56 +52,57 @@ impl Plate {
         }
     }
 
-    /// With another sentence and caption of the empty picture.
-    pub(crate) fn or(self, nothing: (&'static str, &'static str)) -> Self {
+    /// Replaces sentence and caption of the empty picture.
+    pub(crate) fn empty(self, nothing: (&'static str, &'static str)) -> Self {
         Self { nothing, ..self }
     }
 
-    /// To be zoomed on a page.
-    pub(crate) fn live(self) -> Self {
-        self.live_of("")
+    /// Lets a page zoom the picture.
+    pub(crate) fn zoomable(self) -> Self {
+        self.zoomable_with("")
     }
 
-    /// The same with the lines of another picture, of which its own are a part.
-    pub(crate) fn live_of(self, picture: &'static str) -> Self {
+    /// Lets a page zoom the picture with the lines of another one, which include its own.
+    pub(crate) fn zoomable_with(self, picture: &'static str) -> Self {
         Self { live_of: Some(picture), ..self }
     }
 
-    /// The picture of those panels that have something to show.
+    /// Draws those panels that have content.
     pub(crate) fn picture(mut self, panels: &[Panel]) -> Picture {
-        let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.drawn().next().is_some()).collect();
+        let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.points().next().is_some()).collect();
         if panels.is_empty() {
             let mut svg = Svg::default();
             svg.words(self.nothing.0, (WIDTH / 2.0, 80.0), Anchor::Middle, "font-size=\"27\"");
             self.nothing.1.clone_into(&mut self.caption);
-            return self.drawn(svg, 160.0, "nothing to show.");
+            return self.into_picture(svg, 160.0, "nothing to show.");
         }
         let (svg, height) = drawing(&panels, self.columns);
-        let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
+        let rows: Vec<String> = panels.iter().flat_map(|panel| alt_text(panel)).collect();
         let shown = if rows.is_empty() { self.caption.clone() } else { rows.join("; ") };
         let live =
             self.live_of.map_or_else(String::new, |of| live::numbers(&panels, of, self.thinned.as_deref()));
         let alt = format!("{}. {shown}", self.title);
-        Picture { alt, live, ..self.drawn(svg, height, "") }
+        Picture { alt, live, ..self.into_picture(svg, height, "") }
     }
 
-    /// The picture of a drawing of its own this high; `shown` is for a reader who cannot see it.
-    pub(super) fn drawn(self, svg: Svg, height: f64, shown: &str) -> Picture {
+    /// Makes a picture of this height from a separate drawing; `shown` describes it for a reader who cannot
+    /// see it.
+    pub(super) fn into_picture(self, svg: Svg, height: f64, shown: &str) -> Picture {
         let Self { name, title, caption, .. } = self;
-        let (svg, alt) = (svg.finished((WIDTH, height), &title), format!("{title}: {shown}"));
+        let (svg, alt) = (svg.finish((WIDTH, height), &title), format!("{title}: {shown}"));
         Picture { name, title, alt, caption, svg, live: String::new() }
     }
 }
 
-/// The rows of a panel with their words, and what is marked in it.
-fn spoken(panel: &Panel) -> Vec<String> {
+/// Text of a panel's rows and marks for a reader who cannot see them.
+fn alt_text(panel: &Panel) -> Vec<String> {
     let AxisScale::Rows(rows) = &panel.y.scale else { return Vec::new() };
     let marked = panel.marks.iter().map(|mark| mark.label.clone());
     let rows = rows.iter().filter(|row| row.is_heading || !row.right.is_empty());
     marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
 }
 
-/// Panels in rows of `columns`, each row as wide as the picture; and how high the drawing is.
+/// Draws panels in rows of `columns`, each row as wide as the picture; returns the height of the drawing.
 fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
@@ -134,7 +135,7 @@ mod tests {
         let points = vec![(0.0, 1.0), (10.0, 0.0), (10.0, 1.0), (1000.0, 0.1)];
         let [x, y] = ["frequency, Hz", "magnitude"].map(|label| PanelAxis::new(label).logarithmic());
         let panel = Panel { lines: vec![Curve::new(COLOURS[0], points)], ..Panel::new("", x, y, 350) };
-        let svg = Plate::new("", "", "").picture(&[panel]).svg;
+        let svg = Figure::new("", "", "").picture(&[panel]).svg;
         assert!(svg.contains("polyline") && !svg.contains("NaN") && !svg.contains("inf"));
     }
 }

@@ -1,24 +1,24 @@
 //! The title of a panel and the names of its lines, areas and points, above the axes.
 
-use super::super::text::printable;
+use super::super::text::sanitize;
 use super::panel::{Colour, Curve, Fill, Panel, PointShape, Points};
 use super::svg::{Anchor, Svg};
 use crate::numerics::as_f64;
 
 /// Height of the title's row.
 const HEAD: f64 = 62.0;
-/// Where title and legend begin and end, and the axes of a panel without rows.
+/// Ends of title and legend, and of the axes of a panel without rows.
 pub(super) const LEFT: f64 = 130.0;
 pub(super) const RIGHT: f64 = 28.0;
 /// Height of each further row of the legend.
 const LEGEND_ROW: f64 = 40.0;
 /// Width of the sample of a line before its words.
 const SAMPLE: f64 = 58.0;
-/// A sample is seen beside its words, on paper and in the dark, however faint its line is.
+/// Least opacity of a sample, so that it is visible on paper and in the dark, however faint its line is.
 const FAINTEST: f64 = 0.6;
 const WHITE: Colour = Colour(255, 255, 255);
 
-/// What an entry of a legend stands for.
+/// Symbol of an entry in a legend.
 #[derive(Clone, Copy)]
 enum LegendKey<'a> {
     Curve(&'a Curve),
@@ -26,7 +26,7 @@ enum LegendKey<'a> {
     Points(&'a Points),
 }
 
-/// One entry of a legend: what it stands for, its words, and where it begins.
+/// One entry of a legend: its symbol, words, and beginning.
 struct Entry<'a> {
     key: LegendKey<'a>,
     label: String,
@@ -34,22 +34,22 @@ struct Entry<'a> {
     left: f64,
 }
 
-/// About the width of words with letters this wide.
-pub(super) fn width_of(words: &str, letter: f64) -> f64 {
+/// Approximate width of words with letters of this width.
+pub(super) fn text_width(words: &str, letter: f64) -> f64 {
     as_f64(words.chars().count()) * letter
 }
 
-/// The rows of the legend in reading order, each set to the right; the first leaves room for the title.
+/// The rows of the legend in reading order, right-aligned; the first leaves room for the title.
 fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
     let limit = width - RIGHT;
-    let mut left_over = limit - LEFT - width_of(&panel.title, 19.0) - 40.0;
+    let mut left_over = limit - LEFT - text_width(&panel.title, 19.0) - 40.0;
     let mut rows: Vec<Vec<Entry>> = vec![Vec::new()];
     let lines = panel.lines.iter().map(|line| (LegendKey::Curve(line), line.label.as_deref()));
     let fills = panel.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
     let points = panel.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
     for (key, label) in lines.chain(fills).chain(points) {
-        let Some(label) = label.map(printable) else { continue };
-        let takes = SAMPLE + width_of(&label, 13.0) + 26.0;
+        let Some(label) = label.map(sanitize) else { continue };
+        let takes = SAMPLE + text_width(&label, 13.0) + 26.0;
         if takes > left_over {
             rows.push(Vec::new());
             left_over = limit - LEFT;
@@ -104,7 +104,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
     }
 }
 
-/// One point in its shape.
+/// Draws one point in its shape.
 pub(super) fn point(svg: &mut Svg, points: &Points, (x, y): (f64, f64)) {
     let (r, colour) = (points.radius, points.colour);
     match points.shape {
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn a_long_legend_takes_more_rows_within_the_width() {
         let line = |i: usize| {
-            Curve::new(COLOURS[i % COLOURS.len()], vec![]).named(format!("channel number {i} unfiltered"))
+            Curve::new(COLOURS[i % COLOURS.len()], vec![]).label(format!("channel number {i} unfiltered"))
         };
         let lines = (0..16).map(line).collect();
         let panel = Panel { title: "First end".into(), lines, ..Panel::default() };

@@ -1,29 +1,29 @@
-//! Panels to the numbers that a page's own script draws again, to be zoomed and copied; and a long curve to
-//! the lowest and highest point of each column, broken where samples are missing.
+//! Numbers of panels for the script of a page, which draws them again for zooming and copying; a long curve
+//! is reduced to the lowest and highest point of each column, broken where samples are missing.
 
 use super::panel::{Curve, Panel};
-use crate::numerics::{as_count, as_f64, single};
-use crate::report::text::printable;
+use crate::numerics::{as_count, as_f64, to_f32};
+use crate::report::text::sanitize;
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use serde_json::{Value, json};
 
-/// Values of a picture that has every sample, in single precision as in the files of curves, and of one that
-/// is thinned: a page of two channels stays below 750 kB at any rate.
+/// Most values of a picture that has every sample, in single precision as in the files of curves, and of one
+/// that is thinned: a page of two channels stays below 750 kB at any rate.
 pub(super) const MOST_VALUES: usize = 25_000;
 const THINNED_VALUES: usize = 12_000;
 
-/// What stands beside a picture of which nothing was left out.
+/// Remark beside a picture that shows every sample.
 pub(super) const EVERY_SAMPLE: &str = "Drag to zoom: every sample is here.";
 
-/// The panels with lines on linear axes, as JSON, the lines being those of the picture `of` where it has a
-/// name; empty where there is none. `thinned` says what was left out before, where anything was.
+/// Panels with lines on linear axes, as JSON, with the lines of the picture `of` if it has a name; empty if
+/// there are none. `thinned` says which samples were omitted before, if any were.
 pub(super) fn numbers(panels: &[&Panel], of: &str, thinned: Option<&str>) -> String {
     let drawn = || panels.iter().filter(|panel| !panel.lines.is_empty());
     let count: usize = drawn().flat_map(|panel| &panel.lines).map(|line| line.points.len()).sum();
     if count == 0 {
         return String::new();
     }
-    // Of each so many samples the lowest and the highest are drawn; of one it is all.
+    // The lowest and the highest of each group of samples are drawn; for a group of one that is every sample.
     let is_whole = thinned.is_some() || count <= MOST_VALUES;
     let each = if is_whole { 1 } else { (2 * count).div_ceil(THINNED_VALUES) };
     let note = match thinned {
@@ -33,13 +33,13 @@ pub(super) fn numbers(panels: &[&Panel], of: &str, thinned: Option<&str>) -> Str
             "Drawn and copied: the lowest and the highest of each {each} samples; curves.csv has all."
         ),
     };
-    let all: Vec<Value> = drawn().map(|panel| of_panel(panel, each, of)).collect();
+    let all: Vec<Value> = drawn().map(|panel| panel_json(panel, each, of)).collect();
     json!({"note": note, "of": of, "panels": all}).to_string().replace('<', "\\u003c")
 }
 
-fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
+fn panel_json(panel: &Panel, each: usize, of: &str) -> Value {
     let own = panel.lines.iter().filter(|_| of.is_empty());
-    let lines: Vec<Value> = own.map(|line| of_line(line, each)).collect();
+    let lines: Vec<Value> = own.map(|line| line_json(line, each)).collect();
     let marks: Vec<Value> = panel.marks.iter().map(|mark| json!([mark.at, mark.label])).collect();
     let range = panel.x_range();
     json!({
@@ -48,23 +48,23 @@ fn of_panel(panel: &Panel, each: usize, of: &str) -> Value {
     })
 }
 
-/// The values, and not a number between runs, where samples are missing; their places, in steps of `dx` from
-/// `x0` on, as the numbers of samples between them, where these are not all one.
-fn of_line(line: &Curve, each: usize) -> Value {
+/// Values, with NaN between runs, where samples are missing; positions, in steps of `dx` from `x0` on, as the
+/// numbers of samples between them, if these are not all one.
+fn line_json(line: &Curve, each: usize) -> Value {
     let ends = line.points.first().zip(line.points.last());
     let (x0, last) = ends.map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
     let dx = line.step.unwrap_or((last - x0) / as_f64(line.points.len().max(2) - 1));
     let place = |i: usize, x: f64| line.step.map_or(i, |step| as_count(((x - x0) / step).round()));
     let places = line.points.iter().enumerate().map(|(i, p)| (place(i, p.0), p.1));
     let (mut steps, mut bytes, mut at) = (Vec::new(), Vec::new(), 0);
-    for (place, value) in thinned(places, each) {
+    for (place, value) in thin(places, each) {
         steps.push(place - at);
-        bytes.extend_from_slice(&single(value).to_le_bytes());
+        bytes.extend_from_slice(&to_f32(value).to_le_bytes());
         at = place;
     }
     let is_even = steps.iter().enumerate().all(|(i, step)| *step == usize::from(i > 0));
     json!({
-        "label": line.label.as_deref().map(printable), "color": line.colour.to_string(),
+        "label": line.label.as_deref().map(sanitize), "color": line.colour.to_string(),
         "opacity": line.opacity, "dash": line.dash.pieces(), "stroke": line.stroke,
         "x0": x0, "dx": dx, "steps": (!is_even).then_some(steps), "y": STANDARD.encode(bytes)
     })
@@ -78,7 +78,7 @@ pub(super) fn runs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<Vec<(f64
             runs.push(Vec::new());
         } else if let Some(run) = runs.last_mut() {
             match run.last_mut().filter(|column| column.index.total_cmp(&x.floor()).is_eq()) {
-                Some(column) => column.take((x, y)),
+                Some(column) => column.include((x, y)),
                 None => run.push(PixelColumn { index: x.floor(), low: (x, y), high: (x, y) }),
             }
         }
@@ -87,9 +87,9 @@ pub(super) fn runs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<Vec<(f64
     runs.into_iter().map(|run| run.into_iter().flat_map(PixelColumn::points).collect()).collect()
 }
 
-/// Of values at numbered places the lowest and the highest of each `each` places, and not a number between
-/// runs, where values are missing.
-pub(super) fn thinned(values: impl IntoIterator<Item = (usize, f64)>, each: usize) -> Vec<(usize, f64)> {
+/// Keeps the lowest and the highest of values in each `each` numbered places, and NaN between runs, if values
+/// are missing.
+pub(super) fn thin(values: impl IntoIterator<Item = (usize, f64)>, each: usize) -> Vec<(usize, f64)> {
     let mut kept = Vec::new();
     let places = values.into_iter().map(|(place, value)| (as_f64(place) / as_f64(each), value));
     for (i, run) in runs(places).into_iter().enumerate() {
@@ -100,7 +100,7 @@ pub(super) fn thinned(values: impl IntoIterator<Item = (usize, f64)>, each: usiz
     kept
 }
 
-/// What lies in one unit of x.
+/// Points in one unit of x.
 struct PixelColumn {
     index: f64,
     low: (f64, f64),
@@ -108,7 +108,7 @@ struct PixelColumn {
 }
 
 impl PixelColumn {
-    fn take(&mut self, at: (f64, f64)) {
+    fn include(&mut self, at: (f64, f64)) {
         if at.1 < self.low.1 {
             self.low = at;
         }

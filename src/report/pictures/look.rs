@@ -1,4 +1,4 @@
-//! Contact laws and k to colours and strokes, so that a case looks the same in every picture; and the axis of
+//! Colours and strokes of contact laws and k, so that a case looks the same in every picture; and the axis of
 //! the angle.
 
 use super::super::rounding::plain;
@@ -6,11 +6,11 @@ use super::super::words::contact_words;
 use super::panel::{COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{BodyModel, Cask, Contact, StudyRequest};
 
-/// Contact laws that a picture shows: more lines than these cannot be told apart.
+/// Most contact laws in a picture: more lines cannot be distinguished.
 pub(super) const MOST_CONTACTS: usize = 3;
 
-/// The k that a picture shows beside several contact laws, each with a stroke of its own, and beside one,
-/// each with a colour.
+/// Most k in a picture beside several contact laws, each with another stroke, and beside one, each with
+/// another colour.
 const MOST_KS: usize = 3;
 const MOST_KS_ALONE: usize = 5;
 
@@ -23,7 +23,7 @@ pub(super) const NO_SLAP_DOWN: (&str, &str) =
 
 /// The cases that pictures show, and how.
 pub(super) struct Look {
-    /// Contact laws; each has a colour where there are several.
+    /// Contact laws; each has a colour if there are several.
     pub(super) contacts: Vec<Contact>,
     /// Coefficients of restitution, ascending.
     pub(super) ks: Vec<f64>,
@@ -31,48 +31,48 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// The look of these cases; the first contact laws, and k spread over all, where there are too many.
-    pub(super) fn of(contacts: &[Contact], ks: &[f64]) -> Self {
+    /// Chooses the look of these cases; if there are too many, the first contact laws, and k spread over all.
+    pub(super) fn new(contacts: &[Contact], ks: &[f64]) -> Self {
         let mut sorted = ks.to_vec();
         sorted.sort_by(f64::total_cmp);
         sorted.dedup();
         let shown = &contacts[..contacts.len().min(MOST_CONTACTS)];
-        let ks = spread(&sorted, if shown.len() > 1 { MOST_KS } else { MOST_KS_ALONE });
+        let ks = pick_evenly(&sorted, if shown.len() > 1 { MOST_KS } else { MOST_KS_ALONE });
         let left_out = shown.len() < contacts.len() || ks.len() < sorted.len();
         Self { contacts: shown.to_vec(), ks, left_out }
     }
 
-    /// With the highest and the lowest k alone.
+    /// Keeps only the highest and the lowest k.
     pub(super) fn with_ends(self) -> Self {
-        Self { ks: spread(&self.ks, 2), ..self }
+        Self { ks: pick_evenly(&self.ks, 2), ..self }
     }
 
-    /// Where a case stands among those drawn: the place of its contact law, and that of k from the highest.
+    /// Position of a case among those drawn: the index of its contact law, and that of k from the highest.
     pub(super) fn place(&self, contact: Contact, k: f64) -> Option<[usize; 2]> {
         let of_contact = self.contacts.iter().position(|shown| *shown == contact)?;
         let of_k = self.ks.iter().rev().position(|shown| shown.to_bits() == k.to_bits())?;
         Some([of_contact, of_k])
     }
 
-    /// Whether this case is drawn.
+    /// True if this case is drawn.
     pub(super) fn shows(&self, contact: Contact, k: f64) -> bool {
         self.place(contact, k).is_some()
     }
 
-    /// Of the contact law, or of k where there is only one law.
+    /// Colour of the contact law, or of k if there is only one law.
     pub(super) fn colour(&self, contact: Contact, k: f64) -> Colour {
         let place = self.place(contact, k).unwrap_or_default();
         COLOURS[place[usize::from(self.contacts.len() < 2)] % COLOURS.len()]
     }
 
-    /// The line of a case: where the contact laws take the colours each k has a stroke.
+    /// The line of a case: if the contact laws use the colours each k has a stroke.
     pub(super) fn line(&self, contact: Contact, k: f64, points: Vec<(f64, f64)>) -> Curve {
         let of_k = self.place(contact, k).filter(|_| self.contacts.len() > 1).map_or(0, |place| place[1]);
         Curve::new(self.colour(contact, k), points).broken(DASHES[of_k % DASHES.len()])
     }
 
     /// A sentence on the cases that are not drawn, or nothing.
-    pub(super) fn left_out(&self) -> String {
+    pub(super) fn left_out_sentence(&self) -> String {
         if !self.left_out {
             return String::new();
         }
@@ -82,8 +82,8 @@ impl Look {
     }
 }
 
-/// At most `most` of the values, the first and the last among them, the others spread between.
-pub(super) fn spread(values: &[f64], most: usize) -> Vec<f64> {
+/// Picks at most `most` of the values, the first and the last among them, the others evenly between.
+pub(super) fn pick_evenly(values: &[f64], most: usize) -> Vec<f64> {
     if values.len() <= most {
         return values.to_vec();
     }
@@ -91,7 +91,7 @@ pub(super) fn spread(values: &[f64], most: usize) -> Vec<f64> {
     (0..most).map(|i| values[(i * last + (most - 1) / 2) / (most - 1)]).collect()
 }
 
-/// "Thin rod, l = 5.512 m", and of the body its section; without the length where that is swept.
+/// Formats "Thin rod, l = 5.512 m", and for the body its section; without the length if that is swept.
 pub(super) fn body_words(model: BodyModel, cask: &Cask, with_length: bool) -> String {
     let length = if with_length { format!(", l = {} m", plain(cask.length_m, 4)) } else { String::new() };
     match model {
@@ -103,10 +103,10 @@ pub(super) fn body_words(model: BodyModel, cask: &Cask, with_length: bool) -> St
 /// The axis of the drop angle, as far as the study goes.
 pub(super) fn angle_axis(request: &StudyRequest) -> PanelAxis {
     let ends = request.angles_deg.first().copied().zip(request.angles_deg.last().copied());
-    PanelAxis::new("drop angle, °").over(ends.filter(|(from, to)| from < to))
+    PanelAxis::new("drop angle, °").range(ends.filter(|(from, to)| from < to))
 }
 
-/// An empty panel over the angles of the study, the angle asked for marked.
+/// An empty panel over the angles of the study, with the requested angle marked.
 pub(super) fn angle_panel(request: &StudyRequest, title: impl Into<String>, y_label: &str) -> Panel {
     let at = request.angle_deg;
     let marks = vec![Mark { at, label: format!("{}°", plain(at, 4)) }];
@@ -119,8 +119,8 @@ pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
     centres.first().copied().into_iter().chain(inner).chain(centres.last().copied()).collect()
 }
 
-/// A line without the points at which the cask turns over, and these as a pale one without a name.
-pub(super) fn apart(line: Curve, turns_over: &[bool]) -> Vec<Curve> {
+/// Splits off the points at which the cask turns over, as a pale line without a name.
+pub(super) fn split_turnovers(line: Curve, turns_over: &[bool]) -> Vec<Curve> {
     let part = |wanted: bool| {
         let points = line.points.iter().zip(turns_over);
         points.map(|((x, y), over)| (*x, if *over == wanted { *y } else { f64::NAN })).collect()
@@ -130,10 +130,10 @@ pub(super) fn apart(line: Curve, turns_over: &[bool]) -> Vec<Curve> {
     [whole].into_iter().chain(turns_over.contains(&true).then_some(pale)).collect()
 }
 
-/// Stroke of the closed forms: they alone are that fine.
+/// Stroke of the closed forms: no other line is as thin.
 pub(super) const HELD_STROKE: u32 = 3;
 
-/// What the ends of lines are, and those lines that are pale or dotted.
+/// Sentences on the ends of lines, and on lines that are pale or dotted.
 pub(super) fn line_sentences(panels: &[Panel]) -> String {
     const OPEN: &str = "Where a line is broken off the second end never strikes; where the first end strikes \
                         again before it, the line may jump.";
@@ -146,9 +146,9 @@ pub(super) fn line_sentences(panels: &[Panel]) -> String {
     format!("{OPEN}{held}{pale}")
 }
 
-/// From 0 to a little above the largest value that is drawn.
-pub(super) fn from_zero(panel: &Panel) -> Option<(f64, f64)> {
-    let largest = panel.drawn().map(|p| p.1).fold(0.0, f64::max);
+/// Range from 0 to a little above the largest value that is drawn.
+pub(super) fn range_from_zero(panel: &Panel) -> Option<(f64, f64)> {
+    let largest = panel.points().map(|p| p.1).fold(0.0, f64::max);
     (largest > 0.0).then_some((0.0, largest * 1.08))
 }
 
@@ -164,18 +164,18 @@ mod tests {
     #[test]
     fn many_values_are_thinned_and_keep_their_ends() {
         let values: Vec<f64> = (0..101).map(|i| f64::from(i) / 100.0).collect();
-        assert_eq!(spread(&values, 5), [0.0, 0.25, 0.5, 0.75, 1.0]);
-        assert_eq!(spread(&values[..2], 5), [0.0, 0.01]);
-        assert_eq!(spread(&values[..6], 5), [0.0, 0.01, 0.03, 0.04, 0.05]);
+        assert_eq!(pick_evenly(&values, 5), [0.0, 0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(pick_evenly(&values[..2], 5), [0.0, 0.01]);
+        assert_eq!(pick_evenly(&values[..6], 5), [0.0, 0.01, 0.03, 0.04, 0.05]);
     }
 
     #[test]
     fn every_case_shown_looks_different() {
         let contacts = [Contact::Rough, Contact::Smooth, Contact::Coulomb(0.3), Contact::Coulomb(0.5)];
-        let look = Look::of(&contacts, &[1.0, 0.0, 0.5, 0.25]);
+        let look = Look::new(&contacts, &[1.0, 0.0, 0.5, 0.25]);
         assert_eq!(look.ks, [0.0, 0.5, 1.0]);
         assert!(!look.shows(Contact::Coulomb(0.5), 1.0) && !look.shows(Contact::Rough, 0.25));
-        assert!(look.left_out().contains("rough, smooth, μ 0.3 with k = 0, 0.5, 1"));
+        assert!(look.left_out_sentence().contains("rough, smooth, μ 0.3 with k = 0, 0.5, 1"));
         let mut seen = Vec::new();
         for contact in look.contacts.clone() {
             for k in look.ks.clone() {
@@ -185,6 +185,6 @@ mod tests {
                 seen.push(way);
             }
         }
-        assert_eq!(Look::of(&contacts[..1], &[0.0, 0.5]).left_out(), "");
+        assert_eq!(Look::new(&contacts[..1], &[0.0, 0.5]).left_out_sentence(), "");
     }
 }

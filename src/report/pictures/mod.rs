@@ -1,4 +1,4 @@
-//! An analysis to its pictures, a study to its charts, as SVG text.
+//! Pictures of an analysis and charts of a study, as SVG text.
 
 mod angle_curves;
 mod axes;
@@ -21,7 +21,7 @@ pub(super) use recorded::recorded;
 pub(super) use setup::picture as of_setup;
 
 use super::rounding::plain;
-use super::text::distinct;
+use super::text::dedup;
 use crate::data::{Analysis, CaskFile, Contact, Study, StudyRequest};
 use draw::Picture;
 use look::MOST_CONTACTS;
@@ -32,7 +32,7 @@ pub fn setup_picture(file: &CaskFile) -> String {
     setup::picture(file).svg
 }
 
-/// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show
+/// Pictures of set-up, curves of both impacts, velocities, motion, spectra and comparison; an empty picture
 /// says so.
 pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
     let all: [fn(&Analysis) -> Picture; 9] = [
@@ -53,15 +53,15 @@ pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
 /// A study and a picture's name to the picture.
 type Draw = Box<dyn Fn(&Study, &str) -> Picture + Send + Sync>;
 
-/// One chart by its name, and what draws it.
+/// One chart by its name, and the function that draws it.
 type StudyChart = (String, Draw);
 
 /// The charts of a request, in the order in which a reader meets them.
 fn charts(request: &StudyRequest) -> Vec<StudyChart> {
     let chart = |name: &str, draw: fn(&Study, &str) -> Picture| (name.to_owned(), Box::new(draw) as Draw);
-    let shown = distinct(request.contacts.iter().copied());
-    let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
-    let mut charts = vec![chart(if both { "smooth-rough" } else { "speeds" }, angle_curves::speeds)];
+    let shown = dedup(request.contacts.iter().copied());
+    let is_pair = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
+    let mut charts = vec![chart(if is_pair { "smooth-rough" } else { "speeds" }, angle_curves::speeds)];
     charts.extend(shown.into_iter().take(MOST_CONTACTS).map(|contact| {
         let draw = move |study: &Study, name: &str| angle_curves::components(study, contact, name);
         (components_name(contact), Box::new(draw) as Draw)
@@ -92,7 +92,7 @@ pub(super) fn study_names(request: &StudyRequest) -> Vec<String> {
     charts(request).into_iter().map(|(name, _)| name).collect()
 }
 
-/// Every picture of a study; one that has nothing to show says so.
+/// Every picture of a study; an empty picture says so.
 pub(super) fn draw_study(study: &Study) -> Vec<Picture> {
     charts(&study.request).into_par_iter().map(|(name, draw)| draw(study, &name)).collect()
 }
@@ -158,7 +158,7 @@ mod tests {
             ]
         );
         request.contacts = vec![Contact::Coulomb(0.3), Contact::Coulomb(0.3), Contact::Rough];
-        request.sweeps = sample_study::swept().request.sweeps;
+        request.sweeps = sample_study::sweep_study().request.sweeps;
         let names = study_names(&request);
         assert_eq!(names[..3], ["speeds", "components-friction-0.3", "components-rough"]);
         assert_eq!(names.last().map(String::as_str), Some("sweep"));
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn charts_are_small_and_self_contained() {
-        for study in [sample_study::study(), sample_study::swept()] {
+        for study in [sample_study::study(), sample_study::sweep_study()] {
             for picture in draw_study(&study) {
                 let Picture { name, svg, .. } = &picture;
                 assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{name}");
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn other_cases_name_themselves() {
-        let pictures = draw_study(&sample_study::swept());
+        let pictures = draw_study(&sample_study::sweep_study());
         for picture in pictures.iter().filter(|p| !["section", "monte-carlo"].contains(&p.name.as_str())) {
             let words = format!("{}{}{}", picture.title, picture.svg, picture.caption);
             assert!(words.contains("μ 0.3"), "{}", picture.name);

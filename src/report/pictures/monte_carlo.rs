@@ -1,9 +1,9 @@
-//! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the
-//! critical angle.
+//! Picture of the Monte Carlo results: quantiles of the speed, share of the draws in their band, histogram of
+//! the critical angle.
 
 use super::super::rounding::plain;
 use super::super::words::{bands_words, criterion_words, degrees};
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::look::{angle_panel, edges};
 use super::panel::{COLOURS, Curve, Dash, Fill, Panel, points};
 use crate::data::{Criterion, QuantileCurves, Study};
@@ -30,20 +30,20 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         found.uncertain.seed,
         plain(found.band_percent, 3)
     );
-    Plate::new(name, title, caption).or(NOTHING).picture(panels.as_ref().map_or(&[], |panels| panels))
+    Figure::new(name, title, caption).empty(NOTHING).picture(panels.as_ref().map_or(&[], |panels| panels))
 }
 
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
     let x = &study.monte_carlo.angle_deg;
     let mut panel = angle_panel(&study.request, "Slap-down speed", "slap-down speed, m/s");
     let fill = |label: &str, opacity, low, high| {
-        Fill::new(COLOURS[0], opacity, Fill::between(x, low, high)).named(label)
+        Fill::new(COLOURS[0], opacity, Fill::band(x, low, high)).label(label)
     };
     panel.fills = vec![
         fill("95 % of the draws", 0.22, &speed.q025, &speed.q975),
         fill("50 %", 0.40, &speed.q25, &speed.q75),
     ];
-    panel.lines = vec![Curve::new(COLOURS[0], points(x, &speed.q50, [1.0, 1.0])).named("median")];
+    panel.lines = vec![Curve::new(COLOURS[0], points(x, &speed.q50, [1.0, 1.0])).label("median")];
     panel
 }
 
@@ -55,7 +55,7 @@ fn shares(study: &Study) -> Panel {
     panel.height = 300;
     let line = |label: &str, colour: usize, dash, shares: &[f64]| {
         let points = points(&found.angle_deg, shares, [1.0, 100.0]);
-        Curve::new(COLOURS[colour], points).named(label).broken(dash)
+        Curve::new(COLOURS[colour], points).label(label).broken(dash)
     };
     for q in &found.quantiles {
         let (colour, dash) = match q.criterion {
@@ -95,7 +95,7 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
     panel
 }
 
-/// From which to which angle each bar goes, and its height, percent of the draws.
+/// Angles of each bar, and its height, percent of the draws.
 fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<((f64, f64), f64)> {
     let all = counts.iter().map(|count| f64::from(*count)).sum::<f64>().max(1.0);
     let bar = |(ends, count): (&[f64], &u32)| ((ends[0], ends[1]), 100.0 * f64::from(*count) / all);

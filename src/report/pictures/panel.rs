@@ -1,5 +1,5 @@
-//! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the
-//! size, so that its whole-pixel coordinates stay fine.
+//! Content of a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the size, so
+//! that its whole-pixel coordinates stay fine.
 
 use crate::numerics::{as_f64, extent};
 use std::ops::Range;
@@ -19,10 +19,11 @@ impl std::fmt::Display for Colour {
 
 pub(crate) const INK: Colour = Colour(38, 42, 48);
 pub(crate) const GREY: Colour = Colour(110, 116, 124);
-/// What is beyond its limit.
+/// Colour of values beyond their limit.
 pub(crate) const ALARM: Colour = Colour(179, 38, 30);
 
-/// Colours that also readers with a colour vision deficiency tell apart (Okabe & Ito 2008), darkest first.
+/// Colours that readers with a colour vision deficiency can distinguish too (Okabe & Ito 2008), darkest
+/// first.
 pub(crate) const COLOURS: [Colour; 7] = [
     Colour(0, 114, 178),
     Colour(213, 94, 0),
@@ -33,10 +34,10 @@ pub(crate) const COLOURS: [Colour; 7] = [
     Colour(90, 90, 90),
 ];
 
-/// How a line is broken.
+/// Dash of a line.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum Dash {
-    /// Not at all.
+    /// Solid.
     #[default]
     Solid,
     /// Into long pieces.
@@ -48,7 +49,7 @@ pub(crate) enum Dash {
 }
 
 impl Dash {
-    /// Lengths of piece and gap in drawing units; `None` where it is not broken.
+    /// Lengths of dash and gap in drawing units; `None` for a solid line.
     pub(super) fn pieces(self) -> Option<[u32; 2]> {
         match self {
             Self::Solid => None,
@@ -59,7 +60,7 @@ impl Dash {
     }
 }
 
-/// Points of these places and values, each times its factor.
+/// Points from positions and values, each times its factor.
 pub(crate) fn points(x: &[f64], y: &[f64], factors: [f64; 2]) -> Vec<(f64, f64)> {
     x.iter().zip(y).map(|(x, y)| (x * factors[0], y * factors[1])).collect()
 }
@@ -67,7 +68,7 @@ pub(crate) fn points(x: &[f64], y: &[f64], factors: [f64; 2]) -> Vec<(f64, f64)>
 /// One line.
 #[derive(Clone)]
 pub(crate) struct Curve {
-    /// Its name in the legend; `None` keeps it out.
+    /// Name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
     pub(crate) colour: Colour,
     /// 0 to 1.
@@ -76,7 +77,7 @@ pub(crate) struct Curve {
     pub(crate) stroke: u32,
     pub(crate) dash: Dash,
     pub(crate) points: Vec<(f64, f64)>,
-    /// How far samples lie apart along x, where points were left out; `None`: as far as the points.
+    /// Distance of samples along x, if points were omitted; `None`: that of the points.
     pub(crate) step: Option<f64>,
 }
 
@@ -86,8 +87,8 @@ impl Curve {
         Self { label: None, colour, opacity: 1.0, stroke: 4, dash: Dash::Solid, points, step: None }
     }
 
-    /// With its name in the legend.
-    pub(crate) fn named(self, label: impl Into<String>) -> Self {
+    /// Sets the name in the legend.
+    pub(crate) fn label(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 
@@ -99,7 +100,7 @@ impl Curve {
 
 /// Areas of one colour, under the lines.
 pub(crate) struct Fill {
-    /// Its name in the legend; `None` keeps it out.
+    /// Name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
     pub(crate) colour: Colour,
     /// 0 to 1.
@@ -114,13 +115,13 @@ impl Fill {
         Self { label: None, colour, opacity, areas }
     }
 
-    /// With its name in the legend.
-    pub(crate) fn named(self, label: impl Into<String>) -> Self {
+    /// Sets the name in the legend.
+    pub(crate) fn label(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 
     /// The area between `low` and `high` over `x`, open where either is missing.
-    pub(crate) fn between(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
+    pub(crate) fn band(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
         let points: Vec<(f64, [f64; 2])> =
             x.iter().zip(low.iter().zip(high)).map(|(x, (low, high))| (*x, [*low, *high])).collect();
         let is_open = |(_, ends): &(f64, [f64; 2])| !ends.iter().all(|end| end.is_finite());
@@ -147,8 +148,8 @@ pub(crate) enum PointShape {
 }
 
 impl PointShape {
-    /// Of the points at this place among others.
-    pub(crate) fn of(index: usize) -> Self {
+    /// Shape for the points at this index.
+    pub(crate) fn from_index(index: usize) -> Self {
         [Self::Dot, Self::Square][index % 2]
     }
 }
@@ -156,7 +157,7 @@ impl PointShape {
 /// Points of one look.
 #[derive(Clone)]
 pub(crate) struct Points {
-    /// Its name in the legend; `None` keeps it out.
+    /// Name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
     pub(crate) colour: Colour,
     pub(crate) shape: PointShape,
@@ -172,8 +173,8 @@ impl Points {
         Self { label: None, colour, shape, radius: 10, is_hollow: false, at }
     }
 
-    /// With their name in the legend.
-    pub(crate) fn named(self, label: impl Into<String>) -> Self {
+    /// Sets the name in the legend.
+    pub(crate) fn label(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 }
@@ -192,13 +193,13 @@ pub(crate) struct RowWords {
     pub(crate) is_heading: bool,
 }
 
-/// How values lie on an axis.
+/// Scale of an axis.
 #[derive(Clone, Default, PartialEq)]
 pub(crate) enum AxisScale {
     #[default]
     Linear,
     Logarithmic,
-    /// One below the other, a unit each, the last one from 0 to 1.
+    /// Rows below one another, one unit each, the last one from 0 to 1.
     Rows(Vec<RowWords>),
 }
 
@@ -207,7 +208,7 @@ pub(crate) enum AxisScale {
 pub(crate) struct PanelAxis {
     pub(crate) label: String,
     pub(crate) scale: AxisScale,
-    /// Its ends; `None`: as far as the lines reach.
+    /// Ends of the axis; `None`: as far as the lines reach.
     pub(crate) range: Option<(f64, f64)>,
 }
 
@@ -217,13 +218,13 @@ impl PanelAxis {
         Self { label: label.into(), ..Self::default() }
     }
 
-    /// With powers of ten.
+    /// Makes the axis logarithmic, with powers of ten.
     pub(crate) fn logarithmic(self) -> Self {
         Self { scale: AxisScale::Logarithmic, ..self }
     }
 
-    /// With these ends.
-    pub(crate) fn over(self, range: Option<(f64, f64)>) -> Self {
+    /// Sets the ends.
+    pub(crate) fn range(self, range: Option<(f64, f64)>) -> Self {
         Self { range, ..self }
     }
 
@@ -232,13 +233,13 @@ impl PanelAxis {
         if self.scale == AxisScale::Logarithmic { value.log10() } else { value }
     }
 
-    /// Whether it has a place for the value.
+    /// True if the axis has a place for the value.
     fn holds(&self, value: f64) -> bool {
         value.is_finite() && (value > 0.0 || self.scale != AxisScale::Logarithmic)
     }
 
-    /// Smallest and largest of what it shows, with some air around it.
-    fn around(&self, values: impl Iterator<Item = f64>, air: f64) -> Range<f64> {
+    /// Smallest and largest of the values shown, with some air around them.
+    fn value_range(&self, values: impl Iterator<Item = f64>, air: f64) -> Range<f64> {
         if let Some((from, to)) = self.range {
             return from..to;
         }
@@ -285,7 +286,7 @@ impl Panel {
     }
 
     /// An empty panel of rows of this height, with room for their words at the left and the right.
-    pub(crate) fn of_rows(rows: Vec<RowWords>, row_height: u32, sides: (u32, u32)) -> Self {
+    pub(crate) fn from_rows(rows: Vec<RowWords>, row_height: u32, sides: (u32, u32)) -> Self {
         let count = u32::try_from(rows.len()).unwrap_or(1).max(1);
         let range = Some((0.0, count.into()));
         let y = PanelAxis { scale: AxisScale::Rows(rows), range, ..PanelAxis::default() };
@@ -297,7 +298,7 @@ impl Panel {
         self.y_range().end - 0.5 - as_f64(row)
     }
 
-    /// With room beside the first and the last of what is drawn: this share of the way between them.
+    /// Leaves room beside the first and the last of the values: this share of the distance between them.
     pub(crate) fn with_air(mut self, share: f64) -> Self {
         let Range { start, end } = self.x_range();
         let air = share * (end - start).max(1.0);
@@ -306,7 +307,7 @@ impl Panel {
     }
 
     /// Every point that can be drawn.
-    pub(super) fn drawn(&self) -> impl Iterator<Item = &(f64, f64)> {
+    pub(super) fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
         let lines = self.lines.iter().flat_map(|line| &line.points);
         let areas = self.fills.iter().flat_map(|fill| fill.areas.iter().flatten());
         let points = self.points.iter().flat_map(|points| &points.at);
@@ -315,11 +316,11 @@ impl Panel {
 
     /// Ends of the horizontal axis.
     pub(crate) fn x_range(&self) -> Range<f64> {
-        self.x.around(self.drawn().map(|p| p.0), 0.0)
+        self.x.value_range(self.points().map(|p| p.0), 0.0)
     }
 
     /// Ends of the vertical axis.
     pub(super) fn y_range(&self) -> Range<f64> {
-        self.y.around(self.drawn().map(|p| p.1), 0.06)
+        self.y.value_range(self.points().map(|p| p.1), 0.06)
     }
 }

@@ -1,9 +1,8 @@
-//! The ways of a body to drawings of where it is from first contact to the slap-down, as Figs. 2 and 3 of the
-//! paper.
+//! Drawings of the positions of a body from first contact to the slap-down, as in Figs. 2 and 3 of the paper.
 
 use super::super::rounding::{fixed, plain};
 use super::super::words::case_words;
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::panel::{COLOURS, Curve, Dash, INK, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::data::{Body, BodyPath, Pose, Study};
@@ -15,11 +14,11 @@ const WORDS: f64 = 50.0;
 
 /// Body outlines at even times, one drawing a contact law and k.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
-    let plate = |caption| Plate::new(name, "Positions of the cask", caption);
+    let plate = |caption| Figure::new(name, "Positions of the cask", caption);
     let Some(first) = study.paths.first() else {
         let nothing =
             ("There is nothing to show.", "No case goes from one impact to the slap-down in one way.");
-        return plate(String::new()).or(nothing).picture(&[]);
+        return plate(String::new()).empty(nothing).picture(&[]);
     };
     let all = || study.paths.iter().flat_map(|p| &p.poses).flat_map(|pose| corners(&first.body, pose));
     let [left_m, right_m, top_m] = all().fold([0.0, 0.0, 0.0], |[left, right, top]: [f64; 3], (x, z)| {
@@ -51,10 +50,10 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         first.body.model.as_str(),
         plain(study.request.angle_deg, 4)
     );
-    plate(caption).drawn(svg, bottom, &cases)
+    plate(caption).into_picture(svg, bottom, &cases)
 }
 
-/// One way: the outline at each pose, the target, the way of S.
+/// Draws one path: the outline at each pose, the target, the path of S.
 fn draw(svg: &mut Svg, path: &BodyPath, place: &dyn Fn((f64, f64)) -> (f64, f64)) {
     let last = path.poses.len() - 1;
     for (i, pose) in path.poses.iter().enumerate() {

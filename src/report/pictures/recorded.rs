@@ -1,26 +1,27 @@
-//! A source of a recording, read before there is a cask file, to its curve and its spectrum.
+//! Curve and spectrum of a source of a recording, read before there is a cask file.
 
 use super::super::text::moment;
 use super::curves::TIME_LABEL;
-use super::draw::{Picture, Plate};
+use super::draw::{Figure, Picture};
 use super::live::EVERY_SAMPLE;
-use super::live::thinned;
+use super::live::thin;
 use super::panel::{COLOURS, Curve, Mark, Panel, PanelAxis};
 use crate::data::{Channel, ChannelLook, is_number};
 use crate::numerics::spectrum::magnitude;
 use std::ops::Range;
 
-/// What a sample of a chart takes of a page where some are left out, and where none is, bytes.
+/// Bytes of a sample in the chart of a page, if some are omitted, and if none is.
 const THINNED_BYTES: usize = 11;
 const EVEN_BYTES: usize = 6;
 
-/// A longer record has the spectrum of a part: the transform of all would take more than to read it.
+/// Longest record that is transformed as a whole: of a longer one a part, since the transform would take
+/// longer than reading it.
 const MOST_TRANSFORMED: usize = 1 << 18;
 /// The largest value of each such step is drawn.
 const STEPS_A_DECADE: f64 = 80.0;
 
-/// The curve with what looks like a fall and an impact, its chart in so many bytes, and the spectrum; under
-/// this name with this title.
+/// Picture of the curve with the supposed fall and impact, its chart in a limited number of bytes, and the
+/// spectrum; with this name and title.
 pub(crate) fn recorded(
     channel: &Channel,
     look: &ChannelLook,
@@ -31,13 +32,14 @@ pub(crate) fn recorded(
     [curve(channel, look, name, title, chart_bytes), spectrum(channel, look, name, title)]
 }
 
-/// The unit, or other words where none is stated.
+/// The unit, or other words if none is stated.
 fn unit<'a>(channel: &'a Channel, or: &'a str) -> &'a str {
     if channel.unit.is_empty() { or } else { &channel.unit }
 }
 
-/// So many samples, a quarter of them before the impact, or before what lies farthest from the level.
-fn around(channel: &Channel, look: &ChannelLook, count: usize) -> Range<usize> {
+/// Range of this many samples, a quarter of them before the impact, or before the sample farthest from the
+/// level.
+fn samples_around(channel: &Channel, look: &ChannelLook, count: usize) -> Range<usize> {
     let [low, high] = [&look.smallest, &look.largest].map(|extreme| (extreme.value - look.level).abs());
     let farthest = if low > high { &look.smallest } else { &look.largest };
     let centre = channel.index_at(look.impact_s.unwrap_or(farthest.time_s));
@@ -53,12 +55,12 @@ fn stretch_words(channel: &Channel, stretch: &Range<usize>) -> String {
 
 fn curve(channel: &Channel, look: &ChannelLook, name: &str, title: &str, chart_bytes: usize) -> Picture {
     let count = channel.samples.len();
-    // Half of a chart that is thinned is for the whole record, half for every sample where most happens.
+    // Half of a thinned chart is for the whole record, half for every sample around the largest event.
     let (each, near, note) = if count * EVEN_BYTES <= chart_bytes {
         (1, 0..count, EVERY_SAMPLE.to_owned())
     } else {
         let kept = (chart_bytes / THINNED_BYTES).max(4);
-        let (each, near) = ((4 * count).div_ceil(kept), around(channel, look, kept / 2));
+        let (each, near) = ((4 * count).div_ceil(kept), samples_around(channel, look, kept / 2));
         let all = stretch_words(channel, &near);
         let note = format!("Thinned: the lowest and the highest of each {each} samples, and all {all}.");
         (each, near, note)
@@ -66,9 +68,9 @@ fn curve(channel: &Channel, look: &ChannelLook, name: &str, title: &str, chart_b
     let value = |i: usize| Some(channel.samples.get(i)).filter(|v| is_number(*v)).unwrap_or(f64::NAN);
     let mut points = Vec::new();
     for (stretch, each) in [(0..near.start, each), (near.clone(), 1), (near.end..count, each)] {
-        // A gap may reach over the ends of a stretch.
+        // A gap may extend beyond the ends of a stretch.
         points.extend(stretch.clone().next().filter(|first| value(*first).is_nan()).map(|i| (i, f64::NAN)));
-        points.extend(thinned(stretch.map(|i| (i, value(i))), each));
+        points.extend(thin(stretch.map(|i| (i, value(i))), each));
     }
     let points = points.into_iter().map(|(i, value)| (channel.time_s(i) * 1e3, value)).collect();
     let step = Some(1e3 / channel.sample_rate_hz);
@@ -82,12 +84,12 @@ fn curve(channel: &Channel, look: &ChannelLook, name: &str, title: &str, chart_b
         ..Panel::new(title, TIME_LABEL, format!("value, {}", unit(channel, "unit not stated")), 300)
     };
     let caption = if each == 1 { "Every sample." } else { &note };
-    let plate = Plate::new(name, "Curve", caption.to_owned()).live();
-    Plate { thinned: Some(note), ..plate }.picture(&[panel])
+    let plate = Figure::new(name, "Curve", caption.to_owned()).zoomable();
+    Figure { thinned: Some(note), ..plate }.picture(&[panel])
 }
 
 fn spectrum(channel: &Channel, look: &ChannelLook, name: &str, title: &str) -> Picture {
-    let part = around(channel, look, channel.samples.len().min(MOST_TRANSFORMED));
+    let part = samples_around(channel, look, channel.samples.len().min(MOST_TRANSFORMED));
     let caption = format!(
         "One-sided amplitude spectrum {}, less the level; both axes logarithmic, the largest value of each \
          {STEPS_A_DECADE}th of a decade.",
@@ -108,7 +110,7 @@ fn spectrum(channel: &Channel, look: &ChannelLook, name: &str, title: &str) -> P
         .map(|label| PanelAxis::new(label).logarithmic());
     let line = Curve { stroke: 2, ..Curve::new(COLOURS[0], points) };
     let panel = Panel { lines: vec![line], ..Panel::new(title, x, y, 240) };
-    Plate::new(&format!("{name}-spectrum"), "Spectrum", caption).picture(&[panel])
+    Figure::new(&format!("{name}-spectrum"), "Spectrum", caption).picture(&[panel])
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! The predictions of a sweep to one picture: speed over what was swept, a line a case.
+//! Picture of a sweep's predictions: speed over the swept variable, a line per case.
 
 use super::super::rounding::plain;
-use super::super::text::distinct;
+use super::super::text::dedup;
 use super::super::words::{contact_words, variable_words};
-use super::draw::{Picture, Plate};
-use super::look::{Look, NO_SLAP_DOWN, apart, body_words, line_sentences, spread};
+use super::draw::{Figure, Picture};
+use super::look::{Look, NO_SLAP_DOWN, body_words, line_sentences, pick_evenly, split_turnovers};
 use super::panel::{COLOURS, Curve, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
@@ -14,14 +14,14 @@ const MOST_LINES: usize = 7;
 /// Panels of one picture: a page.
 const MOST_PANELS: usize = 4;
 
-/// The picture: the variable with the most values along the axis, the next a line each, further ones at their
-/// middle value.
+/// Draws the picture: the variable with the most values along the axis, the next one as lines, further ones
+/// at their middle value.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let mut sweeps: Vec<&Sweep> = study.request.sweeps.iter().collect();
-    // Stable: of equally many the one named first.
+    // The sort is stable: among equal numbers of values the variable named first wins.
     sweeps.sort_by_key(|sweep| std::cmp::Reverse(sweep.values.len()));
     let Some((along, others)) = sweeps.split_first() else {
-        return Plate::new(name, TITLE, "").or(NO_SLAP_DOWN).picture(&[]);
+        return Figure::new(name, TITLE, "").empty(NO_SLAP_DOWN).picture(&[]);
     };
     let held: Vec<(SweepVariable, f64)> = others
         .iter()
@@ -42,14 +42,14 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         "Magnitude of the velocity of the second end just before it strikes. {}{fixed}{left_out}",
         line_sentences(&panels)
     );
-    Plate::new(name, TITLE, caption).or(NO_SLAP_DOWN).picture(&panels)
+    Figure::new(name, TITLE, caption).empty(NO_SLAP_DOWN).picture(&panels)
 }
 
 fn is_swept(study: &Study, variable: SweepVariable) -> bool {
     study.request.sweeps.iter().any(|sweep| sweep.variable == variable)
 }
 
-/// What a line or a panel is for: a body, a contact law and k, any one where friction or k is swept.
+/// Case of a line or a panel: a body, a contact law and k; any, if friction or k is swept.
 struct SweepCase<'a> {
     model: BodyModel,
     contact: Contact,
@@ -59,12 +59,12 @@ struct SweepCase<'a> {
     rows: Vec<&'a PredictionRow>,
 }
 
-/// The cases of the rows at the values that are held, each with its rows.
+/// Cases of the rows at the fixed values, each with its rows.
 fn cases<'a>(study: &'a Study, held: &[(SweepVariable, f64)]) -> Vec<SweepCase<'a>> {
     let friction_swept = is_swept(study, SweepVariable::Friction);
     let k_swept = is_swept(study, SweepVariable::K);
     let mut cases: Vec<SweepCase> = Vec::new();
-    for row in study.rows.iter().filter(|row| held.iter().all(|(v, at)| is_at(row, *v, *at))) {
+    for row in study.rows.iter().filter(|row| held.iter().all(|(v, at)| has_value(row, *v, *at))) {
         let p = &row.prediction;
         let (contact, k) =
             (if friction_swept { Contact::Rough } else { p.contact }, if k_swept { 0.0 } else { p.k });
@@ -85,10 +85,10 @@ fn cases<'a>(study: &'a Study, held: &[(SweepVariable, f64)]) -> Vec<SweepCase<'
     cases
 }
 
-/// One variable: a panel a body, a line a contact law and k.
+/// Picture of one variable: a panel per body, a line per contact law and k.
 fn curves(study: &Study, along: &Sweep, mut cases: Vec<SweepCase>) -> (Vec<Panel>, String) {
-    let contacts = distinct(cases.iter().map(|case| case.contact));
-    let look = Look::of(&contacts, &cases.iter().map(|case| case.k).collect::<Vec<f64>>());
+    let contacts = dedup(cases.iter().map(|case| case.contact));
+    let look = Look::new(&contacts, &cases.iter().map(|case| case.k).collect::<Vec<f64>>());
     cases.retain(|case| look.shows(case.contact, case.k));
     cases.sort_by_key(|case| look.place(case.contact, case.k));
     let panels = [BodyModel::Rod, BodyModel::Body].map(|model| {
@@ -96,14 +96,14 @@ fn curves(study: &Study, along: &Sweep, mut cases: Vec<SweepCase>) -> (Vec<Panel
             let (points, turns_over) = points(case.rows.iter().copied(), along.variable);
             let line = look.line(case.contact, case.k, points);
             let label = Some(case.words.clone()).filter(|words| !words.is_empty());
-            apart(Curve { label, ..line }, &turns_over)
+            split_turnovers(Curve { label, ..line }, &turns_over)
         });
         panel(study, along, model, "", lines.collect())
     });
-    (panels.into(), look.left_out())
+    (panels.into(), look.left_out_sentence())
 }
 
-/// Two variables: a panel a case, a line a value of the second variable.
+/// Picture of two variables: a panel per case, a line per value of the second variable.
 fn families(
     study: &Study,
     (along, second): (&Sweep, &Sweep),
@@ -114,13 +114,13 @@ fn families(
         cases.retain(|case| case.model == BodyModel::Body);
     }
     cases.truncate(MOST_PANELS);
-    let values = spread(&second.values, MOST_LINES);
+    let values = pick_evenly(&second.values, MOST_LINES);
     let panels = cases.iter().map(|case| {
         let lines = values.iter().enumerate().flat_map(|(i, value)| {
-            let of_line = case.rows.iter().copied().filter(|row| is_at(row, second.variable, *value));
+            let of_line = case.rows.iter().copied().filter(|row| has_value(row, second.variable, *value));
             let (points, turns_over) = points(of_line, along.variable);
             let line = Curve::new(COLOURS[i % COLOURS.len()], points);
-            apart(line.named(value_words(second.variable, *value)), &turns_over)
+            split_turnovers(line.label(value_words(second.variable, *value)), &turns_over)
         });
         panel(study, along, case.model, &case.words, lines.collect())
     });
@@ -136,7 +136,7 @@ fn families(
 fn panel(study: &Study, along: &Sweep, model: BodyModel, case: &str, lines: Vec<Curve>) -> Panel {
     let body = body_words(model, &study.cask_file.cask, !is_swept(study, SweepVariable::Length));
     let ends = along.values.first().copied().zip(along.values.last().copied());
-    let x = PanelAxis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to));
+    let x = PanelAxis::new(variable_words(along.variable)).range(ends.filter(|(from, to)| from < to));
     let title = if case.is_empty() { body } else { format!("{body}, {case}") };
     Panel { lines, ..Panel::new(title, x, "slap-down speed, m/s", 380) }
 }
@@ -153,8 +153,8 @@ fn value_words(variable: SweepVariable, value: f64) -> String {
     }
 }
 
-/// The value of what is swept; `None` where a row has none.
-fn value_of(row: &PredictionRow, variable: SweepVariable) -> Option<f64> {
+/// The value of the swept variable; `None` if a row has none.
+fn swept_value(row: &PredictionRow, variable: SweepVariable) -> Option<f64> {
     match variable {
         SweepVariable::Angle => Some(row.angle_deg),
         SweepVariable::K => Some(row.prediction.k),
@@ -168,12 +168,13 @@ fn value_of(row: &PredictionRow, variable: SweepVariable) -> Option<f64> {
     }
 }
 
-/// Whether a row was made at this value, but for round-off.
-fn is_at(row: &PredictionRow, variable: SweepVariable, value: f64) -> bool {
-    value_of(row, variable).is_some_and(|v| (v - value).abs() <= 1e-9 * value.abs().max(1.0))
+/// True if a row was made at this value, except for round-off.
+fn has_value(row: &PredictionRow, variable: SweepVariable, value: f64) -> bool {
+    swept_value(row, variable).is_some_and(|v| (v - value).abs() <= 1e-9 * value.abs().max(1.0))
 }
 
-/// Speed over the variable, ascending, NaN where the second end never strikes; and where the cask turns over.
+/// Speed over the variable, ascending, NaN if the second end never strikes; and true where the cask turns
+/// over.
 fn points<'a>(
     rows: impl Iterator<Item = &'a PredictionRow>,
     along: SweepVariable,
@@ -181,7 +182,7 @@ fn points<'a>(
     let mut points: Vec<((f64, f64), bool)> = rows
         .filter_map(|row| {
             let speed_m_s = row.prediction.slap_down_speed_m_s.unwrap_or(f64::NAN);
-            Some(((value_of(row, along)?, speed_m_s), row.prediction.turns_over()))
+            Some(((swept_value(row, along)?, speed_m_s), row.prediction.turns_over()))
         })
         .collect();
     points.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
@@ -195,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_panel_a_case_and_a_line_a_value() {
-        let study = sample_study::swept();
+        let study = sample_study::sweep_study();
         let picture = picture(&study, "sweep");
         // Two bodies with one contact law and one k; three lengths over the angle.
         for words in ["Thin rod, μ 0.3, k = 0.5", "section 0.792 m, μ 0.3, k = 0.5", "l = 4 m", "l = 6 m"] {
@@ -206,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_third_variable_is_held_at_its_middle() {
-        let mut study = sample_study::swept();
+        let mut study = sample_study::sweep_study();
         study.request.sweeps.push(Sweep { variable: SweepVariable::DropHeight, values: vec![8.0, 9.0] });
         let picture = picture(&study, "sweep");
         assert!(picture.caption.contains("Drawn at drop 9 m"), "{}", picture.caption);

@@ -1,4 +1,4 @@
-//! A study of predictions to its files, page, JSON, CSV and pictures, and to the table of the terminal.
+//! Files of a study: page, JSON, CSV and pictures; and the table of the terminal.
 
 mod critical;
 mod models;
@@ -29,10 +29,11 @@ pub fn study_table(study: &Study, width: usize) -> String {
     as_text::text(&study::document(study), width)
 }
 
-/// Every file of a study by name, in the order in which a reader meets them.
+/// Every file of a study by name, in the order for a reader.
 ///
 /// # Errors
-/// [`ReportError`] where one of them cannot be made; then none is returned.
+///
+/// [`ReportError`] if one of them cannot be made; then none is returned.
 pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let (pictures, (json, csv)) = rayon::join(
         || pictures::draw_study(study),
@@ -44,10 +45,11 @@ pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError>
     Ok(study_file_names(&study.request).into_iter().zip(bytes).collect())
 }
 
-/// `prediction.json`.
+/// Writes `prediction.json`.
 ///
 /// # Errors
-/// [`ReportError::Json`] where the writer fails.
+///
+/// [`ReportError::Json`] if the writer fails.
 pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
     let file = &study.cask_file;
     let input = json!({"cask": file.path.display().to_string(), "cask_sha256": file.sha256});
@@ -66,7 +68,7 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
     Ok([b"{\n", &members.join(&b",\n"[..])[..], b"\n}\n"].concat())
 }
 
-/// A list, a line an entry; of seventy thousand predictions each core writes some.
+/// Writes a list, one entry per line; for seventy thousand predictions each core writes some.
 fn entries<T: Serialize + Sync>(list: &[T]) -> Result<Vec<u8>, serde_json::Error> {
     let lines: Result<Vec<Vec<u8>>, serde_json::Error> = list.par_iter().map(to_vec).collect();
     let lines = lines?.join(&b",\n    "[..]);
@@ -76,7 +78,7 @@ fn entries<T: Serialize + Sync>(list: &[T]) -> Result<Vec<u8>, serde_json::Error
 /// A head, and what makes a cell below it.
 type CsvColumn = (&'static str, fn(&PredictionRow) -> String);
 
-/// Its columns; scripts know the first fourteen, and what follows them may grow.
+/// Columns of the table; scripts know the first fourteen, and more may follow them.
 const COLUMNS: [CsvColumn; 24] = [
     ("angle_deg", |row| row.angle_deg.to_string()),
     ("model", |row| row.prediction.model.as_str().to_owned()),
@@ -104,10 +106,11 @@ const COLUMNS: [CsvColumn; 24] = [
     ("cog_vertical_at_slap_down_m_s", |row| number(row.prediction.cog.vertical_at_slap_down_m_s)),
 ];
 
-/// The CSV of `predict`.
+/// Writes the CSV of `predict`.
 ///
 /// # Errors
-/// [`ReportError::Csv`] where the writer fails.
+///
+/// [`ReportError::Csv`] if the writer fails.
 fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
     let head = COLUMNS.map(|(head, _)| head.to_owned());
     records(std::iter::once(head).chain(rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)))))
@@ -121,7 +124,7 @@ mod tests {
 
     #[test]
     fn the_files_are_those_that_the_request_names() {
-        for study in [sample_study::study(), sample_study::swept(), sample_study::without_slap_down()] {
+        for study in [sample_study::study(), sample_study::sweep_study(), sample_study::without_slap_down()] {
             let files = study_files(&study).unwrap();
             let names = study_file_names(&study.request);
             assert!(files.iter().map(|(name, _)| name).eq(&names), "{names:?}");
@@ -131,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_same_study_gives_the_same_bytes() {
-        let study = sample_study::swept();
+        let study = sample_study::sweep_study();
         assert_eq!(study_files(&study).unwrap(), study_files(&study).unwrap());
     }
 

@@ -1,4 +1,4 @@
-//! The ladder of models, and the plan of a measurement, to chapters.
+//! Chapters on the models, and on the plan of a measurement.
 
 use crate::data::{
     ChannelNeeds, ExpectedIntervals, LADDER_TOLERANCE_PERCENT, Ladder, MeasuringPlan, Rung, Study,
@@ -8,75 +8,75 @@ use crate::report::rounding::{optional_fixed, percent, plain, significant};
 use crate::report::text::capital;
 use crate::report::words::{MOST_ON_PAGE, MOST_ROWS, OTHERS, case_words, contact_words, degrees, rung_short};
 
-/// Every rung's speed, and which suffices.
-pub(super) fn ladders(study: &Study) -> Chapter {
+/// Chapter on the speed of every model, and on the one that suffices.
+pub(super) fn models_chapter(study: &Study) -> Chapter {
     let tolerance = plain(LADDER_TOLERANCE_PERCENT, 3);
     let lead = format!(
         "Slap-down speed by each model, the simplest first; each adds one thing to the one before it. One \
          suffices where no richer one moves the speed by more than {tolerance} %."
     );
-    let lead = ChapterPart::lead(lead).only(Medium::Page);
+    let lead = ChapterPart::lead(lead).only_on(Medium::Page);
     match &study.ladders[..] {
         [] => Chapter::new(""),
         [one] => {
             let heading =
                 format!("Models at {}°, {}", degrees(one.angle_deg), case_words(one.contact, one.k));
-            Chapter::new(heading).with(lead).with(one_ladder(one)).with(ChapterPart::text(verdict(one)))
+            Chapter::new(heading).then(lead).then(compare_models(one)).then(ChapterPart::text(verdict(one)))
         }
         many => {
             let heading = format!("Models at {}°, each richer by one thing, m/s", degrees(many[0].angle_deg));
             let suffices =
                 format!("suffices: the simplest that no richer one moves by more than {tolerance} %.");
-            let adds = Rung::ALL.map(|rung| format!("{} – {}", rung_short(rung), rung.adds())).join("; ");
+            let adds = Rung::ALL.map(|rung| format!("{} – {}", rung_short(rung), rung.physics())).join("; ");
             let adds = ChapterPart::note(format!("{adds}. L is the first end, R the second."));
             Chapter::new(heading)
-                .with(lead)
-                .with(many_ladders(many))
-                .with(ChapterPart::note(suffices).only(Medium::Terminal))
-                .with(adds.only(Medium::Page))
+                .then(lead)
+                .then(compare_cases(many))
+                .then(ChapterPart::note(suffices).only_on(Medium::Terminal))
+                .then(adds.only_on(Medium::Page))
         }
     }
 }
 
-fn many_ladders(ladders: &[Ladder]) -> ChapterPart {
-    let mut table = ReportTable::of(ladders)
+fn compare_cases(ladders: &[Ladder]) -> ChapterPart {
+    let mut table = ReportTable::from_rows(ladders)
         .shape(TableShape::Fitting)
-        .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
-        .soft(Words::or("Contact", "contact"), |ladder| contact_words(ladder.contact))
+        .limit_rows(MOST_ROWS, MOST_ON_PAGE, OTHERS)
+        .line(Words::with_short("Contact", "contact"), |ladder| contact_words(ladder.contact))
         .number("k", |ladder| plain(ladder.k, 3));
     for (i, rung) in Rung::ALL.into_iter().enumerate() {
-        let head = Words::or(capital(&rung_short(rung)), rung_short(rung).replace(' ', "\n"));
+        let head = Words::with_short(capital(&rung_short(rung)), rung_short(rung).replace(' ', "\n"));
         table = table.number(head, move |ladder| {
             ladder
                 .steps
                 .get(i)
                 .map_or_else(String::new, |step| optional_fixed(step.prediction.slap_down_speed_m_s, 2))
         });
-        table = table.if_any(ladders.iter().any(|ladder| ladder.steps.len() > i));
+        table = table.show_if(ladders.iter().any(|ladder| ladder.steps.len() > i));
     }
-    let suffices = |ladder: &Ladder| Words::or(ladder.suffices.words(), rung_short(ladder.suffices));
-    table.text(Words::or("Suffices", "suffices"), suffices).into()
+    let suffices = |ladder: &Ladder| Words::with_short(ladder.suffices.words(), rung_short(ladder.suffices));
+    table.text(Words::with_short("Suffices", "suffices"), suffices).into()
 }
 
-fn one_ladder(ladder: &Ladder) -> ChapterPart {
+fn compare_models(ladder: &Ladder) -> ChapterPart {
     let name = |rung: Rung| {
         let mark = if rung == ladder.suffices { " (suffices)" } else { "" };
-        Words::or(format!("{}{mark}", rung.words()), rung_short(rung))
+        Words::with_short(format!("{}{mark}", rung.words()), rung_short(rung))
     };
-    ReportTable::of(&ladder.steps)
-        .chosen(|step| step.rung == ladder.suffices)
-        .head(Words::or("Model", "model"), |step| name(step.rung))
-        .text(Words::or("Adds", "adds"), |step| step.adds)
-        .number(Words::or("Speed, m/s", "v m/s"), |step| {
+    ReportTable::from_rows(&ladder.steps)
+        .mark_chosen(|step| step.rung == ladder.suffices)
+        .head(Words::with_short("Model", "model"), |step| name(step.rung))
+        .text(Words::with_short("Adds", "adds"), |step| step.adds)
+        .number(Words::with_short("Speed, m/s", "v m/s"), |step| {
             optional_fixed(step.prediction.slap_down_speed_m_s, 2)
         })
-        .number(Words::or("Change", "change"), |step| percent(step.change_percent))
+        .number(Words::with_short("Change", "change"), |step| percent(step.change_percent))
         .number("Impacts of the first end", |step| step.prediction.first_end_impacts.to_string())
-        .only(Medium::Page)
+        .only_on(Medium::Page)
         .into()
 }
 
-/// Which rung suffices, and what the richer ones would change.
+/// Sentence on the model that suffices, and the changes by the richer ones.
 fn verdict(ladder: &Ladder) -> String {
     if ladder.steps.last().is_some_and(|last| last.rung == ladder.suffices) {
         return "Only the last suffices: each simpler one is moved by a richer one.".to_owned();
@@ -91,19 +91,19 @@ fn verdict(ladder: &Ladder) -> String {
 const LEAD: &str = "What the drop at this angle needs, by the rules that `dropcheck check` judges a set-up \
                     by. Peaks: a half sine that throws the first end back with k = 1, without ringing.";
 
-/// What records the drop, and what would narrow its intervals.
+/// Chapter on the requirements of the recorder, and the measures that would narrow the intervals.
 pub(super) fn plan(plan: &MeasuringPlan) -> Chapter {
     let needs = &plan.needs;
-    let mut ranges = ReportTable::of(&needs.channels).head("Channel", |c| &c.name[..]);
+    let mut ranges = ReportTable::from_rows(&needs.channels).head("Channel", |c| &c.name[..]);
     for (i, peak) in needs.channels.iter().flat_map(|c| &c.peaks).take(lengths(&needs.channels)).enumerate() {
         let head = format!("Range above, g, impact of {} ms", plain(1e3 * peak.lasts_s, 3));
         ranges = ranges.number(head, move |c| c.peaks.get(i).map_or(String::new(), |p| plain(p.peak_g, 3)));
     }
     Chapter::new("Measuring plan")
-        .with(ChapterPart::lead(LEAD).only(Medium::Page))
-        .with(ChapterPart::text(in_short(plan)))
-        .with(ChapterPart::from(ReportTable::from(ranges)).only(Medium::Page))
-        .with(ChapterPart::lead(expected(plan)))
+        .then(ChapterPart::lead(LEAD).only_on(Medium::Page))
+        .then(ChapterPart::text(short_plan(plan)))
+        .then(ChapterPart::from(ReportTable::from(ranges)).only_on(Medium::Page))
+        .then(ChapterPart::lead(expected_words(plan)))
         .with_all((!plan.intervals.is_empty()).then(|| intervals(&plan.intervals)))
 }
 
@@ -111,7 +111,7 @@ fn lengths(channels: &[ChannelNeeds]) -> usize {
     channels.first().map_or(0, |channel| channel.peaks.len())
 }
 
-fn in_short(plan: &MeasuringPlan) -> String {
+fn short_plan(plan: &MeasuringPlan) -> String {
     let needs = &plan.needs;
     let peaks = (0..lengths(&needs.channels)).map(|i| {
         let of_length = || needs.channels.iter().filter_map(|channel| channel.peaks.get(i));
@@ -131,7 +131,7 @@ fn in_short(plan: &MeasuringPlan) -> String {
     )
 }
 
-fn expected(plan: &MeasuringPlan) -> String {
+fn expected_words(plan: &MeasuringPlan) -> String {
     match plan.why_no_intervals {
         Some(why) => format!("Expected intervals: none, since {why}."),
         None => format!(
@@ -143,7 +143,7 @@ fn expected(plan: &MeasuringPlan) -> String {
 }
 
 fn intervals(all: &[ExpectedIntervals]) -> ChapterPart {
-    ReportTable::of(all)
+    ReportTable::from_rows(all)
         .head(
             "Channels",
             |row| if row.with.is_empty() { "as stated".into() } else { format!("+ {}", row.with) },

@@ -1,8 +1,8 @@
-//! Predictions to a table: the columns that every report of them shares, and those of a sweep.
+//! Table of predictions: the columns that every report of them shares, and those of a sweep.
 
 use super::super::document::{ChapterPart, Medium, ReportTable, TableRows, TableShape, Words};
 use super::super::rounding::{fixed, optional_fixed, plain, significant};
-use super::super::words::{KEPT_SENTENCE, OVER_MARK, OVER_SENTENCE, contact_words, kept_mark};
+use super::super::words::{OVER_SENTENCE, REGIME_SENTENCE, TURNOVER_MARK, contact_words, regime_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
 
 /// More rows than this are not shown on a terminal: three screens.
@@ -14,10 +14,10 @@ const ENDS: usize = 12;
 /// Rows on a page; the CSV has them all.
 pub(super) const MOST_ON_PAGE: usize = 200;
 
-/// What marks a prediction whose first end strikes again.
+/// Mark of a prediction whose first end strikes again.
 const AGAIN_MARK: &str = "‡";
 
-/// Adds the columns of a prediction; `None` is a row that stands for those left out. On a terminal the heads
+/// Adds the columns of a prediction; `None` is a row that replaces the omitted ones. On a terminal the heads
 /// of a study take two lines, so that further columns have room.
 pub(in super::super) fn prediction_columns<'a, R>(
     rows: TableRows<'a, R>,
@@ -29,16 +29,16 @@ pub(in super::super) fn prediction_columns<'a, R>(
     };
     let contact = move |row: &'a R| {
         let Some(p) = prediction(row) else { return "…".into() };
-        let over = if p.turns_over() { OVER_MARK } else { "" };
-        let words = format!("{}{}{over}", contact_words(p.contact), kept_mark(p.regime));
+        let over = if p.turns_over() { TURNOVER_MARK } else { "" };
+        let words = format!("{}{}{over}", contact_words(p.contact), regime_mark(p.regime));
         let again = if in_study && p.first_end_impacts > 1 { AGAIN_MARK } else { "" };
-        Words::or(&words, format!("{words}{again}"))
+        Words::with_short(&words, format!("{words}{again}"))
     };
     let head = |full: &str, short: &str| {
-        Words::or(full, if in_study { short.into() } else { short.replace('\n', " ") })
+        Words::with_short(full, if in_study { short.into() } else { short.replace('\n', " ") })
     };
     rows.text(head("Model", "model"), cell(|p| p.model.as_str().to_owned()))
-        .soft(head("Contact", "contact"), contact)
+        .line(head("Contact", "contact"), contact)
         .number(head("k", "k"), cell(|p| plain(p.k, 3)))
         .number(head("Speed, m/s", "v\nm/s"), cell(|p| optional_fixed(p.slap_down_speed_m_s, 2)))
         .number(head("Vertical, m/s", "vz\nm/s"), cell(|p| optional_fixed(p.vertical_velocity_m_s, 2)))
@@ -52,10 +52,10 @@ pub(in super::super) fn prediction_columns<'a, R>(
 }
 
 fn metres(value_m: f64) -> Words {
-    Words::or(plain(value_m, 5), plain(value_m, 4))
+    Words::with_short(plain(value_m, 5), plain(value_m, 4))
 }
 
-/// Which columns the rows of a study need beside those of every prediction.
+/// Columns that the rows of a study need beside those of every prediction.
 struct Varying {
     lengths: bool,
     heights: bool,
@@ -63,7 +63,7 @@ struct Varying {
 }
 
 impl Varying {
-    fn of(rows: &[PredictionRow]) -> Self {
+    fn from_rows(rows: &[PredictionRow]) -> Self {
         let varies = |value: fn(&PredictionRow) -> f64| {
             rows.iter().any(|row| value(row).to_bits() != value(&rows[0]).to_bits())
         };
@@ -71,16 +71,16 @@ impl Varying {
         Self { lengths: varies(|row| row.length_m), heights: varies(|row| row.drop_height_m), held }
     }
 
-    /// With two more columns the closed form has no room left on a terminal; the CSV has it.
-    fn is_held_on(&self, medium: Medium) -> bool {
+    /// True if the closed form fits: with two more columns a terminal has no room for it; the CSV has it.
+    fn has_room_on(&self, medium: Medium) -> bool {
         self.held && !(self.lengths && self.heights && medium == Medium::Terminal)
     }
 }
 
-/// The predictions of a study as this medium shows them, and what their marks mean.
+/// The predictions of a study for this medium, and the meaning of their marks.
 pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterPart> {
-    let varying = Varying::of(all);
-    // The row in between stands for those left out.
+    let varying = Varying::from_rows(all);
+    // The row in between replaces the omitted ones.
     let rows: Vec<Option<&PredictionRow>> = if medium != Medium::Terminal {
         all.iter().take(MOST_ON_PAGE).map(Some).collect()
     } else if all.len() > MOST_ROWS {
@@ -93,35 +93,35 @@ pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterP
         |words: fn(&PredictionRow) -> Words| move |row: &Option<_>| row.map_or_else(|| "…".into(), words);
     let caption = "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down \
                    over before the first impact.";
-    let table = ReportTable::of(&rows)
+    let table = ReportTable::from_rows(&rows)
         .class("many")
         .shape(TableShape::Fitting)
         .caption(caption)
-        .number(Words::or("φ0, °", "φ0\n°"), cell(|row| plain(row.angle_deg, 6).into()))
-        .number(Words::or("Length, m", "l\nm"), cell(|row| metres(row.length_m)))
-        .if_any(varying.lengths)
-        .number(Words::or("Drop, m", "drop\nm"), cell(|row| metres(row.drop_height_m)))
-        .if_any(varying.heights);
+        .number(Words::with_short("φ0, °", "φ0\n°"), cell(|row| plain(row.angle_deg, 6).into()))
+        .number(Words::with_short("Length, m", "l\nm"), cell(|row| metres(row.length_m)))
+        .show_if(varying.lengths)
+        .number(Words::with_short("Drop, m", "drop\nm"), cell(|row| metres(row.drop_height_m)))
+        .show_if(varying.heights);
     let table = prediction_columns(table, |row| row.map(|row| &row.prediction), true)
         .number("Friction to stick", cell(|row| significant(row.prediction.friction_to_stick, 3).into()))
-        .only(Medium::Page)
+        .only_on(Medium::Page)
         .number("Impacts of first end", cell(|row| row.prediction.first_end_impacts.to_string().into()))
-        .only(Medium::Page)
+        .only_on(Medium::Page)
         .number(
-            Words::or("Closed form, m/s", "held\nm/s"),
+            Words::with_short("Closed form, m/s", "held\nm/s"),
             cell(|row| {
                 row.prediction.closed_form_speed_m_s.map_or("".into(), |speed| fixed(speed, 2).into())
             }),
         )
-        .if_any(varying.is_held_on(medium));
-    let notes = notes(all, medium, varying.is_held_on(medium));
+        .show_if(varying.has_room_on(medium));
+    let notes = notes(all, medium, varying.has_room_on(medium));
     let notes = notes.into_iter().map(ChapterPart::note);
-    [table.into()].into_iter().chain(notes).map(|passage| passage.only(medium)).collect()
+    [table.into()].into_iter().chain(notes).map(|passage| passage.only_on(medium)).collect()
 }
 
-/// What is dropped from where, and how fast it arrives.
+/// Title: the specimen, the height, and the impact speed.
 pub(super) fn title(rows: &[PredictionRow], file: &CaskFile) -> String {
-    let drop = if Varying::of(rows).heights {
+    let drop = if Varying::from_rows(rows).heights {
         String::new() // each row has its own
     } else {
         let (height, velocity) = (plain(file.drop.height_m, 5), plain(file.drop.impact_velocity_m_s, 5));
@@ -134,7 +134,7 @@ pub(super) fn title(rows: &[PredictionRow], file: &CaskFile) -> String {
     format!("{} · {drop}g {} m/s²{lasts}", file.cask.name, plain(file.drop.gravity_m_s2, 6))
 }
 
-/// What the marks and the dash mean, each once.
+/// Notes on the marks and the dash, each once.
 fn notes(rows: &[PredictionRow], medium: Medium, held: bool) -> Vec<String> {
     let on_terminal = medium == Medium::Terminal;
     let any = |wanted: &dyn Fn(&Prediction) -> bool| rows.iter().any(|row| wanted(&row.prediction));
@@ -154,7 +154,7 @@ fn notes(rows: &[PredictionRow], medium: Medium, held: bool) -> Vec<String> {
         left_out,
         any(&|p| p.slap_down_speed_m_s.is_none())
             .then(|| "– the second end never strikes by this impact alone.".to_owned()),
-        any(&|p| !kept_mark(p.regime).is_empty()).then(|| KEPT_SENTENCE.to_owned()),
+        any(&|p| !regime_mark(p.regime).is_empty()).then(|| REGIME_SENTENCE.to_owned()),
         any(&Prediction::turns_over).then(|| OVER_SENTENCE.to_owned()),
         (on_terminal && any(&|p| p.first_end_impacts > 1))
             .then(|| format!("{AGAIN_MARK} the first end strikes again before the second does.")),
@@ -169,7 +169,7 @@ fn notes(rows: &[PredictionRow], medium: Medium, held: bool) -> Vec<String> {
     notes.into_iter().flatten().collect()
 }
 
-/// The friction that sticking needs, where all rows of a body share it.
+/// Note on the friction that sticking needs, if all rows of a body share it.
 fn friction_note(rows: &[PredictionRow]) -> Option<String> {
     let needed = |model: BodyModel| {
         let mut of_model = rows.iter().map(|row| &row.prediction).filter(|p| p.model == model);

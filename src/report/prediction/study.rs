@@ -1,24 +1,24 @@
-//! A study to the document that the terminal and `prediction.html` show.
+//! Document of a study, for the terminal and `prediction.html`.
 
 use super::super::document::{
     Chapter, ChapterPart, Fact, Frame, Medium, PartContent, ReportDocument, ReportTable,
 };
 use super::super::pictures::study_names;
-use super::super::record::tested;
+use super::super::record::test_chapter;
 use super::super::rounding::{MISSING, fixed, plain};
 use super::super::words::{
     bands_words, contact_length_words, contact_words, criterion_value, degrees, range_words, variable_words,
 };
 use super::critical::{advice, critical, monte_carlo, speeds};
-use super::models::ladders;
+use super::models::models_chapter;
 use super::models::plan;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
 
-/// A longer table of predictions stands at the end of the page, not between the reader and what was found.
+/// A longer table of predictions goes to the end of the page, after the results.
 const MOST_ROWS_AHEAD: usize = 40;
 
-/// What the models leave out besides, a sentence or two a line.
+/// Other limits of the models, a sentence or two a line.
 const LIMITS: &str = include_str!("limits.txt");
 
 /// The whole document.
@@ -29,11 +29,11 @@ pub(super) fn document(study: &Study) -> ReportDocument {
     let is_long = study.rows.len() > MOST_ROWS_AHEAD;
     let later = format!("The {} predictions stand at the end of this page.", study.rows.len());
     let (ahead, at_end) = if is_long {
-        (vec![ChapterPart::text(later).only(Medium::Page)], on_page)
+        (vec![ChapterPart::text(later).only_on(Medium::Page)], on_page)
     } else {
         (on_page, Vec::new())
     };
-    let asked = ChapterPart::facts("Cases", asked(&study.request)).only(Medium::Page);
+    let asked = ChapterPart::facts("Cases", request_facts(&study.request)).only_on(Medium::Page);
     ReportDocument {
         page: Frame {
             title: format!("Prediction for {name}"),
@@ -48,28 +48,28 @@ pub(super) fn document(study: &Study) -> ReportDocument {
         },
         chapters: vec![
             Chapter::new("")
-                .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
+                .then(ChapterPart::title(title(&study.rows, file)).only_on(Medium::Terminal))
                 .with_all(advice(study).map(ChapterPart::text))
                 .with_all(figures(study).map(ChapterPart::from)),
-            tested(file, "What was asked").with(asked).only(Medium::Page),
+            test_chapter(file, "What was asked").then(asked).only_on(Medium::Page),
             monte_carlo(study),
             Chapter::new("Predictions")
                 .with_all(predictions(&study.rows, Medium::Terminal))
                 .with_all(ahead)
-                .with(ChapterPart::picture("sweep", "")),
+                .then(ChapterPart::picture("sweep", "")),
             critical(study),
-            over_the_angle(&study.request),
-            ladders(study),
+            angle_chapter(&study.request),
+            models_chapter(study),
             study.plan.as_ref().map_or_else(|| Chapter::new(""), plan),
-            of_the_paper(),
-            Chapter::new("Limits").with(PartContent::List(limits(study))),
+            paper_chapter(),
+            Chapter::new("Limits").then(PartContent::List(limits(study))),
             Chapter::new("All predictions").with_all(at_end),
             provenance(study),
         ],
     }
 }
 
-/// What the models leave out, the length of the first impact as this study has it.
+/// Limits of the models, with the duration of the first impact in this study.
 fn limits(study: &Study) -> Vec<String> {
     let lasts_s = study.cask_file.drop.contact_duration_s;
     let [stated, drawn] = [(lasts_s, lasts_s), study.advice.drawn.contact_s].map(contact_length_words);
@@ -81,7 +81,7 @@ fn limits(study: &Study) -> Vec<String> {
 }
 
 /// The pictures over the angle, in the order of their files.
-fn over_the_angle(request: &StudyRequest) -> Chapter {
+fn angle_chapter(request: &StudyRequest) -> Chapter {
     let is_wanted = |name: &String| {
         ["smooth-rough", "speeds", "positions", "energy-ratio", "section"].contains(&name.as_str())
             || name.starts_with("components-")
@@ -90,7 +90,7 @@ fn over_the_angle(request: &StudyRequest) -> Chapter {
     Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "short")))
 }
 
-/// The three figures that a reader looks for first, of all that is uncertain.
+/// The three headline figures, over all uncertain inputs.
 fn figures(study: &Study) -> Option<PartContent> {
     let (drawn, advice) = (&study.monte_carlo, &study.advice);
     let median = speeds(drawn)?.largest[2];
@@ -107,7 +107,7 @@ fn figures(study: &Study) -> Option<PartContent> {
 }
 
 /// Contact laws, k, angle and sweeps.
-fn asked(request: &StudyRequest) -> Vec<Fact> {
+fn request_facts(request: &StudyRequest) -> Vec<Fact> {
     let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
     let ks: Vec<String> = request.ks.iter().map(|k| plain(*k, 3)).collect();
     let band = format!("within {} % of the largest value", plain(request.band_percent, 3));
@@ -129,19 +129,19 @@ fn sweep_words(sweep: &Sweep) -> String {
     }
 }
 
-/// Figures and tables of the paper, the file here that shows the same, and what it holds.
+/// Figures and tables of the paper, the file of this report that shows the same, and its content.
 const OF_THE_PAPER: &str = include_str!("of_the_paper.tsv");
 
-fn of_the_paper() -> Chapter {
+fn paper_chapter() -> Chapter {
     let rows: Vec<Vec<&str>> = OF_THE_PAPER.lines().map(|line| line.split('\t').collect()).collect();
-    let table = ReportTable::of(&rows)
+    let table = ReportTable::from_rows(&rows)
         .head("[P]", |row| row[0])
         .code("File", |row| row[1])
         .text("Shows", |row| row[2]);
-    Chapter::new("Figures and tables of the paper").only(Medium::Page).with(table)
+    Chapter::new("Figures and tables of the paper").only_on(Medium::Page).then(table)
 }
 
-/// Which file, which version.
+/// Chapter on file and version.
 fn provenance(study: &Study) -> Chapter {
     let facts = vec![
         Fact::words("Cask file", study.cask_file.path.display().to_string()),
@@ -151,5 +151,5 @@ fn provenance(study: &Study) -> Chapter {
             format!("dropcheck {} · schema dropcheck.prediction/1", env!("CARGO_PKG_VERSION")),
         ),
     ];
-    Chapter::new("Provenance").only(Medium::Page).with(ChapterPart::facts("", facts))
+    Chapter::new("Provenance").only_on(Medium::Page).then(ChapterPart::facts("", facts))
 }

@@ -14,7 +14,7 @@ fn bare(study: &Study) -> String {
 
 #[test]
 fn eighty_columns_hold_it() {
-    let mut wide = sample_study::swept();
+    let mut wide = sample_study::sweep_study();
     wide.rows.truncate(300);
     for (i, row) in wide.rows.iter_mut().enumerate() {
         row.drop_height_m = if i % 2 == 0 { 0.333 } else { 9.125 };
@@ -25,9 +25,9 @@ fn eighty_columns_hold_it() {
     wide.cask_file.cask.name = "A cask with a name ".repeat(8);
     let studies = [
         sample_study::study(),
-        sample_study::swept(),
+        sample_study::sweep_study(),
         sample_study::without_slap_down(),
-        sample_study::single(),
+        sample_study::single_study(),
         wide,
     ];
     for study in studies {
@@ -99,9 +99,9 @@ fn the_limits_are_those_of_the_request() {
 
 #[test]
 fn one_case_shows_every_rung() {
-    let text = bare(&sample_study::single());
+    let text = bare(&sample_study::single_study());
     for rung in Rung::ALL {
-        assert!(text.contains(&rung_short(rung)) && text.contains(rung.adds()), "{text}");
+        assert!(text.contains(&rung_short(rung)) && text.contains(rung.physics()), "{text}");
     }
     assert!(text.contains("−13.3 %") && text.contains("The model \"body\" suffices"), "{text}");
 }
@@ -118,7 +118,7 @@ fn without_draws_there_is_no_block_of_them() {
 
 #[test]
 fn a_long_table_shows_its_ends_and_says_what_is_left_out() {
-    let study = sample_study::swept();
+    let study = sample_study::sweep_study();
     let text = bare(&study);
     assert!(text.contains(&format!(
         "… {} of {} rows are left out here",
@@ -179,7 +179,7 @@ fn it_stands_alone() {
 
 #[test]
 fn it_shows_every_picture() {
-    for study in [sample_study::study(), sample_study::swept(), sample_study::without_slap_down()] {
+    for study in [sample_study::study(), sample_study::sweep_study(), sample_study::without_slap_down()] {
         let page = made(&study);
         assert_eq!(page.matches("<figure").count(), study_names(&study.request).len());
     }
@@ -199,7 +199,7 @@ fn words_from_files_are_escaped() {
 
 #[test]
 fn a_long_sweep_points_to_the_csv() {
-    let study = sample_study::swept();
+    let study = sample_study::sweep_study();
     let page = made(&study);
     assert!(study.rows.len() > MOST_ON_PAGE);
     assert!(page.contains(&format!("{} more", study.rows.len() - MOST_ON_PAGE)));

@@ -26,7 +26,7 @@ impl Column {
         if let (None, Some(rate)) =
             (cask_hz, self.rates.iter().find(|rate| rate.statement(told_hz).is_none()))
         {
-            let (value, unit) = (shown::short(rate.value), rate.unit.as_deref().unwrap_or_default());
+            let (value, unit) = (shown::show(rate.value), rate.unit.as_deref().unwrap_or_default());
             return Err(Refusal::new(
                 format!(
                     "its messages state {} = {}, which is no rate or interval",

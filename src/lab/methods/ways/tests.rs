@@ -24,7 +24,7 @@ fn prepared(class: &DropClass, count: u64) -> Vec<Prepared> {
         let written = drop.recorded();
         let (recording, file) = (drop.read(&written).expect("a recording that is read"), &drop.stated);
         let velocity_m_s = file.drop.transverse_velocity_m_s();
-        let coarse = events::Changes::of(&recording.channels).locate(velocity_m_s).expect("an impact");
+        let coarse = events::Changes::new(&recording.channels).locate(velocity_m_s).expect("an impact");
         let reach = condition::Reach::of(&file.cask, &file.drop);
         let (signals, _) = condition::condition(&recording, &coarse, &reach, file.corrections);
         Prepared { contact_s: written.first_contact_s, signals, coarse, drop }
@@ -108,8 +108,8 @@ fn step_error_percent(of: &Prepared) -> f64 {
         drift: true,
         angular_velocity_rad_s: truth.omega_rebound.expect("a separation"),
     };
-    let integrated = motion::Integrated::over(&of.signals, of.contact_s);
-    let drive = motion::drive(&integrated, None, left_s, window.from_s, cog_m, 0.0);
+    let integrated = motion::Integrated::new(&of.signals, of.contact_s);
+    let drive = motion::contact_drive(&integrated, None, left_s, window.from_s, cog_m, 0.0);
     let fit = motion::fit_flights(&integrated, &window, drive.as_ref(), cog_m, 3).swap_remove(0);
     let steps_m_s = velocity_steps_m_s(&of.drop.scene, length_s);
     let off = |(found_m_s, step_m_s): (f64, &f64)| 100.0 * (found_m_s - step_m_s).abs() / step_m_s.abs();

@@ -1,5 +1,5 @@
-//! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with
-//! their schema.
+//! Writes a synthetic recording as MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped,
+//! with their schema.
 
 use super::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
@@ -17,7 +17,7 @@ use std::io::Cursor;
 /// the same bytes.
 const START_NS: i64 = 1_760_000_000_000_000_000;
 
-/// Length of a block, s: what a recorder hands on at a time.
+/// Length of a block, s: the amount that a recorder passes on at a time.
 const BLOCK_S: f64 = 0.02;
 
 const SCHEMA: &str = "dropcheck.AccelerationBlock";
@@ -25,13 +25,14 @@ const SCHEMA: &str = "dropcheck.AccelerationBlock";
 /// The descriptor set of the block message of docs/formats.md, with the well-known Timestamp that it uses.
 const DESCRIPTORS: &[u8] = include_bytes!("acceleration_block.binpb");
 
-/// The same of JSON.
+/// Schema of the JSON messages.
 const JSON_SCHEMA: &[u8] = include_bytes!("acceleration_block.json");
 
 /// The file as bytes.
 ///
 /// # Errors
-/// [`ReportError::Mcap`] where the writer fails.
+///
+/// [`ReportError::Mcap`] if the writer fails.
 pub(super) fn bytes(
     recording: &SyntheticRecording,
     places: &[SyntheticPlace],
@@ -67,7 +68,7 @@ pub(super) fn bytes(
     Ok(writer.into_inner().into_inner())
 }
 
-/// Samples that follow one another, as JSON has them.
+/// Consecutive samples in the form of JSON.
 #[derive(Serialize)]
 struct SyntheticBlock<'a> {
     timestamp: BlockStamp,
@@ -83,7 +84,7 @@ struct BlockStamp {
 }
 
 impl BlockStamp {
-    fn of(ns: i64) -> Self {
+    fn from_ns(ns: i64) -> Self {
         Self { sec: ns.div_euclid(1_000_000_000), nsec: ns.rem_euclid(1_000_000_000) }
     }
 
@@ -92,11 +93,11 @@ impl BlockStamp {
     }
 }
 
-/// The channel in blocks; none reaches over a loss.
+/// The channel in blocks; no block continues across a loss.
 fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
     let longest = as_count(BLOCK_S * channel.sample_rate_hz).max(2);
     let block = |(from, samples)| SyntheticBlock {
-        timestamp: BlockStamp::of(START_NS + nanoseconds(channel.time_s(from))),
+        timestamp: BlockStamp::from_ns(START_NS + nanoseconds(channel.time_s(from))),
         sample_rate_hz: channel.sample_rate_hz,
         unit: &channel.unit,
         samples,

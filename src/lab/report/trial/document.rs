@@ -12,22 +12,22 @@ use crate::report::record;
 use crate::report::rounding::{optional, optional_fixed, plain, significant};
 use crate::report::text::Style;
 
-/// What is signed: outcome, picture, map, limits.
+/// Document to sign: outcome, picture, map, limits.
 pub(super) fn document(trial: &Trial) -> ReportDocument {
     let [within, choice] = choice(trial);
     let chapters = vec![
         outcome(trial),
-        Chapter::new("What is silent, and what to do at the site").with_all(silent(trial)),
+        Chapter::new("What is silent, and what to do at the site").with_all(silent_section(trial)),
         Chapter::new("Speed against accuracy")
-            .with(ChapterPart::lead(within))
-            .with(ChapterPart::picture("speed", ""))
-            .with(ChapterPart::text(choice))
-            .with(by_class(trial)),
-        Chapter::new("What becomes of damages").with(ChapterPart::picture("failures", "")),
+            .then(ChapterPart::lead(within))
+            .then(ChapterPart::picture("speed", ""))
+            .then(ChapterPart::text(choice))
+            .then(class_table(trial)),
+        Chapter::new("What becomes of damages").then(ChapterPart::picture("failures", "")),
         Chapter::new("What is accepted")
-            .with(ChapterPart::lead(LIMITS))
-            .with(limits(&trial.limits))
-            .with(record::signatures(&["Carried out", "Checked"]).only(Medium::Page)),
+            .then(ChapterPart::lead(LIMITS))
+            .then(limits(&trial.limits))
+            .then(record::signatures(&["Carried out", "Checked"]).only_on(Medium::Page)),
     ];
     ReportDocument {
         page: Frame {
@@ -54,18 +54,18 @@ const ACCEPTANCE_FOOT: &str = "Errors are against truths from outside the method
                                program simulated, simulated drops that share no formula with \
      the analysis, closed forms. Accepted: every limit holds. A limit that cannot be measured does not hold.";
 
-/// What a terminal shows: the limits, then the outcome.
+/// Document for a terminal: the limits, then the outcome.
 pub(super) fn verdict(trial: &Trial) -> ReportDocument {
-    let chapters = vec![Chapter::new("What is accepted").with(limits(&trial.limits)), banner(trial)];
+    let chapters = vec![Chapter::new("What is accepted").then(limits(&trial.limits)), banner(trial)];
     ReportDocument { chapters, ..ReportDocument::default() }
 }
 
 /// Accepted or not.
 fn banner(trial: &Trial) -> Chapter {
-    let beyond: Vec<&str> = trial.limits.iter().filter(|l| !l.is_kept()).map(|l| &l.name[..]).collect();
+    let beyond: Vec<&str> = trial.limits.iter().filter(|l| !l.is_met()).map(|l| &l.name[..]).collect();
     let (kept, all) = (trial.limits.len() - beyond.len(), trial.limits.len());
     let (style, word, words) = if trial.is_accepted() {
-        let (silent, seen) = (hidden(trial).len(), seen(trial));
+        let (silent, seen) = (hidden_damages(trial).len(), seen_words(trial));
         let words = format!(
             "All {all} limits hold, on simulated drops; {silent} kinds of damage can go unnoticed{seen}: \
              check these on site."
@@ -74,44 +74,45 @@ fn banner(trial: &Trial) -> Chapter {
     } else {
         (Style::Red, "NOT ACCEPTED", format!("{kept} of {all} limits hold. Beyond: {}.", beyond.join("; ")))
     };
-    Chapter::new("").with(PartContent::Banner(Tone(style, word.to_owned()), words))
+    Chapter::new("").then(PartContent::Banner(Tone(style, word.to_owned()), words))
 }
 
 /// Accepted or not, and on what.
 fn outcome(trial: &Trial) -> Chapter {
     let slow = "This program was built without optimisation: its times say nothing.";
     let slow = (!trial.machine.is_optimised).then(|| ChapterPart::note(slow));
-    let (quick, seed) = (trial.request.either(" --quick", ""), trial.request.seed);
-    let program = Program { version: trial.version, commit: trial.machine.program_commit, ..Program::this() };
+    let (quick, seed) = (trial.request.choose(" --quick", ""), trial.request.seed);
+    let program =
+        Program { version: trial.version, commit: trial.machine.program_commit, ..Program::current() };
     let facts = vec![
         Fact::words("program", program.words()),
         Fact::code("its SHA-256", &trial.machine.program_sha256[..]),
         Fact::words("machine", format!("{}, {} threads", trial.machine.processor, trial.machine.cores)),
         Fact::words("system", &trial.machine.system[..]),
-        Fact::words("run", format!("{}, {}", trial.request.either("quick", "full"), trial.machine.when)),
+        Fact::words("run", format!("{}, {}", trial.request.choose("quick", "full"), trial.machine.when)),
         Fact::code("again", format!("dropcheck validate{quick} --seed {seed} --out validation")),
     ];
-    banner(trial).with(ChapterPart::facts("", facts)).with_all(slow)
+    banner(trial).then(ChapterPart::facts("", facts)).with_all(slow)
 }
 
-/// The damages that a recording may hide: those of this run, and in a quick one all of the recorded full run.
-fn hidden(trial: &Trial) -> Vec<&TrialMap> {
-    trial.maps.iter().filter(|map| map.known.is_some() || map.is_seen_silent()).collect()
+/// Damages that a recording may hide: those of this run, and in a quick one all of the recorded full run.
+fn hidden_damages(trial: &Trial) -> Vec<&TrialMap> {
+    trial.maps.iter().filter(|map| map.known.is_some() || map.has_silent_drop()).collect()
 }
 
-/// How many of them a quick run saw, in words; nothing of a full one.
-fn seen(trial: &Trial) -> String {
-    let count = trial.maps.iter().filter(|map| map.is_seen_silent()).count();
-    trial.request.either(format!(" (known from a full run; this quick one saw {count})"), String::new())
+/// Says how many of them a quick run saw; empty for a full one.
+fn seen_words(trial: &Trial) -> String {
+    let count = trial.maps.iter().filter(|map| map.has_silent_drop()).count();
+    trial.request.choose(format!(" (known from a full run; this quick one saw {count})"), String::new())
 }
 
-/// The damages that a recording may hide, with the check at the site.
-fn silent(trial: &Trial) -> [ChapterPart; 2] {
-    let hidden = hidden(trial);
-    let (count, all, seen) = (hidden.len(), trial.maps.len(), seen(trial));
+/// Section on the damages that a recording may hide, with the check at the site.
+fn silent_section(trial: &Trial) -> [ChapterPart; 2] {
+    let hidden = hidden_damages(trial);
+    let (count, all, seen) = (hidden.len(), trial.maps.len(), seen_words(trial));
     let words =
         format!("{count} of {all} damages can leave an interval wrong although the data look sound{seen}:");
-    let table = ReportTable::of(&hidden)
+    let table = ReportTable::from_rows(&hidden)
         .class("many")
         .code("damage", |map| &map.name[..])
         .text("what it is", |map| &map.what[..])
@@ -121,13 +122,13 @@ fn silent(trial: &Trial) -> [ChapterPart; 2] {
         .number("off by, half-widths", |map| {
             map.known.map_or_else(|| largest_words(map), |known| known.off.into())
         })
-        .text("in this run", |map| if map.is_seen_silent() { "silent" } else { "not seen" })
-        .if_any(trial.request.quick)
+        .text("in this run", |map| if map.has_silent_drop() { "silent" } else { "not seen" })
+        .show_if(trial.request.quick)
         .text("at the site", |map| &map.instead[..]);
     [ChapterPart::lead(words), table.into()]
 }
 
-/// How near the program is, and what follows for the user from the picture.
+/// Says how accurate the program is, and what the picture means for the user.
 fn choice(trial: &Trial) -> [String; 2] {
     let taken = |family| pooled(trial, family).find(|p| p.is_default);
     let Some((speed, k)) = taken(WAYS[0]).zip(taken(WAYS[1])) else {
@@ -144,7 +145,7 @@ fn choice(trial: &Trial) -> [String; 2] {
     );
     let is_class = |p: &&TrialPoint| p.family == WAYS[0] && p.is_default && p.class != ALL_CLASSES;
     let classes: Vec<&str> = trial.points.iter().filter(is_class).map(|p| &p.class[..]).collect();
-    // In how many classes both speed and k are as near as a verdict needs.
+    // Counts the classes in which both speed and k are as accurate as a verdict needs.
     let met = |way: &TrialPoint| {
         let is_near = |p: &TrialPoint| p.method == way.method && p.p95_error <= p.matters;
         let on = |class: &str, family| {
@@ -170,17 +171,17 @@ fn choice(trial: &Trial) -> [String; 2] {
     [within, choice]
 }
 
-/// The 95th percentile of each way on each class, of speed and of k; how many intervals hold; times.
-fn by_class(trial: &Trial) -> ReportTable {
+/// Table of the 95th percentile of each method on each class, for speed and k; coverage of intervals; times.
+fn class_table(trial: &Trial) -> ReportTable {
     let rows: Vec<&TrialPoint> = trial.points.iter().filter(|p| p.is_default).collect();
-    let mut table = ReportTable::of(&rows)
+    let mut table = ReportTable::from_rows(&rows)
         .class("many")
         .caption(
             "95th percentile of the error, % of the slap-down speed, and of k as it is; the median \
              half-width that is promised, % of the \
              intervals that hold the truth; no answer in so many drops.",
         )
-        .chosen(|row| row.class == ALL_CLASSES)
+        .mark_chosen(|row| row.class == ALL_CLASSES)
         .text("", |row| row.family.split(',').next().unwrap_or_default())
         .text("class", |row| &row.class[..]);
     for way in pooled(trial, WAYS[0]) {
@@ -199,32 +200,32 @@ fn by_class(trial: &Trial) -> ReportTable {
         .into()
 }
 
-/// Every limit beside what was found; what is beyond comes first.
+/// Table of every limit with the measured value; failed limits come first.
 fn limits(limits: &[TrialLimit]) -> ReportTable {
     let mut limits: Vec<&TrialLimit> = limits.iter().collect();
-    limits.sort_by_key(|limit| limit.is_kept());
+    limits.sort_by_key(|limit| limit.is_met());
     // A terminal has no heads.
-    let said = |word: &str, number: Option<String>| match number {
-        Some(number) => Words::or(&number[..], format!("{word} {number}")),
+    let sentence = |word: &str, number: Option<String>| match number {
+        Some(number) => Words::with_short(&number[..], format!("{word} {number}")),
         None => "–".into(),
     };
-    let bound = |word: &str, bound: Option<f64>| said(word, bound.map(|bound| plain(bound, 3)));
+    let bound = |word: &str, bound: Option<f64>| sentence(word, bound.map(|bound| plain(bound, 3)));
     let held = |limit: &TrialLimit| {
-        let (style, word) = if limit.is_kept() { (Style::Green, "holds") } else { (Style::Red, "BEYOND") };
-        TableCell::toned(style, word)
+        let (style, word) = if limit.is_met() { (Style::Green, "holds") } else { (Style::Red, "BEYOND") };
+        TableCell::tone(style, word)
     };
     let why = |limit: &TrialLimit| match &limit.which[..] {
         "" => limit.reason.clone(),
         which => format!("{which}. {}", limit.reason),
     };
-    ReportTable::of(&limits)
+    ReportTable::from_rows(&limits)
         .class("many")
         .text("what", |limit| &limit.name[..])
         .number("least", |limit| bound("least", limit.least))
-        .number("found", |limit| said("found", limit.value.map(|value| significant(value, 3))))
+        .number("found", |limit| sentence("found", limit.value.map(|value| significant(value, 3))))
         .number("most", |limit| bound("most", limit.most))
         .text("unit", |limit| &limit.unit[..])
-        .soft("", |limit| held(limit))
+        .line("", |limit| held(limit))
         .text("why", |limit| why(limit))
         .shape(TableShape::Items)
         .into()

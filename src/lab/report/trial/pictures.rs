@@ -1,9 +1,9 @@
-//! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages.
+//! Pictures of a trial: methods by speed and accuracy, and the map of the damages.
 
 use crate::lab::data::{Trial, TrialFate, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
 use crate::numerics::as_f64;
-use crate::report::pictures::draw::{Picture, Plate};
+use crate::report::pictures::draw::{Figure, Picture};
 use crate::report::pictures::panel::{
     ALARM, COLOURS, Colour, Curve, Dash, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape, Points,
     RowWords,
@@ -16,22 +16,22 @@ const PANEL: u32 = 520;
 const ROW: u32 = 25;
 /// Room for the words at either side of a row.
 const SIDES: (u32, u32) = (760, 620);
-/// How many times above and below what matters an error is drawn; what is beyond lies on the edge.
+/// An error is drawn up to this factor above and below the smallest that matters; others lie on the edge.
 const SPAN: f64 = 200.0;
 
 /// Errors within what is drawn.
-fn drawn(point: &TrialPoint, error: f64) -> f64 {
+fn drawn_point(point: &TrialPoint, error: f64) -> f64 {
     error.clamp(point.matters / SPAN, point.matters * SPAN)
 }
 
-/// What an axis has room for: "%" of "% of the slap-down speed".
+/// Short unit for an axis: "%" of "% of the slap-down speed".
 fn unit(point: &TrialPoint) -> &str {
     if point.error_unit.starts_with('%') { "%" } else { "as it is" }
 }
 
-/// The look of a way by its place among the others.
-fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
-    Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
+/// Look of a method by its index.
+fn point_look(index: usize, at: Vec<(f64, f64)>) -> Points {
+    Points::new(COLOURS[index % COLOURS.len()], PointShape::from_index(index), at)
 }
 
 /// Whole powers of ten around times.
@@ -40,32 +40,32 @@ fn decades(times: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (10_f64.powf(least.log10().floor()), 10_f64.powf(most.log10().ceil()))
 }
 
-/// Every way of working over all classes, with a bar from its best class to its worst.
-pub(super) fn ways(trial: &Trial) -> Picture {
+/// Picture of every method over all classes, with a bar from its best class to its worst.
+pub(super) fn ways_picture(trial: &Trial) -> Picture {
     let caption = "Time from file to answer, each way timed whole on the same files; below and left is \
                    better. Mark: 95th percentile of the error over all classes of drops; ring: what the \
                    program takes. Bar: from the best class to the worst.";
     let families = WAYS.map(|family| pooled(trial, family).collect::<Vec<_>>());
     let panels: Vec<Panel> = families.iter().filter_map(|ways| ways_panel(trial, ways)).collect();
-    Plate { columns: 2, ..Plate::new("speed", "Speed against accuracy", caption) }.picture(&panels)
+    Figure { columns: 2, ..Figure::new("speed", "Speed against accuracy", caption) }.picture(&panels)
 }
 
-/// The ways of a family that say anything, over all classes.
+/// Methods of a family with any answer, over all classes.
 pub(super) fn pooled<'a>(trial: &'a Trial, family: &'a str) -> impl Iterator<Item = &'a TrialPoint> {
     trial.points.iter().filter(move |p| p.family == family && p.class == ALL_CLASSES && p.cases > 0)
 }
 
-/// What reading the files of a family takes.
+/// The point for reading the files of a family.
 pub(super) fn reading<'a>(trial: &'a Trial, family: &str) -> Option<&'a TrialPoint> {
     trial.points.iter().find(|p| p.family == family && p.class == ALL_CLASSES && p.method == READING)
 }
 
-/// What a verdict needs and what the program promises, as lines.
+/// Lines for the accuracy that a verdict needs and that the program promises.
 fn levels(ways: &[&TrialPoint], ends: (f64, f64)) -> Vec<Curve> {
     let level = |error: f64, dash, words: &str| {
         Curve { stroke: 3, ..Curve::new(GREY, vec![(ends.0, error), (ends.1, error)]) }
             .broken(dash)
-            .named(words)
+            .label(words)
     };
     let half_width = ways.iter().find_map(|p| p.promised.filter(|_| p.is_default));
     let needed = ways.first().map(|p| level(p.matters, Dash::Dashed, "what a verdict needs"));
@@ -78,19 +78,19 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let of_family = || trial.points.iter().filter(|p| p.family == first.family);
     let reading = reading(trial, &first.family);
     let seconds = |p: &TrialPoint| 1e-9 * p.time_ns;
-    let at = |p: &TrialPoint| (seconds(p), drawn(p, p.p95_error));
+    let at = |p: &TrialPoint| (seconds(p), drawn_point(p, p.p95_error));
     let ends = decades(ways.iter().copied().chain(reading).map(seconds));
-    let times = PanelAxis::new("seconds").logarithmic().over(Some(ends));
+    let times = PanelAxis::new("seconds").logarithmic().range(Some(ends));
     let range = (0.8 * first.matters / SPAN, 1.25 * first.matters * SPAN);
     let errors = PanelAxis::new(format!("error, 95th percentile, {}", unit(first)));
-    let errors = errors.logarithmic().over(Some(range));
+    let errors = errors.logarithmic().range(Some(range));
     let bar = |(index, way): (usize, &&TrialPoint)| {
         let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
-        let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
-        Curve { opacity: 0.4, ..Curve::new(look(index, Vec::new()).colour, points) }
+        let points = classes.map(|p| (seconds(way), drawn_point(way, p.p95_error))).collect();
+        Curve { opacity: 0.4, ..Curve::new(point_look(index, Vec::new()).colour, points) }
     };
     let lines = ways.iter().enumerate().map(bar);
-    let mark = |(index, way): (usize, &&TrialPoint)| look(index, vec![at(way)]).named(&way.method[..]);
+    let mark = |(index, way): (usize, &&TrialPoint)| point_look(index, vec![at(way)]).label(&way.method[..]);
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
     let ring = Points { radius: 21, ..Points::new(INK, PointShape::Ring, taken) };
     Some(Panel {
@@ -101,7 +101,7 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     })
 }
 
-/// What becomes of a drop: colour and words.
+/// Colour and words for each fate of a drop.
 const FATES: [(TrialFate, Colour, &str); 4] = [
     (TrialFate::Inside, Colour(196, 226, 204), "inside its interval"),
     (TrialFate::Warned, Colour(240, 190, 70), "outside, and warned of"),
@@ -109,8 +109,8 @@ const FATES: [(TrialFate, Colour, &str); 4] = [
     (TrialFate::Silent, ALARM, "outside, and silent"),
 ];
 
-/// A row a damage, from the harmless size to the gross one; in each size a stripe a drop. What is silent
-/// comes first.
+/// A row per damage, from the harmless size to the gross one; in each size a stripe per drop. Silent damages
+/// come first.
 pub(super) fn failures(trial: &Trial) -> Picture {
     let drops = trial.maps.first().and_then(|map| map.sizes.first()).map_or(0, |size| size.drops.len());
     let caption = format!(
@@ -120,25 +120,25 @@ pub(super) fn failures(trial: &Trial) -> Picture {
          half-widths of the interval."
     );
     let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
-    maps.sort_by_key(|map| std::cmp::Reverse(gravest(map)));
+    maps.sort_by_key(|map| std::cmp::Reverse(worst_fate(map)));
     let words = |map: &&TrialMap| RowWords {
         left: sizes_words(map),
         right: format!("{}; {}", fate_words(map).trim_end_matches(&map.unit).trim_end(), largest_words(map)),
         is_heading: false,
     };
-    let mut panel = Panel::of_rows(maps.iter().map(words).collect(), ROW, SIDES);
-    panel.x = PanelAxis::default().over(Some((0.0, 1.0)));
+    let mut panel = Panel::from_rows(maps.iter().map(words).collect(), ROW, SIDES);
+    panel.x = PanelAxis::default().range(Some((0.0, 1.0)));
     let fill = |(fate, colour, label): (TrialFate, Colour, &str)| {
         let middles = maps.iter().enumerate().map(|(row, map)| (panel.row_middle(row), map));
         let areas = middles.flat_map(|(middle, map)| stripes(map, fate, middle)).collect();
-        Fill::new(colour, 1.0, areas).named(label)
+        Fill::new(colour, 1.0, areas).label(label)
     };
     panel.fills = FATES.map(fill).into();
-    Plate::new("failures", "What becomes of damages", caption).picture(&[panel])
+    Figure::new("failures", "What becomes of damages", caption).picture(&[panel])
 }
 
-/// The worst that becomes of a drop of the map: silence before all.
-fn gravest(map: &TrialMap) -> Option<TrialFate> {
+/// The worst fate of a drop of the map: silence is the worst.
+fn worst_fate(map: &TrialMap) -> Option<TrialFate> {
     map.sizes.iter().flat_map(|size| &size.drops).map(|drop| drop.fate).max()
 }
 
@@ -158,7 +158,7 @@ fn stripes(map: &TrialMap, fate: TrialFate, middle: f64) -> Vec<Vec<(f64, f64)>>
     map.sizes.iter().enumerate().flat_map(of_size).collect()
 }
 
-/// From which size on what becomes of some drop, the gravest first.
+/// Says from which size on some drops have each fate, the worst first.
 pub(super) fn fate_words(map: &TrialMap) -> String {
     let from = |fate| {
         let word = if fate == TrialFate::Silent { "unnoticed".to_owned() } else { json_word(fate) };

@@ -1,5 +1,4 @@
-//! The specific force at a sensor to its sampled signal: mounting, resonance, AC coupling, anti-alias filter,
-//! sampling.
+//! The analog part of the chain: mounting, resonance, AC coupling, anti-alias filter, sampling.
 
 use super::SensedDrop;
 use crate::data::Axis;
@@ -7,19 +6,18 @@ use crate::lab::data::{Scene, SceneChannel};
 use crate::numerics::as_f64;
 use std::f64::consts::{FRAC_PI_8, PI};
 
-/// The analog part runs on a grid this much finer than the samples, so that what lies above half their rate
-/// folds.
+/// The analog part runs on a grid this much finer than the samples, so that frequencies above half their rate
+/// fold.
 const OVERSAMPLING: f64 = 8.0;
 
-/// Points of that grid in a period of the resonance and of the cut-off: prewarped trapezoids are then within
-/// 1 %.
+/// Grid points per period of the resonance and of the cut-off: prewarped trapezoids are then within 1 %.
 const POINTS_A_PERIOD: f64 = 20.0;
 
 /// Points worked on at a time.
 const BLOCK: usize = 1 << 16;
 
 /// The analog signal at `count` samples of a true rate, m/s².
-pub(super) fn sampled(
+pub(super) fn sample_analog(
     scene: &Scene,
     seat: &SceneChannel,
     drive: &SensedDrop,
@@ -34,7 +32,7 @@ pub(super) fn sampled(
     let fine_hz = factor * rate_hz;
     let across = if seat.axis == Axis::Transverse { Axis::Axial } else { Axis::Transverse };
     let mounted = Mounted { seat, other: SceneChannel { axis: across, ..seat.clone() }, drive };
-    let mut filters = Filters::at_start(scene, &mounted, fine_hz);
+    let mut filters = Filters::initial(scene, &mounted, fine_hz);
     let stride = super::count(factor);
     let points = (count - 1) * stride + 1;
     let mut samples = Vec::with_capacity(count);
@@ -43,8 +41,8 @@ pub(super) fn sampled(
         let times_s: Vec<f64> =
             (from..points.min(from + BLOCK)).map(|i| as_f64(i) / fine_hz - scene.before_s).collect();
         for (i, force) in (from..).zip(mounted.force_m_s2(&times_s)) {
-            // What hangs or falls gives the same number again and again: a step that moves no filter moves
-            // none the next time.
+            // At rest and in free fall the input repeats: a step that changes no filter state changes none
+            // the next time.
             if still_at != Some(force) {
                 let before = filters.states();
                 signal = filters.next(force);
@@ -88,8 +86,8 @@ struct Filters {
 }
 
 impl Filters {
-    /// In the state that hanging, release and fall leave them in at the first sample.
-    fn at_start(scene: &Scene, mounted: &Mounted, fine_hz: f64) -> Self {
+    /// Filters in the state that hanging, release and fall leave at the first sample.
+    fn initial(scene: &Scene, mounted: &Mounted, fine_hz: f64) -> Self {
         let chain = &mounted.seat.chain;
         let force = |time_s: f64| mounted.force_m_s2(&[time_s]).first().copied().unwrap_or(0.0);
         let start_s = -scene.before_s;
@@ -97,7 +95,7 @@ impl Filters {
         let high_pass = chain.ac_time_constant_s.map(|constant_s| {
             let release_s = -scene.fall_s();
             let hanging = force(release_s.min(start_s) - 1.0);
-            // Before the release it has long settled; since then its memory fades as e^(−t/T).
+            // Before the release the filter has settled; since then its memory fades as e^(−t/T).
             let faded = (-(start_s - release_s).max(0.0) / constant_s).exp();
             HighPass::new(constant_s, fine_hz, hanging * faded)
         });
@@ -114,7 +112,7 @@ impl Filters {
         }
     }
 
-    /// What they remember, to the bit.
+    /// Bits of the filter states.
     fn states(&self) -> [u64; 7] {
         let memory =
             |filter: Option<&SecondOrder>| filter.map_or([0.0; 2], |filter| [filter.band, filter.low]);
@@ -141,7 +139,7 @@ struct SecondOrder {
 }
 
 impl SecondOrder {
-    /// By frequency, Hz, and share of critical damping; settled at `start`.
+    /// Oscillator with this frequency, Hz, and share of critical damping; settled at `start`.
     fn new((frequency_hz, damping): (f64, f64), rate_hz: f64, start: f64) -> Self {
         let gain = (PI * frequency_hz / rate_hz).tan();
         Self { gain, damping, first: 1.0 / (1.0 + gain * (gain + 2.0 * damping)), band: 0.0, low: start }
@@ -164,7 +162,7 @@ struct HighPass {
 }
 
 impl HighPass {
-    /// With time constant T, s, its low-pass at `low`.
+    /// Filter with time constant T, s, with its low-pass at `low`.
     fn new(constant_s: f64, rate_hz: f64, low: f64) -> Self {
         let half_step = 0.5 / (rate_hz * constant_s);
         Self { share: half_step / (1.0 + half_step), low }

@@ -1,25 +1,24 @@
-//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that
-//! is shaken or whips.
+//! Disturbances added to a channel's samples, from its seed and chain: offset, zero shift, noise, hum, and a
+//! cable that is shaken or whips.
 
 use crate::lab::chance::Chance;
 use crate::lab::data::Chain;
 use crate::numerics::as_f64;
 use std::f64::consts::{PI, TAU};
 
-/// Sources of chance in a channel: each draws from a stream of its own, so that none moves another.
+/// Number of random streams of a channel: each source of chance has its own, so that none changes another.
 const STREAMS_A_CHANNEL: u64 = 8;
 
-/// The 1/f noise reaches down to here, Hz; its corners lie an octave apart, which ripples by less than 0.1
-/// dB.
+/// Lowest frequency of the 1/f noise, Hz; its corners lie an octave apart, which ripples by less than 0.1 dB.
 const LOWEST_HZ: f64 = 1.0;
 
-/// A shaken cable swings between these frequencies, Hz: those of the cask's bending.
+/// Frequencies of a shaken cable, Hz: those of the cask's bending.
 const CABLE_HZ: (f64, f64) = (50.0, 500.0);
 
 /// Damping of a whipping cable, as a share of the critical: it fades within a few waves.
 const WHIP_DAMPING: f64 = 0.1;
 
-/// The zero shift grows over this time where there is no contact to grow over, s.
+/// Time over which the zero shift grows if there is no contact, s.
 const NO_CONTACT_S: f64 = 5e-3;
 
 /// True times of the samples, 0 at first contact.
@@ -31,13 +30,13 @@ pub(super) struct SampleTimes {
 }
 
 impl SampleTimes {
-    fn at_s(&self, index: usize) -> f64 {
+    fn time_s(&self, index: usize) -> f64 {
         self.from_s + as_f64(index) / self.rate_hz
     }
 
-    /// Adds to each sample what there is at its time.
+    /// Adds to each sample the value at its time.
     fn add(&self, samples_m_s2: &mut [f64], mut more_m_s2: impl FnMut(f64) -> f64) {
-        samples_m_s2.iter_mut().enumerate().for_each(|(i, sample)| *sample += more_m_s2(self.at_s(i)));
+        samples_m_s2.iter_mut().enumerate().for_each(|(i, sample)| *sample += more_m_s2(self.time_s(i)));
     }
 }
 
@@ -59,7 +58,7 @@ pub(super) fn add(
     }
     pink(samples_m_s2, chain.pink_noise_m_s2, times.rate_hz, &mut stream(1));
     if let Some((amplitude_m_s2, frequency_hz)) = chain.hum {
-        let phase = stream(2).even(0.0, TAU);
+        let phase = stream(2).uniform(0.0, TAU);
         times.add(samples_m_s2, |t_s| amplitude_m_s2 * (TAU * frequency_hz * t_s + phase).sin());
     }
     if let Some((amplitude_m_s2, frequency_hz)) = chain.whip {
@@ -73,8 +72,7 @@ pub(super) fn add(
     }
 }
 
-/// Noise of spectral density 1/f: equal parts of noise that first-order low-passes an octave apart have
-/// shaped.
+/// Noise of spectral density 1/f: equal parts of noise after first-order low-passes an octave apart.
 fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, chance: &mut Chance) {
     if sigma_m_s2 <= 0.0 {
         return;
@@ -104,12 +102,12 @@ fn cable(
     chance: &mut Chance,
 ) {
     for &(from_s, to_s) in contacts_s.iter().filter(|(from_s, to_s)| to_s > from_s) {
-        let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(chance.even(0.0, 1.0));
-        let phase = chance.even(0.0, TAU);
+        let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(chance.uniform(0.0, 1.0));
+        let phase = chance.uniform(0.0, TAU);
         let [first, last] = [from_s, to_s].map(|t| super::ceiling((t - times.from_s) * times.rate_hz));
         let last = last.min(samples_m_s2.len());
         for (i, sample) in samples_m_s2.iter_mut().enumerate().take(last).skip(first) {
-            let since_s = times.at_s(i) - from_s;
+            let since_s = times.time_s(i) - from_s;
             let envelope = (PI * since_s / (to_s - from_s)).sin();
             *sample += amplitude_m_s2 * envelope * (TAU * frequency_hz * since_s + phase).cos();
         }
