@@ -378,7 +378,8 @@ mod tests {
     #[test]
     fn ends_that_go_apart_slowly_swing_and_do_not_bend() {
         let signal = |end, position_m| Signal { end, position_m, ..example::signal(1e4, vec![]) };
-        // Of each mode the frequency and how the first end goes along; the place of the second sensor.
+        // Each mode has its frequency and the relative movement of the first end; `second_m` is the place of
+        // the second sensor.
         let placed = |modes: &[(f64, f64)], second_m: f64, height_m: f64| {
             let signals = [signal(End::First, 0.3), signal(End::Second, second_m)];
             let plateau = |share: fn(f64) -> f64| Plateau {

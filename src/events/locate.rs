@@ -157,9 +157,9 @@ impl<'a> Changes<'a> {
         let earliest_s = |of_far: &dyn Fn(&ChannelChanges<'_>) -> Option<f64>| {
             self.second_end_channels().filter_map(of_far).min_by(f64::total_cmp)
         };
-        let stirs_s = struck.foot_s(least_m_s).zip(earliest_s(&|far| far.foot_s(least_m_s)));
+        let begins_s = struck.foot_s(least_m_s).zip(earliest_s(&|far| far.foot_s(least_m_s)));
         let again_s = struck.second_strike_s().zip(earliest_s(&|far| far.start_s(far.largest_m_s() / 2.0)));
-        stirs_s.into_iter().chain(again_s).map(|(struck_s, far_s)| far_s - struck_s).collect()
+        begins_s.into_iter().chain(again_s).map(|(struck_s, far_s)| far_s - struck_s).collect()
     }
 
     fn second_end_channels(&self) -> impl Iterator<Item = &ChannelChanges<'a>> {
@@ -236,18 +236,18 @@ impl<'a> ChannelChanges<'a> {
         self.changes_m_s.iter().position(|c| c.abs() >= least_m_s)
     }
 
-    /// Where the width begins that [`ChannelChanges::stirs`] finds, s.
+    /// Beginning of the width that [`Self::find_motion`] finds, s.
     fn start_s(&self, least_m_s: f64) -> Option<f64> {
         Some(self.end_s(self.find_motion(least_m_s)?) - WIDTH_S)
     }
 
-    /// As [`ChannelChanges::stirs_s`], led back to where a tenth of that change was reached.
+    /// The time of [`Self::start_s`], moved back to where the change reached a tenth.
     fn foot_s(&self, least_m_s: f64) -> Option<f64> {
-        let (stirs, changes) = (self.find_motion(least_m_s)?, &self.changes_m_s);
-        let still = stirs.saturating_sub(3 * self.blocks)..stirs.saturating_sub(self.blocks);
+        let (moves, changes) = (self.find_motion(least_m_s)?, &self.changes_m_s);
+        let still = moves.saturating_sub(3 * self.blocks)..moves.saturating_sub(self.blocks);
         let before_m_s = if still.is_empty() { 0.0 } else { robust::median(&mut changes[still].to_vec()) };
-        let is_foot = |c: &f64| (c - before_m_s).abs() < FOOT * (changes[stirs] - before_m_s).abs();
-        let foot = changes[..stirs].iter().rposition(is_foot).unwrap_or(stirs);
+        let is_foot = |c: &f64| (c - before_m_s).abs() < FOOT * (changes[moves] - before_m_s).abs();
+        let foot = changes[..moves].iter().rposition(is_foot).unwrap_or(moves);
         Some(self.end_s(foot) - WIDTH_S)
     }
 
@@ -348,7 +348,8 @@ mod tests {
         let hums = ahead(&first, &[0.0, 0.02, 0.04].map(|at_s| (at_s, 20.0)));
         assert_eq!(hums, None, "what swings from the first sample on");
         assert_eq!(ahead(&[(1.0, 18.0), (1.06, -6.0)], &[(1.0, -4.0), (1.06, 20.0)]), None);
-        // Exchanged ends: what is called the first one stirs as the other is struck.
+        // With exchanged ends the channel of the stated first end begins to move when the other end is
+        // struck.
         assert_eq!(ahead(&[(1.0, -4.0), (1.06, 20.0)], &[(1.0, 18.0), (1.06, -6.0)]), None);
     }
 
@@ -409,8 +410,8 @@ mod tests {
         let changes = Changes::new(&channels);
         let event = changes.locate(v0_m_s).expect("an impact");
         let last_s = changes.last_s(&event, v0_m_s, 1.0).expect("a change");
-        // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies
-        // beyond what is asked for.
+        // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is no slap-down, and 1.9 s
+        // is outside the request.
         assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");
     }
 }

@@ -564,7 +564,8 @@ mod tests {
 
     #[test]
     fn a_body_that_bends_first_has_struck_where_it_leaves_its_calm() {
-        // A hum of 3 m/s² all along, a blow of a cable, and 8 ms of the other direction before the rise.
+        // The signal has a hum of 3 m/s² throughout, a shock of a cable, and 8 ms in the other direction
+        // before the rise.
         let bent = |pause_s: f64| {
             let plain = signal(End::Second, 2e4, 0.08, 300.0);
             let before = |t: f64| match t - 0.08 + pause_s {
@@ -579,12 +580,12 @@ mod tests {
         let struck = At { time_s: 0.08, u_s: 1e-4 };
         let found = departure(&bent(0.0), 5.0, struck, 0.03, 3.0);
         assert!((found.time_s - 0.072).abs() < 2e-4 && found.u_s < 2e-4, "{found:?}");
-        // What is over 3 ms before the rise was not the slap-down's.
+        // A movement that ended 3 ms before the rise does not belong to the slap-down.
         assert_eq!(departure(&bent(0.003), 5.0, struck, 0.03, 3.0), struck);
-        // Where it was fitted a long flight may have rung more than it does in the end.
+        // A long flight may ring more in the fitted part than at its end.
         let found = departure(&bent(0.0), 2.0, At { time_s: 0.078, ..struck }, 0.03, 30.0);
         assert!((found.time_s - 0.072).abs() < 2e-4, "{found:?}");
-        // Nor is what a short body does for as long as ringing.
+        // A movement of a short body that lasts as long as ringing does not count either.
         assert_eq!(departure(&bent(0.0), 1.0, struck, 0.03, 3.0), struck);
     }
 

@@ -270,7 +270,7 @@ mod tests {
         let force_m_s2 = (0_u32..).zip(&quiet.force_m_s2).map(|(i, force)| force + noise(i)).collect();
         let noisy = Signal { noise_m_s2: 400.0, force_m_s2, ..quiet };
         let found = separation(&noisy, 0.020_03, 0.04).expect("a separation");
-        // By single samples the force would have to pass half its peak, 1 ms before its end.
+        // Single samples would need a force above half its peak, 1 ms before its end.
         assert!((found.time_s - 0.026_03).abs() < 6e-4, "{found:?}");
     }
 
@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn the_impulse_is_given_after_the_last_stage() {
         let mut staged = signal(0.0);
-        // The same pulse once more 3 ms after the first, weaker.
+        // A second, weaker pulse follows 3 ms after the first.
         let again: Vec<f64> = staged.force_m_s2.iter().map(|force| 0.5 * force).collect();
         staged.force_m_s2.iter_mut().skip(900).zip(again).for_each(|(force, again)| *force += again);
         let given_s = impulse_end(&staged, 0.020_03, 0.08).expect("a flight");

@@ -33,7 +33,7 @@ struct MethodRun {
     propagated: Propagated,
 }
 
-/// Numbers as a function of the inputs, such as [`SelectedMethod::spread`] takes it.
+/// Numbers as a function of the inputs, for [`SelectedMethod::propagate_numbers`].
 pub type NumbersOf<'a> = &'a (dyn Fn(&Inputs) -> Option<Vec<f64>> + Sync);
 
 /// Result of the selected method, and the inputs of that result.

@@ -94,7 +94,7 @@ mod tests {
 
     const RATE_HZ: f64 = 2e4;
 
-    /// Force of 5 ms from 20 ms on, a mode of 80 Hz that rings from then on, and a blow of 1 ms at 60 ms.
+    /// Force of 5 ms from 20 ms on, a mode of 80 Hz that rings from then on, and a shock of 1 ms at 60 ms.
     fn signal(name: &str, end: End, step_m_s: f64, ring_m_s: f64, blow_m_s: f64) -> Signal {
         let pulse = |t: f64, from_s: f64, length_s: f64, area_m_s: f64| {
             let x = (t - from_s) / length_s;
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// The blow that explains the flight best, and the step where there is one.
+    /// The shock that explains the flight best, and the step if there is one.
     fn found(blow_m_s: f64) -> (FlightShock, f64) {
         let signals = [
             signal("A1", End::First, 19.0, 2.0, -0.4 * blow_m_s),
@@ -129,19 +129,19 @@ mod tests {
         let window = Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
         let integrated = Integrated::new(&signals, 0.02);
         let flight = fit_flights(&integrated, &window, None, 2.5, 3).swap_remove(0);
-        let strike = find_shock(&flight, &integrated, &window, 2.5).expect("a flight without gaps");
+        let shock = find_shock(&flight, &integrated, &window, 2.5).expect("a flight without gaps");
         let step_m_s = step_m_s(&flight, &integrated, &window, 2.5, 0.0605).expect("points enough");
         assert!(super::step_m_s(&flight, &integrated, &window, 2.5, 0.0262).is_some());
-        (find_shock, step_m_s)
+        (shock, step_m_s)
     }
 
     #[test]
     fn a_blow_is_told_from_ringing() {
         let (blow, step_m_s) = found(0.5);
-        // Modes fitted over the blow bend around a part of it.
+        // Modes fitted across the shock bend around a part of it.
         assert!((step_m_s - 0.5).abs() < 0.15, "{step_m_s}");
         assert!(found(0.0).1.abs() < 0.005);
-        // A point of the series is a quarter of a millisecond, and the blow lasts one.
+        // A point of the series is a quarter of a millisecond, and the shock lasts one.
         assert!(blow.gain > 30.0 && (blow.time_s - 0.0605).abs() < 1e-3, "{blow:?}");
         assert!((blow.step_m_s - 0.5).abs() < 0.05, "{blow:?}");
         assert!(found(0.0).0.gain < 10.0, "{:?}", found(0.0));

@@ -167,8 +167,8 @@ mod tests {
             let square: f64 = ends.map(|i| (cut[i] - truth[from + i]).powi(2)).sum();
             (square / 500.0).sqrt()
         };
-        // What an end adds is noise of about the filter's own size; over a quarter of 1/f it is one normal
-        // value at each end.
+        // An end adds noise of about the filter's own size; over a quarter of 1/f it is one normal value at
+        // each end.
         for from in (7000..13_000).step_by(500) {
             assert!(off(from) < 2.5 * own, "{from}: {} of {own}", off(from));
         }

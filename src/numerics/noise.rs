@@ -156,7 +156,7 @@ mod tests {
         (said, was)
     }
 
-    /// The same for samples: their spectrum, and the mean over all of them.
+    /// Uncertainty from samples: their spectrum, and the mean over all of them.
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     fn integral_uncertainty(quiet: &[f64], sample_rate_hz: f64, integrate_s: f64) -> f64 {
         integral_uncertainty_by(

@@ -234,7 +234,7 @@ mod tests {
             let speed = |duration_s| {
                 predict(&cask(), &lasting(15.0, duration_s), contact, 0.5).slap_down_speed_m_s.expect("R")
             };
-            // What is left is of first order in the length: 2 % of the speed at 10 ms.
+            // The remainder is of first order in the length: 2 % of the speed at 10 ms.
             let [whole, tenth] = [1e-5, 1e-6].map(|duration_s| (speed(duration_s) / speed(0.0) - 1.0).abs());
             assert!(whole < 2e-5 && tenth < 0.2 * whole + 1e-9, "{contact}: {whole} {tenth}");
         }

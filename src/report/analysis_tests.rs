@@ -1,4 +1,4 @@
-//! What an analysis says on a terminal and on its page.
+//! Texts of an analysis on a terminal and on its page.
 
 use super::analysis::document;
 use super::first_screen::first_screen;

@@ -192,9 +192,9 @@ mod tests {
         let drawn = drawn_sources(&listing);
         assert_eq!(drawn.len(), MOST_DRAWN);
         let samples: Vec<f64> = (0..100_000).map(|i| example::noise(i, 1)).collect();
-        let mut page = FirstLook::new(&listing, &drawn_sources);
-        (0..drawn_sources.len() - 1).for_each(|number| added(&mut page, number, &samples));
-        page.add(drawn_sources.len() - 1, Err("its times go backwards".into()));
+        let mut page = FirstLook::new(&listing, &drawn);
+        (0..drawn.len() - 1).for_each(|number| added(&mut page, number, &samples));
+        page.add(drawn.len() - 1, Err("its times go backwards".into()));
         let files = page.files("0123456789abcdef0").unwrap();
         let text = String::from_utf8(files[0].1.clone()).unwrap();
         assert!(text.len() < 3_000_000 && text.len() > 1_500_000, "{}", text.len());

@@ -421,7 +421,7 @@ mod tests {
             (Vec::new(), "it holds nothing"),
             (vec![listed("/daq/time_s", "dataset", Some("s"))], "it holds /daq/time_s"),
             (vec![unreadable("A1", None), unreadable("A2", None)], "A1: 9 of 20 cells"),
-            // What can be read is no acceleration, and what is one cannot.
+            // The readable source is no acceleration, and the acceleration is not readable.
             (vec![unreadable("A1", Some("g")), listed("count", "column", None)], "A1: 9 of 20 cells"),
         ] {
             let refusal = cask_file(&listing(channels)).unwrap_err();

@@ -4,13 +4,13 @@ use super::*;
 use crate::data::example::{self, noise};
 use std::f64::consts::{PI, TAU};
 
-/// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven
+/// Response of the remaining body to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven
 /// by the force.
 fn answer(rate_hz: f64, contact_s: f64, rigid: f64, bending: f64, seed: u64) -> Vec<f64> {
     driven(rate_hz, contact_s, (rigid, bending), seed, &|_| 1.0)
 }
 
-/// The same to the share of the force that `part` says, by the time since first contact.
+/// Response to a share of the force that `part` gives by the time since first contact.
 fn driven(
     rate_hz: f64,
     contact_s: f64,

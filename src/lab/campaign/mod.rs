@@ -156,7 +156,7 @@ mod tests {
             let off = |name| row.quantities.get(name).and_then(half_widths_off).map(f64::abs);
             off("k").zip(off("speed")).map(|(k, speed)| k.max(speed))
         };
-        // Of 100 such drops 2 half-widths were passed by none, of 12 without the sensor by 2.
+        // In 100 such drops none exceeded 2 half-widths, in 12 without the sensor two did.
         let rows: Vec<CampaignRow> = numbers(&request).into_iter().map(with_rate_sensor).collect();
         assert!(
             rows.iter().filter_map(off).all(|off| off < 2.0),

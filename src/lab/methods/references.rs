@@ -229,7 +229,7 @@ pub(super) fn built_in(files: Files) -> Option<Vec<TrialLimit>> {
 mod tests {
     use super::*;
 
-    /// What a folder says that holds one recording of the fixtures and this `reference.toml`.
+    /// Writes a folder with one recording of the fixtures and this `reference.toml`, and reads it.
     fn folder(reference: &str) -> Result<Vec<TrialLimit>, String> {
         let folder = tempfile::tempdir().expect("a temporary folder");
         for name in ["anf10-plain.csv", "anf10-plain.toml"] {

@@ -140,7 +140,7 @@ mod tests {
         assert!(
             text.contains("within 0.20 % of the speed") && text.contains("another way (by hand; 5.0 ms)")
         );
-        // What the recorded full run saw stands there though three drops did not show it.
+        // The result of the recorded full run is shown although three drops did not reproduce it.
         let known = Some(KnownSilence { becomes: "unnoticed from 7 mm", off: "4.5" });
         let unseen = TrialMap { name: "play".into(), sizes: vec![], known, ..trial.maps[0].clone() };
         trial.maps.push(unseen);

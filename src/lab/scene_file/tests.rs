@@ -1,4 +1,4 @@
-//! What a scene file gives, and what each slip in one is told.
+//! Results of scene files, and the message for each mistake in one.
 
 use super::*;
 use crate::data::{Axis, Coupling, End, Unit};

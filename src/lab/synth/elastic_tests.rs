@@ -71,7 +71,7 @@ fn an_elastic_drop_keeps_its_energy() {
         let [first, last] = [0, just_before(&motion, slap_s)].map(|i| energy_j(&scene, &motion, i));
         let lost_j = first - last;
         if contents > 0.0 {
-            // What the contents hold is not counted; they cannot give more than they brought.
+            // The energy of the contents is not counted; they cannot return more than they brought.
             assert!(lost_j > -0.5 * contents * scene.drop.impact_velocity_m_s.powi(2), "{lost_j} J");
         } else {
             assert!(lost_j.abs() < 1e-4 * first, "{first_hz} Hz: {lost_j} of {first} J");

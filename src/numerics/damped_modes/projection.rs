@@ -351,7 +351,7 @@ fn weights(series: &[Series], projected: &Projected) -> Vec<f64> {
     series.iter().zip(&projected.solved).map(weight).collect()
 }
 
-/// Whether some series weigh more than [`WEIGHT_CHANGE`] times as much beside the others as before.
+/// True if the relative weights of some series have grown by more than [`WEIGHT_CHANGE`].
 fn has_new_weights(before: &[f64], after: &[f64]) -> bool {
     let changes = || before.iter().zip(after).map(|(before, after)| after / before);
     changes().fold(0.0, f64::max) > WEIGHT_CHANGE * changes().fold(f64::INFINITY, f64::min)

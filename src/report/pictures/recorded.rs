@@ -143,7 +143,7 @@ mod tests {
         let values = bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()));
         let steps = line["steps"].as_array().unwrap().iter().map(|step| step.as_f64().unwrap());
         let [x0, dx] = ["x0", "dx"].map(|key| line[key].as_f64().unwrap());
-        // By the numbers of the samples, ten a millisecond.
+        // The samples count ten per millisecond.
         let (mut place, mut points) = (0.0, Vec::new());
         for (step, value) in steps.zip(values) {
             place += step;

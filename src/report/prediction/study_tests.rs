@@ -1,4 +1,4 @@
-//! What a study says on a terminal and on its page.
+//! Texts of a study on a terminal and on its page.
 
 use super::super::sample_study;
 use super::super::text::WIDTH;

@@ -52,7 +52,7 @@ fn white_noise_has_its_deviation_and_a_flat_spectrum() {
 #[test]
 fn pink_noise_has_its_deviation_and_falls_by_ten_a_decade() {
     let noise = added(|c| c.pink_noise_m_s2 = 2.0);
-    // Of 13 equal parts the slowest has 13 s · 2π of independent stretches: 1/13 · √(2/82) of the power is
+    // The slowest of 13 equal parts has 13 s · 2π of independent stretches: 1/13 · √(2/82) of the power is
     // uncertain, all of them 2 %.
     assert!((rms(&noise) / 2.0 - 1.0).abs() < 4.0 * 0.02, "{}", rms(&noise));
     // Mean of 1/f over the lines; the means of power are uncertain by 4 % each, the shape by 0.1 dB = 2 %
