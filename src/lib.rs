@@ -71,7 +71,7 @@ pub mod stages {
     pub use crate::condition::{Reach, condition};
     pub use crate::data::keys::{Allowed, INNER_TABLES, Key, KeyTable, TABLES, Takes};
     pub use crate::events::Changes;
-    pub use crate::fit::{FitData, ladder};
+    pub use crate::fit::{FitData, run_methods};
     pub use crate::motion::vector_pulses;
     pub use crate::motion::{Integrated, Window, filter, fit_flights, outcome, pulses, reconstruct};
     pub use crate::numerics::filter::LowPass;

@@ -156,7 +156,7 @@ fn quantities(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {
         let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
-        stages::ladder(&measured, &moved).expect("quantities")
+        stages::run_methods(&measured, &moved).expect("quantities")
     });
 }
 

@@ -195,14 +195,14 @@ fn taken(
     second: Option<&SecondImpact>,
 ) -> Option<fit::SelectedMethod> {
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
-    let without = || fit::ladder(measured, &moved);
+    let without = || fit::run_methods(measured, &moved);
     let Some(second) = second else { return without() };
     let contact = fit::SecondImpactData {
         inputs: &second.inputs(),
         excess_rotation_rad_s: &|inputs: &_, first: &_| second.turned_beyond_rad_s(inputs, first),
         rotation_rad_s: second.turned_rad_s(),
     };
-    fit::ladder(&fit::FitData { second: Some(contact), ..*measured }, &moved).or_else(without)
+    fit::run_methods(&fit::FitData { second: Some(contact), ..*measured }, &moved).or_else(without)
 }
 
 /// The speed of R's corner where ringing adds to that of the rigid body   (44)

@@ -173,7 +173,7 @@ impl ExpectedDrop {
             stood_in: None,
             second: None,
         };
-        Some(fit::ladder(&measured, &moved)?.quantities)
+        Some(fit::run_methods(&measured, &moved)?.quantities)
     }
 }
 

@@ -81,7 +81,7 @@ pub const U_RELEASE_S: f64 = 0.005;
 
 /// Above this many standard uncertainties noise and tolerances alone do not explain the miss of a check (95
 /// %).
-pub const MET_U: f64 = 2.0;
+pub const CONSISTENT_U: f64 = 2.0;
 
 /// One observable that the motion must reproduce beside the velocity steps, and its miss.
 #[derive(Debug, Clone, PartialEq, Serialize)]

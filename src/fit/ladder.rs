@@ -6,8 +6,8 @@ use super::steps::has_lost_step;
 use super::untested::{self, SilentMistake};
 use super::{FitData, Reconstruct};
 use crate::data::{
-    CheckKind, Consistency, Contribution, Estimate, FlightFit, MET_U, Method, MethodCandidate, MethodChoice,
-    Opening, Quantities, Tolerances, Untested,
+    CONSISTENT_U, CheckKind, Consistency, Contribution, Estimate, FlightFit, Method, MethodCandidate,
+    MethodChoice, Opening, Quantities, Tolerances, Untested,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -85,7 +85,7 @@ impl SelectedMethod {
 /// answer no higher one would change by more than its interval or determine much better.
 ///
 /// `None` if the motion cannot be determined.
-pub fn ladder(measured: &FitData, reconstruct: Reconstruct) -> Option<SelectedMethod> {
+pub fn run_methods(measured: &FitData, reconstruct: Reconstruct) -> Option<SelectedMethod> {
     let model = Model::new(measured, reconstruct)?;
     let flight = model.propagate_stated()?;
     let joint = model.fit_jointly();
@@ -94,7 +94,8 @@ pub fn ladder(measured: &FitData, reconstruct: Reconstruct) -> Option<SelectedMe
     let mut steps = vec![flight_method(measured, flight, &closures)];
     let (mut widened, mut why) = interval_factor(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
-        if closures.iter().any(|c| c.kind == CheckKind::SecondTurning && c.largest_residual() > MET_U) {
+        if closures.iter().any(|c| c.kind == CheckKind::SecondTurning && c.largest_residual() > CONSISTENT_U)
+        {
             let by_length = open_length_factor(measured, reconstruct, &model.propagate(fit, 1.0)?.quantities);
             if by_length > widened {
                 (widened, why) = (by_length, "a wrong length would explain the second impact's rotation");
@@ -159,7 +160,7 @@ fn flight_method(measured: &FitData, propagated: Propagated, closures: &[Consist
 /// Factor by which the intervals of a joint fit are widened, and its reason: data that contradict one another
 /// by more than chance (Birge 1932)   (31b), or checks that are spent on a lost step.
 fn interval_factor(closures: &[Consistency], has_lost_step: bool) -> (f64, &'static str) {
-    let by_misses = closures.iter().map(|c| c.largest_residual() / MET_U).fold(1.0, f64::max);
+    let by_misses = closures.iter().map(|c| c.largest_residual() / CONSISTENT_U).fold(1.0, f64::max);
     if has_lost_step && by_misses < UNCHECKED_FACTOR {
         (UNCHECKED_FACTOR, "a closure is spent on a lost velocity step")
     } else {
@@ -194,7 +195,7 @@ fn joint_method(
 }
 
 fn are_consistent(closures: &[Consistency]) -> bool {
-    closures.iter().all(|c| c.largest_residual() <= MET_U)
+    closures.iter().all(|c| c.largest_residual() <= CONSISTENT_U)
 }
 
 /// Names the check with the largest miss.

@@ -14,7 +14,7 @@ use crate::data::{
 };
 
 pub use inputs::Inputs;
-pub use ladder::{SelectedMethod, ladder};
+pub use ladder::{SelectedMethod, run_methods};
 pub use steps::{u_base_strain_m_s, u_step_m_s};
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).

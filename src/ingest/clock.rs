@@ -19,7 +19,7 @@
 use super::refusal::Refusal;
 use super::shown;
 use super::statement::Statement;
-use crate::data::{ClockFinding, Finding, HowApart, RatesApart, TimesApart};
+use crate::data::{ClockFinding, Finding, RatesApart, TimeDisagreement, TimesApart};
 use crate::numerics::robust;
 
 /// A rate off by more than this part of itself is told: oscillators keep 1e-4, and every velocity is off by
@@ -180,11 +180,11 @@ impl Clock<'_> {
             return Ok(None);
         }
         let how = if whole > RATE_TOLERANCE {
-            HowApart::Lasting { taken_s: span_s, other_s: other_span_s }
+            TimeDisagreement::Lasting { taken_s: span_s, other_s: other_span_s }
         } else if worst > RATE_TOLERANCE {
-            HowApart::InRow { row: worst_row + 1, apart_s: worst_s.abs() }
+            TimeDisagreement::InRow { row: worst_row + 1, apart_s: worst_s.abs() }
         } else {
-            HowApart::AtStart { apart_s: offset_s.abs() }
+            TimeDisagreement::AtStart { apart_s: offset_s.abs() }
         };
         let (one, two) = (self.name, other.name);
         let apart = TimesApart { taken: one.to_owned(), other: two.to_owned(), how };

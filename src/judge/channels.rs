@@ -2,7 +2,7 @@
 
 use super::sampling;
 use crate::data::{
-    Axis, CaskFile, ChannelFinding, During, Effect, End, Estimate, Events, Finding, FindingKind, FlightFit,
+    Axis, CaskFile, ChannelFinding, DropPart, Effect, End, Estimate, Events, Finding, FindingKind, FlightFit,
     MOST_LOST_M_S, STANDARD_GRAVITY_M_S2, Severity, Signal,
 };
 use crate::numerics::noise::integral_uncertainty_by;
@@ -66,18 +66,18 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
     let separation_s = events.separation_s().unwrap_or(f64::INFINITY);
     let slap_down_s = events.slap_down_s().unwrap_or(f64::INFINITY);
     let parts = [
-        (f64::NEG_INFINITY..separation_s, During::FirstImpact),
-        (separation_s..slap_down_s, During::Flight),
-        (slap_down_s..f64::INFINITY, During::SlapDown),
+        (f64::NEG_INFINITY..separation_s, DropPart::FirstImpact),
+        (separation_s..slap_down_s, DropPart::Flight),
+        (slap_down_s..f64::INFINITY, DropPart::SlapDown),
     ];
-    let of_part = |(part_s, during): (Range<f64>, During), is_flank: bool| {
+    let of_part = |(part_s, during): (Range<f64>, DropPart), is_flank: bool| {
         let spans = signal.clipped.iter().filter(|s| part_s.contains(&signal.time_s(s.from)));
         let spans: Vec<_> = spans.filter(|s| signal.is_flank(s) == is_flank).collect();
         let (first, last) = (spans.first()?, spans.last()?);
         let lost_m_s = signal.lost_to_clipping_m_s(part_s.start, part_s.end);
         let (samples, takes_step) = (
             spans.iter().map(|s| s.to - s.from).sum(),
-            during != During::SlapDown && lost_m_s > MOST_LOST_M_S,
+            during != DropPart::SlapDown && lost_m_s > MOST_LOST_M_S,
         );
         let level_m_s2 = signal.force_m_s2[first.from];
         let found = if is_flank {

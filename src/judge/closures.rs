@@ -1,7 +1,7 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
 use crate::data::{
-    CheckKind, Consistency, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U, Method,
+    CONSISTENT_U, CheckKind, Consistency, Drop, DropFinding, Estimate, Events, Finding, MISSED_U, Method,
     MethodChoice, Signal,
 };
 use crate::numerics::pooled::chi_square_quantile;
@@ -60,7 +60,7 @@ pub fn tells_lost_steps(
     contact_s: f64,
 ) -> bool {
     let has = |kind| choice.closures.iter().any(|c| c.kind == kind);
-    let all_met = choice.closures.iter().all(|c| c.largest_residual() < MET_U);
+    let all_met = choice.closures.iter().all(|c| c.largest_residual() < CONSISTENT_U);
     let shows_contact =
         signals.iter().all(|s| !s.overlaps(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
     let says_something =

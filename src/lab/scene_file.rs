@@ -182,11 +182,11 @@ fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {
 }
 
 /// The channels, each name once.
-fn channels(tables: &[Section], cask: &Cask) -> Result<Vec<channel::Both>, CaskFileError> {
+fn channels(tables: &[Section], cask: &Cask) -> Result<Vec<channel::ChannelPair>, CaskFileError> {
     if tables.is_empty() {
         return Ok(channel::usual_channels(cask));
     }
-    let mut channels: Vec<channel::Both> = Vec::new();
+    let mut channels: Vec<channel::ChannelPair> = Vec::new();
     for table in tables {
         let pair = channel::channel(table, cask)?;
         if channels.iter().any(|other| other.0.name == pair.0.name) {

@@ -3,7 +3,7 @@
 use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
-    CogVelocity, Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
+    CogVelocity, Comparison, Contact, Curves, Drop, DropFinding, DropPart, DropResult, End, Estimate, Events,
     Extreme, Finding, FirstImpact, FlightFit, FlightRegime, FlightScore, ImpactTable, Input, IssueCode,
     LazyCurves, Mode, ModelCandidate, ModelChoice, MotionCurve, OtherCurve, OtherSummary, Plateau,
     Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, SpectralLine, Unit, Verdict,
@@ -235,7 +235,7 @@ fn predictions() -> Vec<Prediction> {
 }
 
 fn quality() -> Vec<Finding> {
-    let during = During::FirstImpact;
+    let during = DropPart::FirstImpact;
     let clipped =
         ChannelFinding::Clipped { limit_m_s2: 4903.0, samples: 42, during, lost_m_s: 0.2, takes_step: false };
     vec![

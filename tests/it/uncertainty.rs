@@ -39,7 +39,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     };
     let integrated = stages::Integrated::new(&signals, result.events.first_contact_s().expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
-    let ladder = stages::ladder(&measured, &moved).expect("quantities");
+    let ladder = stages::run_methods(&measured, &moved).expect("quantities");
     let linear = ladder.choice.candidates.iter().find(|c| c.rung == Method::Flight).expect("one");
     let mut chance = ChaCha8Rng::seed_from_u64(4);
     let mut drawn = || {

@@ -17,7 +17,7 @@ const MOST_TIMES: usize = 8;
 
 /// The part of a drop in which a channel clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum During {
+pub enum DropPart {
     /// Between the first contact and the separation.
     FirstImpact,
     /// Between the separation and the slap-down.
@@ -47,12 +47,12 @@ findings! {
 /// A finding about one channel; its words follow the name of the channel.
 pub enum ChannelFinding {
     /// Samples stay at a limit; `takes_step` if more velocity is cut off than a result may miss.
-    Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
+    Clipped { limit_m_s2: f64, samples: usize, during: DropPart, lost_m_s: f64, takes_step: bool }
         => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more head-room",
          limit_m_s2 / G, cut_off_words(*during, *lost_m_s, *takes_step));
     /// The signal falls in a straight line, at the chain's largest slope; `takes_step` as for `Clipped`.
-    Slewed { slope_m_s3: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool }
+    Slewed { slope_m_s3: f64, samples: usize, during: DropPart, lost_m_s: f64, takes_step: bool }
         => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("falls in one straight line of {:.0} g/ms for {samples} samples {}. Its amplifier does not follow: \
          use one of a higher slew rate", slope_m_s3 / G / 1e3, cut_off_words(*during, *lost_m_s, *takes_step));
@@ -337,11 +337,11 @@ impl ChannelFinding {
     }
 }
 
-fn cut_off_words(during: During, lost_m_s: f64, takes_step: bool) -> String {
+fn cut_off_words(during: DropPart, lost_m_s: f64, takes_step: bool) -> String {
     let part = match during {
-        During::FirstImpact => "first impact",
-        During::Flight => "flight",
-        During::SlapDown => {
+        DropPart::FirstImpact => "first impact",
+        DropPart::Flight => "flight",
+        DropPart::SlapDown => {
             return "from the slap-down on, which leaves the speed before it as it is but not the peak"
                 .into();
         }

@@ -38,13 +38,13 @@ pub struct RatesApart {
 pub struct TimesApart {
     pub taken: String,
     pub other: String,
-    pub how: HowApart,
+    pub how: TimeDisagreement,
 }
 
 /// Kind of disagreement between two columns of times.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
-pub enum HowApart {
+pub enum TimeDisagreement {
     /// Their durations differ.
     #[error("from the first row to the last they say {} s and {} \
              s", digits(*.taken_s, 5), digits(*.other_s, 5))]

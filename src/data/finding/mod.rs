@@ -63,8 +63,8 @@ mod table;
 mod times;
 
 pub use attribute::AttributeFinding;
-pub use channel::{ChannelFinding, During, RotationCause};
-pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
+pub use channel::{ChannelFinding, DropPart, RotationCause};
+pub use clock::{ClockFinding, RatesApart, TimeDisagreement, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::DropFinding;
 pub use effect::{Effect, ResultPart};

@@ -16,7 +16,7 @@ const FROM_END_M: f64 = 0.15;
 const WHITE_NOISE_G: f64 = 0.1;
 
 /// A channel as it is, and as stated.
-pub(super) type Both = (SceneChannel, ChannelSpec);
+pub(super) type ChannelPair = (SceneChannel, ChannelSpec);
 
 fn read_end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
     let end = table.word("end", &[("first", End::First), ("second", End::Second)], mend)?;
@@ -24,7 +24,7 @@ fn read_end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
 }
 
 /// One transverse sensor near each end, for a scene without channels.
-pub(super) fn usual_channels(cask: &Cask) -> Vec<Both> {
+pub(super) fn usual_channels(cask: &Cask) -> Vec<ChannelPair> {
     let channel = |(name, end)| {
         let mut channel = SceneChannel::perfect(name, end, usual_position_m(cask, end));
         channel.chain.white_noise_m_s2 = WHITE_NOISE_G * STANDARD_GRAVITY_M_S2;
@@ -48,7 +48,7 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
 }
 
 /// The channel of one table.
-pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileError> {
+pub(super) fn channel(table: &Section, cask: &Cask) -> Result<ChannelPair, CaskFileError> {
     const HIDDEN: &str =
         "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
     let end = read_end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;

@@ -76,7 +76,7 @@ skew_ms = -3.0
 swapped_polarity = true
 "#;
 
-fn of(text: &str) -> Result<SceneFile, CaskFileError> {
+fn parse_text(text: &str) -> Result<SceneFile, CaskFileError> {
     parse(Path::new("scene.toml"), text)
 }
 
@@ -87,7 +87,7 @@ fn near(value: f64, wanted: f64) {
 
 #[test]
 fn six_lines_make_a_scene() {
-    let SceneFile { scene, stated } = of(SHORT).unwrap();
+    let SceneFile { scene, stated } = parse_text(SHORT).unwrap();
     assert_eq!((scene.name.as_str(), scene.seed, scene.modes.len()), ("scene", 1, 0));
     // The stiffnesses of an end are as k².
     near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.25);
@@ -101,13 +101,13 @@ fn six_lines_make_a_scene() {
 
 #[test]
 fn a_body_may_be_elastic() {
-    let SceneFile { scene, .. } = of(&format!("{SHORT}[body]\nfirst_bending_hz = 120\n")).unwrap();
+    let SceneFile { scene, .. } = parse_text(&format!("{SHORT}[body]\nfirst_bending_hz = 120\n")).unwrap();
     assert_eq!(scene.elastic, Some(ElasticBody { first_bending_hz: 120.0, damping: 0.01 }));
 }
 
 #[test]
 fn every_key_finds_its_place() {
-    let SceneFile { scene, stated } = of(FULL).unwrap();
+    let SceneFile { scene, stated } = parse_text(FULL).unwrap();
     near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.3025);
     assert!(scene.first_end.yield_n.is_some());
     near(scene.second_end.unloading_n_m, 4e7);
@@ -187,7 +187,7 @@ fn every_slip_is_one_message_with_its_key() {
     ];
     for (right, wrong, expected) in cases {
         assert!(FULL.contains(right), "{right}");
-        let error = of(&FULL.replacen(right, wrong, 1)).unwrap_err();
+        let error = parse_text(&FULL.replacen(right, wrong, 1)).unwrap_err();
         let help = error.help().map(|help| help.to_string()).unwrap_or_default();
         let labels: Vec<String> =
             error.labels().into_iter().flatten().filter_map(|l| l.label().map(str::to_owned)).collect();
@@ -197,11 +197,11 @@ fn every_slip_is_one_message_with_its_key() {
         }
         assert!(message.starts_with("scene.toml, line "), "{message}");
     }
-    let missing = of("[cask]\nmass_kg = 1\nlength_m = 1\n").unwrap_err().to_string();
+    let missing = parse_text("[cask]\nmass_kg = 1\nlength_m = 1\n").unwrap_err().to_string();
     assert!(missing.contains("the scene file has no [drop]"), "{missing}");
     let long = format!(
         "{SHORT}[recording]\nbefore_s = 60\n[[channel]]\nname = \"A\"\nend = \"first\"\nsample_rate_hz = \
          5e6\n"
     );
-    assert!(of(&long).unwrap_err().to_string().contains("more than 20000000 samples"));
+    assert!(parse_text(&long).unwrap_err().to_string().contains("more than 20000000 samples"));
 }

@@ -143,7 +143,7 @@ impl<'a> SceneBody<'a> {
     }
 
     /// Force of the pads on a loose mass.
-    fn pad_blow(&self, loose: Loose, y: &[f64]) -> PadForce {
+    fn pad_force(&self, loose: Loose, y: &[f64]) -> PadForce {
         let Loose { at: i, mass: loose, bends } = loose;
         let (sin, cos) = y[2].sin_cos();
         let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
@@ -286,7 +286,7 @@ impl<'a> SceneBody<'a> {
             moment_n_m += self.arm_m(end, &at) * n - at.z_m * t;
         }
         for loose in self.loose_masses() {
-            let PadForce { xi_m, force_n } = self.pad_blow(loose, y);
+            let PadForce { xi_m, force_n } = self.pad_force(loose, y);
             let (sin, cos) = y[2].sin_cos();
             tangential_n += force_n * sin;
             normal_n -= force_n * cos;
@@ -313,11 +313,11 @@ impl<'a> SceneBody<'a> {
         }
         let (sin, cos) = y[2].sin_cos();
         let cask = &self.scene.cask;
-        for each in self.loose_masses() {
-            let (i, loose, bends) = (each.at, each.mass, each.bends);
-            let PadForce { force_n, .. } = self.pad_blow(each, y);
+        for loose in self.loose_masses() {
+            let (i, mass_kg, bends) = (loose.at, loose.mass.mass_kg, loose.bends);
+            let PadForce { force_n, .. } = self.pad_force(loose, y);
             let (along_n, up_n) = (-force_n * sin, force_n * cos);
-            let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
+            let [along, up] = [along_n, up_n].map(|n| n / mass_kg);
             rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
             for (q, bends) in bends.iter().enumerate() {
                 rates[7 + 2 * q] -= force_n * bends / cask.mass_kg;

@@ -43,8 +43,7 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let banner = Chapter::new("").then(PartContent::Banner(banner, batch.sum(&odd)));
     let mut chapters = vec![banner, outliers(&odd)];
     chapters.extend(reasons(batch));
-    chapters
-        .extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| series_chapter(series, i + 1)));
+    chapters.extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| describe(series, i + 1)));
     let more =
         format!("The first {MOST_SERIES} of {} casks: campaign.json has the pools of all.", series.len());
     chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").then(ChapterPart::note(more))));
@@ -130,7 +129,7 @@ fn reasons(batch: &Batch) -> Option<Chapter> {
     any.then(|| Chapter::new("Not analysed, or with findings").then(batch.reasons(name)))
 }
 
-fn series_chapter(series: &DropSeries, number: usize) -> Chapter {
+fn describe(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| format!("{} at {}", pool.quantity.words()[2], pool.angle_words());
     let unit = |pool: &Pool| if pool.quantity == PooledQuantity::K { "" } else { " m/s" };
     let word = |pool: &Pool| match pool.pooled.word() {
