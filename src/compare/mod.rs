@@ -104,8 +104,8 @@ impl ModelComparison<'_> {
         (self.predict)(rung, body, drop, self.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
     }
 
-    /// 95 % half-width of a prediction, m/s: k, what the cask file states, and the shape of a pulse of finite
-    /// length.
+    /// 95 % half-width of a prediction, m/s: from k, the cask file's values, and the shape of a pulse of
+    /// finite length.
     fn uncertainty_m_s(&self, rung: Rung) -> Option<f64> {
         let Self { body, file, drop, measured, .. } = self;
         let k = measured.k.value.clamp(0.0, 1.0);

@@ -277,7 +277,7 @@ pub struct DropResult {
     pub predictions: Vec<Prediction>,
     /// Measured beside predicted.
     pub comparison: Option<Comparison>,
-    /// Who tested what, where and when.
+    /// Test record: persons, specimen, place and date.
     pub test: TestRecord,
     /// Independent observations beside the result.
     pub observed: Vec<ObservedBeside>,

@@ -298,8 +298,7 @@ impl Drop {
         }
     }
 
-    /// The same fall of the centre of gravity with `more_rad_s` added to the rotation: v0 = √(2 g h) − ω a
-    /// (3)
+    /// Adds `more_rad_s` to the rotation of the same fall of the centre of gravity: v0 = √(2 g h) − ω a   (3)
     pub fn add_rotation(self, cask: &Cask, more_rad_s: f64) -> Self {
         let a_m = first_arm_m(cask.cog_m, cask.height_m, self.angle_rad);
         Self {
@@ -352,7 +351,7 @@ pub struct ChannelSpec {
     pub scale: Option<f64>,
     /// Full scale, at which the channel clips, in its unit.
     pub full_scale: Option<f64>,
-    /// Overrides what the recording says, Hz.
+    /// Sample rate that replaces that of the recording, Hz.
     pub sample_rate_hz: Option<f64>,
     /// The recording beside the cask file that holds the channel, if it belongs to another recorder.
     pub file: Option<String>,

@@ -25,7 +25,8 @@ pub struct CaskFile {
     pub drop: Drop,
     /// `[contact] friction`.
     pub contact: Contact,
-    /// Duration of the first contact, s: `[contact] duration_s`, or what replaces it; `None` if not stated.
+    /// Duration of the first contact, s: `[contact] duration_s`, or the value that replaces it; `None` if not
+    /// stated.
     pub contact_duration_s: Option<f64>,
     /// `[filter]`.
     pub filter: FilterChoice,

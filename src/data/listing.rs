@@ -79,8 +79,8 @@ pub struct Listing {
     pub bytes: u64,
     /// Format.
     pub format: RecordingFormat,
-    /// Counts of what the container holds: for MCAP "messages", "schemas", "channels", "chunks",
-    /// "attachments", "metadata"; for HDF5 "groups", "datasets"; for CSV "rows", "columns", "preamble_lines".
+    /// Counts of the container's items: for MCAP "messages", "schemas", "channels", "chunks", "attachments",
+    /// "metadata"; for HDF5 "groups", "datasets"; for CSV "rows", "columns", "preamble_lines".
     pub counts: BTreeMap<String, u64>,
     /// Facts that the container states: library and profile, delimiter, decimal mark, encoding, compression
     /// and others.

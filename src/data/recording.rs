@@ -102,7 +102,7 @@ pub struct HeldSamples {
     pub sample_rate_hz: Option<f64>,
     /// Unit; `None` if the cask file states it.
     pub unit: Option<String>,
-    /// A time a sample, s.
+    /// Time of each sample, s.
     pub times_s: Option<Vec<f64>>,
     /// Time of the first sample if there are no times, s.
     pub start_s: f64,

@@ -81,7 +81,7 @@ pub struct Uncertain {
     pub angle_deg: f64,
     /// Half-width of the impact velocity, share of it.
     pub impact_velocity: f64,
-    /// Half-width of the rotation at first contact, degrees a second.
+    /// Half-width of the rotation at first contact, degrees per second.
     pub angular_velocity_deg_s: f64,
     /// Half-width of the sideways velocity at first contact, m/s.
     pub horizontal_velocity_m_s: f64,

@@ -19,7 +19,7 @@ pub struct TestRecord {
     pub customer: Option<String>,
     /// Specimen.
     pub specimen: Option<String>,
-    /// Onto what.
+    /// Target of the drop.
     pub target: Option<String>,
     /// Anything else.
     pub remarks: Option<String>,
@@ -31,7 +31,7 @@ pub struct TestRecord {
     pub photos: Vec<Photo>,
     /// Who signs.
     pub signatures: Vec<String>,
-    /// Revisions of its report: date, version of the program and what changed, apart by commas.
+    /// Revisions of the report: date, version of the program and change, separated by commas.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub revisions: Vec<String>,
     /// `[test.more]`: additional names and words.

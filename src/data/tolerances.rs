@@ -10,11 +10,11 @@ use ToleranceUnit::{Degrees, Metres, MetresOf, MetresPerSecond, Percent};
 enum ToleranceUnit {
     /// Percent of the thing itself, held as a share of it.
     Percent,
-    /// Degrees, or degrees a second; the text is the unit in the report.
+    /// Degrees, or degrees per second; the text is the unit in the report.
     Degrees(&'static str),
     /// Metres, shown in millimetres.
     Metres,
-    /// Metres a second.
+    /// Metres per second.
     MetresPerSecond,
     /// Metres, held as a share of this size and shown in percent of it; the default is in percent.
     MetresOf(fn(&Cask) -> f64),
@@ -154,7 +154,7 @@ tolerances! {
     /// Inertia, as a share of it.
     inertia: "inertia_percent" in Percent, 2.0 ("2; 15 where `inertia_kg_m2` is left out", "2.0"),
         "inertia", "";
-    /// Friction of the first contact, as a share of it: of the stated coefficient, or of what sticking needs.
+    /// Relative friction of the first contact: of the stated coefficient, or of the friction for sticking.
     friction: "friction_percent" in Percent, 20.0,
         "friction of the first contact", "of the coefficient, or of what sticking needs";
     /// Rate of the recorder's clock, as a share of it; all channels share it.

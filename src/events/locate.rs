@@ -78,7 +78,7 @@ struct ChannelChanges<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct HidingNoise {
     pub channel: String,
-    /// Standard deviation of what it changes the velocity by within 25 ms, m/s.
+    /// Standard deviation of the velocity change within 25 ms from noise, m/s.
     pub noise_m_s: f64,
 }
 

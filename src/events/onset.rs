@@ -19,7 +19,7 @@ pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// If the velocity changed by this share of the pulse's step before its rise, an earlier stage of the pulse
 /// did so.
 const EARLIER_STAGE: f64 = 0.02;
-/// The same share for the second impact, before which a flight rings and drifts.
+/// Such a share for the second impact, before which a flight rings and drifts.
 const SECOND_STAGE: f64 = 0.2;
 /// The velocity shows a rise between these shares of its change up to the middle of the pulse.
 const LEAST_GIVEN: f64 = 0.04;

@@ -266,8 +266,8 @@ impl<'a> Record<'a> {
         margin * scatter_m_s2.max(drift_m_s2).hypot(self.u_rounding_m_s2())
     }
 
-    /// The block from which on the mean over [`DEPARTURE_BLOCKS`] blocks is off the free-fall level; `None` if
-    /// the level stays to the end.
+    /// The block from which on the mean over [`DEPARTURE_BLOCKS`] blocks is off the free-fall level; `None`
+    /// if the level stays to the end.
     fn departure(&self, step: usize, falling: f64) -> Option<usize> {
         let after = self.blocks.get(step + DEPARTURE_BLOCKS..)?;
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };

@@ -31,7 +31,7 @@ const OPENING_ROUNDS: usize = 5;
 /// Shifts below this many standard uncertainties are not listed.
 const NOTABLE_MOVE: f64 = 0.05;
 
-/// The quantities, and what each datum contributes to their uncertainty.
+/// The quantities, and the contribution of each datum to their uncertainty.
 pub(super) struct Propagated {
     pub quantities: Quantities,
     /// Largest contribution first.
@@ -277,7 +277,7 @@ impl<'a> Model<'a> {
 struct StepLine {
     /// The channels.
     channels: Vec<usize>,
-    /// Takes the line off what each has.
+    /// Projection that subtracts the line from the steps.
     projection: DMatrix<f64>,
 }
 

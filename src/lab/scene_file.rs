@@ -26,7 +26,7 @@ const SECOND_IMPACT: WantedImpact = WantedImpact { duration_s: 5e-3, restitution
 /// Default duration of hanging at rest, s.
 const AT_REST_S: f64 = 0.25;
 
-/// The most samples of a channel.
+/// Most samples of a channel.
 const MOST_SAMPLES: f64 = 2e7;
 
 /// Reads and checks the scene file at `path`.

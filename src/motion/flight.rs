@@ -21,7 +21,7 @@ pub(super) const CLEAR_S: f64 = 5e-3;
 const LEAST_FLOOR: f64 = 1e-3;
 /// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
 const LATE_S: f64 = 0.02;
-/// A shorter stretch that is compared too, s, for what happens shortly before the slap-down.
+/// A shorter stretch that is compared too, s, for events shortly before the slap-down.
 const LAST_S: f64 = 0.004;
 /// Stretch after the separation that is compared with the fit, s: at most half a period of 500 Hz, at least
 /// the time before a fit that begins clear of the contact.

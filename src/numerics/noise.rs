@@ -6,7 +6,8 @@ use super::{as_count, as_f64};
 use rustfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Sine tapers averaged (Riedel & Sidorenko 1995): 2 × 5 degrees of freedom a line, a resolution of 3 lines.
+/// Sine tapers averaged (Riedel & Sidorenko 1995): 2 × 5 degrees of freedom per line, a resolution of 3
+/// lines.
 const TAPERS: u32 = 5;
 /// First line used: those below lie within the tapers' resolution of the mean that was subtracted.
 const FIRST_LINE: usize = 3;

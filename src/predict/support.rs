@@ -109,7 +109,7 @@ impl<'a> Support<'a> {
             Hold::Pulls => stuck.normal_m_s2.abs(),
             Hold::Pushes | Hold::Yields => stuck.normal_m_s2,
         };
-        // Rough sticks as long as it is held at all.
+        // A rough corner sticks as long as it is held at all.
         match (self.contact, self.hold) {
             (Contact::Rough, Hold::Pulls | Hold::Pushes) => f64::INFINITY,
             (Contact::Rough, Hold::Yields) => normal,

@@ -48,7 +48,7 @@ fn excerpt(line: &str, at: usize) -> String {
     format!("{before}{}{behind}", line.get(from..to).unwrap_or_default())
 }
 
-/// The message with what caused it, each once.
+/// The message with its causes, each once.
 fn with_causes(report: &Report) -> String {
     let mut text = report.to_string();
     for cause in report.chain().skip(1) {

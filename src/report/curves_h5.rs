@@ -1,4 +1,5 @@
-//! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
+//! Writes curves as `curves.h5`: one group per channel, datasets with their unit, rate and start as
+//! attributes.
 
 use super::ReportError;
 use super::grid::{CurveSeries, motion_series, named_events, step_s};

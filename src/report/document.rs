@@ -97,7 +97,7 @@ pub(crate) struct ChapterPart {
 pub(crate) enum PartContent {
     /// Words in the given role.
     Sentence(SentenceRole, Words),
-    /// A word in its colour, and what it means.
+    /// A word in its colour, and its meaning.
     Banner(Tone, String),
     /// The headline numbers: name, value, remark.
     Figures(Vec<[String; 3]>),
@@ -161,7 +161,7 @@ impl ChapterPart {
         Self::sentence(SentenceRole::Note, words)
     }
 
-    /// Names with what they stand for.
+    /// Makes a list of names with their values.
     pub(crate) fn facts(caption: impl Into<String>, facts: Vec<Fact>) -> Self {
         PartContent::Facts(caption.into(), facts).into()
     }
@@ -213,7 +213,7 @@ impl From<ReportTable> for ChapterPart {
     }
 }
 
-/// A name and what it stands for.
+/// A name with its value.
 pub(crate) struct Fact {
     pub(crate) name: String,
     /// True if nobody stated the value.

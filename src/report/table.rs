@@ -40,7 +40,7 @@ pub(crate) enum CellKind {
     Text,
     /// Set to the right.
     Number,
-    /// Words that stay on a line.
+    /// Words that stay on one line.
     Soft,
     /// Words as a machine writes them.
     Code,
@@ -148,7 +148,7 @@ impl<'a, R> TableRows<'a, R> {
         self.column(CellKind::Number, head, cell)
     }
 
-    /// Words that stay on a line.
+    /// Adds a column of words that stay on one line.
     pub(crate) fn line<C: Into<TableCell>>(self, head: impl Into<Words>, cell: impl Fn(&'a R) -> C) -> Self {
         self.column(CellKind::Soft, head, cell)
     }

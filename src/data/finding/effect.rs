@@ -21,7 +21,7 @@ pub enum ResultPart {
 /// Effect of a finding on the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// Takes nothing away.
+    /// Removes nothing.
     Nothing,
     /// Removes nothing, and states what would explain the other findings.
     Hint,
@@ -54,7 +54,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// The parts that it takes away.
+    /// The parts that it removes.
     pub fn parts(self) -> &'static [ResultPart] {
         use ResultPart::{Channel, FirstImpact, Motion, SecondImpact, SlapDown};
         match self {

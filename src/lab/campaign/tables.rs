@@ -9,7 +9,7 @@ use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument, ReportTable};
 use crate::report::rounding::optional_fixed;
 
-/// The whole as Markdown.
+/// The document as Markdown.
 pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally))
 }

@@ -63,7 +63,7 @@ pub struct RateSensor {
     pub position_m: f64,
     /// Unit in the recording, "rad/s" or "deg/s".
     pub unit: String,
-    /// Samples a second.
+    /// Sample rate, Hz.
     pub sample_rate_hz: f64,
     /// True scale over stated scale.
     pub scale: f64,
@@ -163,7 +163,7 @@ pub struct SceneChannel {
     pub lateral_m: f64,
     /// Unit in the recording, "g" or "m/s^2".
     pub unit: String,
-    /// Samples a second.
+    /// Sample rate, Hz.
     pub sample_rate_hz: f64,
     /// The chain.
     pub chain: Chain,

@@ -18,7 +18,7 @@ pub struct WantedImpact {
 /// A checked scene file: the scene, and the statements for the cask file beside the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
-    /// The scene as it is.
+    /// The true scene.
     pub scene: Scene,
     /// The scene as stated: its channels in the same order, their sources still unnamed.
     pub stated: CaskFile,
@@ -33,7 +33,7 @@ pub struct SyntheticChannel {
     pub unit: String,
     /// Stamp of the first sample, s from the earliest of all channels.
     pub start_s: f64,
-    /// Samples a second, as the recorder believes.
+    /// Sample rate, Hz, as the recorder states it.
     pub sample_rate_hz: f64,
     /// The samples; NaN where the recorder lost them.
     pub samples: Vec<f32>,

@@ -81,7 +81,7 @@ pub struct TrialDrop {
 pub struct TrialSize {
     /// The size, in the map's unit.
     pub size: f64,
-    /// The same drops at every size.
+    /// Drops, the same at every size.
     pub drops: Vec<TrialDrop>,
 }
 
@@ -90,7 +90,7 @@ pub struct TrialSize {
 pub struct TrialMap {
     /// Name of the damage, as in the table of damages.
     pub name: String,
-    /// A sentence: what is done.
+    /// A sentence on the damage.
     pub what: String,
     /// Unit of the sizes.
     pub unit: String,

@@ -97,7 +97,7 @@ pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> 
             told_by: kind.expected_codes.clone(),
             instead: kind.instead.to_owned(),
             sizes,
-            // A full run finds for itself what is silent.
+            // A full run determines by itself which damages are silent.
             known: damage::known_silence(kind.name).filter(|_| request.quick),
         };
         progress(as_f64(done.fetch_add(1, Ordering::Relaxed) + 1) / as_f64(kinds.len()));

@@ -45,7 +45,7 @@ pub(super) const FINITE_ELEMENTS: Files = fixtures![
 
 /// Declares the quantities that a reference may state, with their place in the result.
 macro_rules! expected {
-    ($($quantity:ident => $find_estimate:expr,)*) => {
+    ($($quantity:ident => $get:expr,)*) => {
         /// Expected values of a recording in `reference.toml`.
         #[derive(Debug, Clone, Default, Deserialize)]
         #[serde(deny_unknown_fields)]
@@ -66,12 +66,12 @@ macro_rules! expected {
         impl Expected {
             /// Lists each expected value, by its quantity, with the measured one.
             fn limits(&self, result: Option<&DropResult>) -> Vec<TrialLimit> {
-                fn find_estimate(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
+                fn get(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
                     of(result)
                 }
-                [$((stringify!($quantity), self.$quantity, result.and_then(|r| find_estimate($find_estimate, r)))),*]
+                [$((stringify!($quantity), self.$quantity, result.and_then(|r| get($get, r)))),*]
                     .into_iter()
-                    .filter_map(|(quantity, expected, find_estimate)| Some(expected?.limit(quantity, find_estimate)))
+                    .filter_map(|(quantity, expected, get)| Some(expected?.limit(quantity, get)))
                     .collect()
             }
         }
@@ -105,15 +105,15 @@ enum ExpectedValue {
 }
 
 impl ExpectedValue {
-    fn limit(self, quantity: &str, find_estimate: Option<Estimate>) -> TrialLimit {
+    fn limit(self, quantity: &str, get: Option<Estimate>) -> TrialLimit {
         let (value, within) = match self {
-            Self::Held(value) => (value, find_estimate.map_or(f64::NAN, |find_estimate| find_estimate.u95)),
+            Self::Held(value) => (value, get.map_or(f64::NAN, |get| get.u95)),
             Self::Near { value, within } => (value, within),
         };
         TrialLimit {
             name: quantity.to_owned(),
-            unit: find_estimate.map_or_else(String::new, |find_estimate| find_estimate.unit.to_owned()),
-            value: find_estimate.map(|find_estimate| find_estimate.value),
+            unit: get.map_or_else(String::new, |get| get.unit.to_owned()),
+            value: get.map(|get| get.value),
             least: Some(value - within),
             most: Some(value + within),
             reason: format!("expected: {value}"),

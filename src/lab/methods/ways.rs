@@ -79,7 +79,7 @@ const LIMITER: DropClass = DropClass {
     },
 };
 
-/// Samples a second, and the record before first contact, s: typical loggers at test sites.
+/// Sample rate, Hz, and the record before first contact, s: typical loggers at test sites.
 const RATE_HZ: f64 = 1e5;
 const BEFORE_S: f64 = 0.4;
 

@@ -19,9 +19,9 @@ pub enum SyntheticFormat {
     McapJson,
     /// MCAP with blocks in protobuf.
     McapProtobuf,
-    /// HDF5, a dataset a channel.
+    /// HDF5 with one dataset per channel.
     Hdf5,
-    /// CSV, a column a channel.
+    /// CSV with one column per channel.
     Csv,
 }
 
@@ -141,7 +141,7 @@ fn hdf5_bytes(recording: &SyntheticRecording, places: &[SyntheticPlace]) -> Resu
     })
 }
 
-/// The names of the files of a recording: its own, the cask file's, the truth's.
+/// Names of the files: the recording, the cask file, the truth.
 pub fn synthetic_names(recording_name: &str) -> [String; 3] {
     let stem = recording_name.rsplit_once('.').map_or(recording_name, |(stem, _)| stem);
     [recording_name.to_owned(), format!("{stem}.toml"), format!("{stem}.truth.json")]

@@ -15,7 +15,7 @@ const FROM_END_M: f64 = 0.15;
 /// Deviation of a usual sensor's noise, as the key's default.
 const WHITE_NOISE_G: f64 = 0.1;
 
-/// A channel as it is, and as stated.
+/// A channel, true and as stated.
 pub(super) type ChannelPair = (SceneChannel, ChannelSpec);
 
 fn read_end(table: &Section, mend: &str) -> Result<End, CaskFileError> {

@@ -89,7 +89,7 @@ fn near(value: f64, wanted: f64) {
 fn six_lines_make_a_scene() {
     let SceneFile { scene, stated } = parse_text(SHORT).unwrap();
     assert_eq!((scene.name.as_str(), scene.seed, scene.modes.len()), ("scene", 1, 0));
-    // The stiffnesses of an end are as k².
+    // The ratio of the stiffnesses of an end is k².
     near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.25);
     near(scene.second_end.loading_n_m / scene.second_end.unloading_n_m, 0.09);
     assert_eq!(scene.channels.len(), 2);
@@ -112,7 +112,7 @@ fn every_key_finds_its_place() {
     assert!(scene.first_end.yield_n.is_some());
     near(scene.second_end.unloading_n_m, 4e7);
     assert_eq!(scene.modes[0].order, 2);
-    // 9 m take 1.3546 s, where guides take 4 % of g 2.06 % more; the cask file knows of none.
+    // A fall of 9 m takes 1.3546 s, and 2.06 % more if guides remove 4 % of g; the cask file mentions none.
     near(scene.before_s, (18.0_f64 / 9.81 / 0.96).sqrt() + 0.25);
     near(scene.drop.impact_velocity_m_s, (18.0_f64 * 9.81 * 0.96).sqrt());
     near(stated.drop.impact_velocity_m_s, (18.0_f64 * 9.81).sqrt());

@@ -33,7 +33,7 @@ impl Drive {
         if driven.norm() > 0.0 { driven / driven.norm() } else { Complex::new(1.0, 0.0) }
     }
 
-    /// Change of ln Z with (−ζ + i) ω: the mean age of what drove the mode, s.
+    /// Change of ln Z with (−ζ + i) ω: the mean age of the force on the mode, s.
     pub(super) fn age_s(&self, mode: Oscillation) -> Complex<f64> {
         let (driven, by_rate) = self.integral_and_slope(mode);
         if driven.norm() > 0.0 { by_rate / driven } else { Complex::new(0.0, 0.0) }
@@ -79,7 +79,7 @@ impl Form<'_> {
         Form { drift, drive: None }
     }
 
-    /// Unknowns that a mode adds to a series.
+    /// Number of unknowns that a mode adds to a series.
     pub fn width(&self) -> usize {
         if self.drive.is_some() { 1 } else { 2 }
     }

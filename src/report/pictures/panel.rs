@@ -213,7 +213,7 @@ pub(crate) struct PanelAxis {
 }
 
 impl PanelAxis {
-    /// A linear axis as long as what it shows.
+    /// A linear axis that spans its values.
     pub(crate) fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
     }

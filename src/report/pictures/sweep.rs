@@ -9,7 +9,7 @@ use super::panel::{COLOURS, Curve, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
 const TITLE: &str = "Slap-down speed over the sweep";
-/// Values of a second variable that are drawn, each a line.
+/// Most values of a second variable that are drawn, one line each.
 const MOST_LINES: usize = 7;
 /// Panels of one picture: a page.
 const MOST_PANELS: usize = 4;
@@ -54,7 +54,7 @@ struct SweepCase<'a> {
     model: BodyModel,
     contact: Contact,
     k: f64,
-    /// "rough, k = 1", without what is swept.
+    /// Words such as "rough, k = 1", without the swept variable.
     words: String,
     rows: Vec<&'a PredictionRow>,
 }

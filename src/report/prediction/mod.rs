@@ -75,7 +75,7 @@ fn entries<T: Serialize + Sync>(list: &[T]) -> Result<Vec<u8>, serde_json::Error
     Ok(if lines.is_empty() { b"[]".into() } else { [b"[\n    ", &lines[..], b"\n  ]"].concat() })
 }
 
-/// A head, and what makes a cell below it.
+/// Head of a column, and the function that makes its cells.
 type CsvColumn = (&'static str, fn(&PredictionRow) -> String);
 
 /// Columns of the table; scripts know the first fourteen, and more may follow them.

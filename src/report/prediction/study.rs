@@ -18,7 +18,7 @@ use crate::data::{Criterion, Study, StudyRequest, Sweep};
 /// A longer table of predictions goes to the end of the page, after the results.
 const MOST_ROWS_AHEAD: usize = 40;
 
-/// Other limits of the models, a sentence or two a line.
+/// Other limits of the models, one or two sentences per line.
 const LIMITS: &str = include_str!("limits.txt");
 
 /// The whole document.

@@ -47,7 +47,7 @@ pub(super) fn bytes(
     let mut messages = Vec::new();
     for (channel, place) in recording.channels.iter().zip(places) {
         let id = writer.add_channel(schema, &format!("/daq/{}", place.name), name, &BTreeMap::new())?;
-        // A block is handed on when it is whole.
+        // A recorder passes a block on when it is complete.
         let log_ns = |block: &SyntheticBlock| {
             block.timestamp.ns() + nanoseconds(as_f64(block.samples.len()) / block.sample_rate_hz)
         };

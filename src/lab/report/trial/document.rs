@@ -77,7 +77,7 @@ fn banner(trial: &Trial) -> Chapter {
     Chapter::new("").then(PartContent::Banner(Tone(style, word.to_owned()), words))
 }
 
-/// Accepted or not, and on what.
+/// Accepted or not, with the machine and the program.
 fn outcome(trial: &Trial) -> Chapter {
     let slow = "This program was built without optimisation: its times say nothing.";
     let slow = (!trial.machine.is_optimised).then(|| ChapterPart::note(slow));

@@ -19,7 +19,7 @@ const SIDES: (u32, u32) = (760, 620);
 /// An error is drawn up to this factor above and below the smallest that matters; others lie on the edge.
 const SPAN: f64 = 200.0;
 
-/// Errors within what is drawn.
+/// Limits an error to the range that is drawn.
 fn drawn_point(point: &TrialPoint, error: f64) -> f64 {
     error.clamp(point.matters / SPAN, point.matters * SPAN)
 }

@@ -13,7 +13,7 @@ const OVERSAMPLING: f64 = 8.0;
 /// Grid points per period of the resonance and of the cut-off: prewarped trapezoids are then within 1 %.
 const POINTS_A_PERIOD: f64 = 20.0;
 
-/// Points worked on at a time.
+/// Points processed at a time.
 const BLOCK: usize = 1 << 16;
 
 /// The analog signal at `count` samples of a true rate, m/s².

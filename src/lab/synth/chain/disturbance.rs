@@ -23,9 +23,9 @@ const NO_CONTACT_S: f64 = 5e-3;
 
 /// True times of the samples, 0 at first contact.
 pub(super) struct SampleTimes {
-    /// The first, s.
+    /// Time of the first sample, s.
     pub from_s: f64,
-    /// True samples a second.
+    /// True sample rate, Hz.
     pub rate_hz: f64,
 }
 
