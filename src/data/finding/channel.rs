@@ -50,12 +50,12 @@ pub enum ChannelFinding {
     Clipped { limit_m_s2: f64, samples: usize, during: DropPart, lost_m_s: f64, takes_step: bool }
         => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more head-room",
-         limit_m_s2 / G, cut_off_words(*during, *lost_m_s, *takes_step));
+         limit_m_s2 / G, cut_off(*during, *lost_m_s, *takes_step));
     /// The signal falls in a straight line, at the chain's largest slope; `takes_step` as for `Clipped`.
     Slewed { slope_m_s3: f64, samples: usize, during: DropPart, lost_m_s: f64, takes_step: bool }
         => if *takes_step { (Code::Clipped, Error, VelocityStep) } else { (Code::Clipped, Warning, Channel) },
         ("falls in one straight line of {:.0} g/ms for {samples} samples {}. Its amplifier does not follow: \
-         use one of a higher slew rate", slope_m_s3 / G / 1e3, cut_off_words(*during, *lost_m_s, *takes_step));
+         use one of a higher slew rate", slope_m_s3 / G / 1e3, cut_off(*during, *lost_m_s, *takes_step));
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may
     /// determine instead.
     LostStep { shows_slap_down: bool } => (Code::Gap, Error, VelocityStep),
@@ -337,7 +337,7 @@ impl ChannelFinding {
     }
 }
 
-fn cut_off_words(during: DropPart, lost_m_s: f64, takes_step: bool) -> String {
+fn cut_off(during: DropPart, lost_m_s: f64, takes_step: bool) -> String {
     let part = match during {
         DropPart::FirstImpact => "first impact",
         DropPart::Flight => "flight",

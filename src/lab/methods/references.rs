@@ -45,7 +45,7 @@ pub(super) const FINITE_ELEMENTS: Files = fixtures![
 
 /// Declares the quantities that a reference may state, with their place in the result.
 macro_rules! expected {
-    ($($quantity:ident => $get:expr,)*) => {
+    ($($quantity:ident => $found:expr,)*) => {
         /// Expected values of a recording in `reference.toml`.
         #[derive(Debug, Clone, Default, Deserialize)]
         #[serde(deny_unknown_fields)]
@@ -66,12 +66,12 @@ macro_rules! expected {
         impl Expected {
             /// Lists each expected value, by its quantity, with the measured one.
             fn limits(&self, result: Option<&DropResult>) -> Vec<TrialLimit> {
-                fn get(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
+                fn value(of: fn(&DropResult) -> Option<Estimate>, result: &DropResult) -> Option<Estimate> {
                     of(result)
                 }
-                [$((stringify!($quantity), self.$quantity, result.and_then(|r| get($get, r)))),*]
+                [$((stringify!($quantity), self.$quantity, result.and_then(|r| value($found, r)))),*]
                     .into_iter()
-                    .filter_map(|(quantity, expected, get)| Some(expected?.limit(quantity, get)))
+                    .filter_map(|(quantity, expected, found)| Some(expected?.limit(quantity, found)))
                     .collect()
             }
         }
@@ -105,15 +105,15 @@ enum ExpectedValue {
 }
 
 impl ExpectedValue {
-    fn limit(self, quantity: &str, get: Option<Estimate>) -> TrialLimit {
+    fn limit(self, quantity: &str, found: Option<Estimate>) -> TrialLimit {
         let (value, within) = match self {
-            Self::Held(value) => (value, get.map_or(f64::NAN, |get| get.u95)),
+            Self::Held(value) => (value, found.map_or(f64::NAN, |found| found.u95)),
             Self::Near { value, within } => (value, within),
         };
         TrialLimit {
             name: quantity.to_owned(),
-            unit: get.map_or_else(String::new, |get| get.unit.to_owned()),
-            value: get.map(|get| get.value),
+            unit: found.map_or_else(String::new, |found| found.unit.to_owned()),
+            value: found.map(|found| found.value),
             least: Some(value - within),
             most: Some(value + within),
             reason: format!("expected: {value}"),
