@@ -345,7 +345,7 @@ fn onset(
         }
     };
     let low = (0..high).rev().find(|&i| sign * force[i] < foot).map_or(0, |i| i + 1);
-    let crossing = interpolated(force, low, sign * foot);
+    let crossing = interpolate(force, low, sign * foot);
     let points: Vec<(f64, f64)> = (low..=high).map(|i| (as_f64(i), sign * force[i])).collect();
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
     // If a rise is steeper than the sampling, or bends, the zero of the line lies past the crossing or far
@@ -387,7 +387,7 @@ fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
 }
 
 /// Position between sample `index − 1` and `index` at which the force crosses `level`, in samples.
-fn interpolated(force: &[f64], index: usize, level: f64) -> f64 {
+fn interpolate(force: &[f64], index: usize, level: f64) -> f64 {
     if index == 0 {
         return 0.0;
     }

@@ -118,7 +118,7 @@ impl DrawnDrop {
     }
 
     /// Recording as the recorder writes it.
-    pub(super) fn recorded(&self) -> SyntheticRecording {
+    pub(super) fn record(&self) -> SyntheticRecording {
         synth::record(&self.scene, &self.motion)
     }
 
@@ -128,7 +128,7 @@ impl DrawnDrop {
     }
 
     /// Analyses the recording; `None` if the reader refuses it.
-    pub(super) fn analyzed(&self, recording: &SyntheticRecording) -> Option<Analysis> {
+    pub(super) fn analyze(&self, recording: &SyntheticRecording) -> Option<Analysis> {
         Some(measure(&self.read(recording)?, &self.stated))
     }
 }

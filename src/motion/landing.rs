@@ -141,12 +141,12 @@ impl Touched<'_> {
         let changed = line.step_sums(&steps_m_s);
         let is_known = u_m_s[self.nearest] < MOST_U * of_nearest_m_s.abs();
         let touch = Landing { begin_s: self.from_s, time_s, steps_m_s, u_m_s, along_m_s: None };
-        is_known.then(|| self.pushed(touch, changed))?
+        is_known.then(|| self.check_push(touch, changed))?
     }
 
     /// The touch, if its changes across the axis, of the rotation and along the axis are those of a push at L
     /// (32)
-    fn pushed(&self, touch: Landing, [across_m_s, turned_rad_s, along_m_s]: [f64; 3]) -> Option<Landing> {
+    fn check_push(&self, touch: Landing, [across_m_s, turned_rad_s, along_m_s]: [f64; 3]) -> Option<Landing> {
         let cask = self.cask;
         // Θ ΔΩ = m (h/2 Δv_ξ − a Δv_η)
         let (square_m2, half_m) = (cask.inertia_kg_m2 / cask.mass_kg, cask.height_m / 2.0);

@@ -40,7 +40,7 @@ fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
 }
 
 /// Combines (value, half-width) pairs; `None` without any. Half-widths are above 0.
-pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
+pub fn combine(values: &[(f64, f64)]) -> Option<Pooled> {
     let count = as_f64(values.len());
     let mean = mean(values)?;
     let square = |of: &dyn Fn(&(f64, f64)) -> f64| values.iter().map(|value| of(value).powi(2)).sum::<f64>();
@@ -127,16 +127,16 @@ mod tests {
 
     #[test]
     fn a_pool_is_its_textbook_values() {
-        let pool = pooled(&[(1.0, 0.196), (1.2, 0.196), (1.1, 0.196)]).unwrap();
+        let pool = combine(&[(1.0, 0.196), (1.2, 0.196), (1.1, 0.196)]).unwrap();
         assert!((pool.mean - 1.1).abs() < 1e-12 && (pool.u95 - 0.196).abs() < 1e-12);
         // u = 0.1: (1² + 1² + 0²).
         assert!((pool.chi_square - 2.0).abs() < 1e-12 && (pool.scatter - 0.1).abs() < 1e-12);
         assert_eq!(pool.word(), Some(ScatterWord::AsStated));
-        assert_eq!(pooled(&[(1.0, 0.1)]).unwrap().word(), None);
-        assert_eq!(pooled(&[]), None);
-        let far = pooled(&[(1.0, 0.1), (2.0, 0.1), (3.0, 0.1)]).unwrap();
+        assert_eq!(combine(&[(1.0, 0.1)]).unwrap().word(), None);
+        assert_eq!(combine(&[]), None);
+        let far = combine(&[(1.0, 0.1), (2.0, 0.1), (3.0, 0.1)]).unwrap();
         assert_eq!(far.word(), Some(ScatterWord::Larger));
-        let near = pooled(&[(1.0, 0.1), (1.0001, 0.1), (1.0, 0.1), (1.0, 0.1)]).unwrap();
+        let near = combine(&[(1.0, 0.1), (1.0001, 0.1), (1.0, 0.1), (1.0, 0.1)]).unwrap();
         assert_eq!(near.word(), Some(ScatterWord::Smaller));
     }
 

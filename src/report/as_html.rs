@@ -182,7 +182,7 @@ fn sentence(role: SentenceRole, words: &Words) -> Markup {
         SentenceRole::Lead => "lead",
         SentenceRole::Note => "note",
     };
-    html! { p class=[class(name)] { (prose(words.on(Medium::Page))) } }
+    html! { p class=[class(name)] { (prose(words.text_on(Medium::Page))) } }
 }
 
 /// Formats a sentence; text between backticks is a key or a word of the command line.
@@ -222,12 +222,12 @@ fn table(table: &ReportTable) -> Markup {
         table class=[class(classes.trim())] {
             @if !table.caption.is_empty() { caption { (sanitize(&table.caption)) } }
             thead { tr { @for column in &columns {
-                th scope="col" class=[number(column)] { (sanitize(column.head.on(Medium::Page))) }
+                th scope="col" class=[number(column)] { (sanitize(column.head.text_on(Medium::Page))) }
             } } }
             tbody { @for (row, is_chosen) in table.chosen.iter().enumerate().take(rows) {
                 tr class=[is_chosen.then_some("chosen")] { @for column in &columns {
                     (cell(column.kind, &column.cells[row],
-                        is_stacked.then(|| sanitize(column.head.on(Medium::Page))).as_deref())) } }
+                        is_stacked.then(|| sanitize(column.head.text_on(Medium::Page))).as_deref())) } }
             } }
         }
         @if let Some(sentence) = left_out { p class="note" { (sentence) } }
@@ -245,7 +245,7 @@ fn code(words: &str) -> Markup {
 
 /// Writes a cell; below `head` if its row is stacked.
 fn cell(kind: CellKind, cell: &TableCell, head: Option<&str>) -> Markup {
-    let text = sanitize(cell.words.on(Medium::Page));
+    let text = sanitize(cell.words.text_on(Medium::Page));
     let shown = html! { @if cell.link.is_empty() { (prose(&text)) } @else { a href=(cell.link) { (text) } } };
     let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() {
     " " } (default_mark(cell.mark)) } };

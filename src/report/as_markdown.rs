@@ -18,7 +18,7 @@ pub(crate) fn markdown(document: &ReportDocument) -> String {
 fn passage(passage: &ChapterPart, heading: &str) -> Option<String> {
     match &passage.content {
         PartContent::Sentence(_, words) => {
-            Some(format!("{}\n", sanitize(words.on(Medium::Markdown)).replace('<', "&lt;")))
+            Some(format!("{}\n", sanitize(words.text_on(Medium::Markdown)).replace('<', "&lt;")))
         }
         PartContent::Picture(name, _) => Some(format!("![{heading}]({name}.svg)\n")),
         PartContent::ReportTable(table) => Some(self::table(table)),
@@ -30,7 +30,7 @@ fn passage(passage: &ChapterPart, heading: &str) -> Option<String> {
 fn table(table: &ReportTable) -> String {
     let columns = table.columns_on(Medium::Markdown);
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let heads = columns.iter().map(|column| cell_text(column.head.on(Medium::Markdown)));
+    let heads = columns.iter().map(|column| cell_text(column.head.text_on(Medium::Markdown)));
     let rule = columns.iter().map(|_| "---".to_owned());
     let rows = (0..table.chosen.len())
         .map(|i| row(columns.iter().map(|column| cell(column.kind, &column.cells[i])).collect()));
@@ -38,7 +38,7 @@ fn table(table: &ReportTable) -> String {
 }
 
 fn cell(kind: CellKind, cell: &TableCell) -> String {
-    let text = cell_text(cell.words.on(Medium::Markdown));
+    let text = cell_text(cell.words.text_on(Medium::Markdown));
     match kind {
         CellKind::Code => format!("`{text}`"),
         _ if !cell.mark.is_empty() => format!("{text} ({})", cell.mark),

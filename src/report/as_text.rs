@@ -6,7 +6,7 @@ use super::document::{
     SentenceRole, TableCell, TableShape, Tone,
 };
 use super::rounding::MISSING;
-use super::text::{Style, lines, sanitize, styled, styled_lines, wrap};
+use super::text::{Style, lines, paint, sanitize, styled_lines, wrap};
 use comfy_table::ColumnConstraint::LowerBoundary;
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle, Width};
 
@@ -41,7 +41,7 @@ fn heading(words: &str, width: usize) -> String {
 fn passage(passage: &ChapterPart, width: usize, has_captions: bool) -> String {
     match &passage.content {
         PartContent::Sentence(role, words) => {
-            let words = words.on(Medium::Terminal);
+            let words = words.text_on(Medium::Terminal);
             match role {
                 SentenceRole::Title => styled_lines(Style::Bold, &wrap(words, width, 0)),
                 SentenceRole::Line => wrap(words, width, 0),
@@ -51,7 +51,7 @@ fn passage(passage: &ChapterPart, width: usize, has_captions: bool) -> String {
         PartContent::Banner(Tone(style, word), sentence) => {
             let indent = word.chars().count() + 2;
             let words = wrap(sentence, width, indent);
-            format!("\n{}{}", styled(*style, word), &words[word.len().min(indent)..])
+            format!("\n{}{}", paint(*style, word), &words[word.len().min(indent)..])
         }
         PartContent::Facts(caption, facts) => {
             let head = if caption.is_empty() { String::new() } else { heading(caption, width) };
@@ -87,7 +87,7 @@ fn fact(fact: &Fact, names: usize, width: usize) -> String {
     if words.is_empty() {
         return line.trim_end().to_owned();
     }
-    let note = styled(fact.note.0, words);
+    let note = paint(fact.note.0, words);
     // A note that does not fit beside the value goes below it.
     let is_beside = line.chars().count() + words.chars().count() <= width;
     if is_beside { line + &note } else { format!("{}\n      {note}", line.trim_end()) }
@@ -104,7 +104,7 @@ fn table(table: &ReportTable, width: usize) -> String {
     let apart = if table.shape == TableShape::ApartItems { "\n" } else { "" };
     let mut out = match &table.shape {
         TableShape::Columns if is_stacked => (0..rows).map(|row| stack(&columns, row, width)).collect(),
-        TableShape::Columns | TableShape::Fitting => lines(aligned(&columns, rows, gap, width).concat()),
+        TableShape::Columns | TableShape::Fitting => lines(align(&columns, rows, gap, width).concat()),
         TableShape::Groups(names) => group(&columns, rows, names, width),
         TableShape::Items | TableShape::ApartItems => {
             (0..rows).map(|row| apart.to_owned() + &item(&columns, row, width)).collect()
@@ -118,7 +118,7 @@ fn table(table: &ReportTable, width: usize) -> String {
 
 /// The words of a cell; `None` if the table has no such row.
 fn cell(column: &ReportColumn, row: usize) -> String {
-    let words = |cell: &TableCell| sanitize(cell.words.on(Medium::Terminal)) + cell.mark;
+    let words = |cell: &TableCell| sanitize(cell.words.text_on(Medium::Terminal)) + cell.mark;
     column.cells.get(row).map_or_else(String::new, words)
 }
 
@@ -131,14 +131,14 @@ fn longest_line(words: &str) -> Option<usize> {
 fn fits(columns: &[&ReportColumn], rows: usize, most: usize, of_head: fn(&str) -> Option<usize>) -> bool {
     let widest = |column: &&ReportColumn| {
         let cells = (0..rows).map(|row| longest_line(&cell(column, row)));
-        cells.chain([of_head(column.head.on(Medium::Terminal))]).flatten().max().unwrap_or(0)
+        cells.chain([of_head(column.head.text_on(Medium::Terminal))]).flatten().max().unwrap_or(0)
     };
     columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= most - 2
 }
 
 /// The lines of the heads, and those of each row, with `gap` between the columns; cells that are too wide are
 /// wrapped.
-fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
+fn align(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
     /// Marks the beginning of a row in a separate column, which is then removed: a row may have several
     /// lines.
     const BEGINS: char = '•';
@@ -147,7 +147,7 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(u16::try_from(width - 1).unwrap_or(79));
     let row = |cells: Vec<String>| [BEGINS.to_string()].into_iter().chain(cells);
-    table.set_header(row(columns.iter().map(|c| c.head.on(Medium::Terminal).to_owned()).collect()));
+    table.set_header(row(columns.iter().map(|c| c.head.text_on(Medium::Terminal).to_owned()).collect()));
     for i in 0..rows {
         table.add_row(row(columns.iter().map(|column| cell(column, i)).collect()));
     }
@@ -180,7 +180,7 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
 fn group(columns: &[&ReportColumn], rows: usize, names: &[String], width: usize) -> String {
     let mut out = Vec::new();
     let mut before = "";
-    for (i, row) in aligned(columns, rows, 2, width).into_iter().enumerate() {
+    for (i, row) in align(columns, rows, 2, width).into_iter().enumerate() {
         // Index 0 belongs to the heads.
         let name = i.checked_sub(1).and_then(|i| names.get(i)).map_or("", String::as_str);
         if name != before {
@@ -195,7 +195,7 @@ fn group(columns: &[&ReportColumn], rows: usize, names: &[String], width: usize)
 /// Writes the first cell, and below it the others that are not missing, each after its head.
 fn stack(columns: &[&ReportColumn], row: usize, width: usize) -> String {
     let [first, others @ ..] = columns else { return String::new() };
-    let cells = others.iter().map(|column| (column.head.on(Medium::Terminal), cell(column, row)));
+    let cells = others.iter().map(|column| (column.head.text_on(Medium::Terminal), cell(column, row)));
     let cells = cells.filter(|(_, words)| words != MISSING && !words.is_empty());
     let cells: Vec<String> = cells.map(|(head, words)| format!("{head}: {words}")).collect();
     let head = wrap(&cell(first, row), width, 2);
@@ -208,7 +208,7 @@ fn item(columns: &[&ReportColumn], row: usize, width: usize) -> String {
     let style = first.cells[row].style.unwrap_or(Style::Bold);
     let place: Vec<String> =
         middle.iter().map(|column| cell(column, row)).filter(|words| words != MISSING).collect();
-    let head = format!("  {}  {}\n", styled(style, &cell(first, row)), place.join(" · "));
+    let head = format!("  {}  {}\n", paint(style, &cell(first, row)), place.join(" · "));
     head + &wrap(&cell(last, row), width, 6)
 }
 

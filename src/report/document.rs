@@ -75,7 +75,7 @@ impl Chapter {
 
     /// The heading, unless nothing would follow it.
     pub(crate) fn heading(&self, medium: Medium) -> Option<&str> {
-        let words = self.heading.on(medium);
+        let words = self.heading.text_on(medium);
         (!words.is_empty() && !self.parts_on(medium).is_empty()).then_some(words)
     }
 

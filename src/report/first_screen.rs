@@ -5,7 +5,7 @@ use super::reconstruction::{assumed, largest, weighty_assumptions};
 use super::record::{LIMIT_EXCEEDED, limits_sentence};
 use super::rounding::{fixed, interval, pair, percent, significant};
 use super::text::{
-    Style, causes, dedup, drop_words, grave_findings, or_unknown, plural, sanitize, styled, styled_lines,
+    Style, causes, dedup, drop_words, grave_findings, or_unknown, paint, plural, sanitize, styled_lines,
     true_minus, verdict_sentence, verdict_style, verdict_word, wrap,
 };
 use crate::data::{
@@ -222,7 +222,7 @@ impl Draft {
             (!others.is_empty()).then(|| format!("{} more with `--full`.", plural(others.len(), "cause")));
         let said = [vec![heading, verdict_sentence(result)], said.to_vec(), others.into_iter().collect()];
         let said = self.row(&format!("{word}  "), &said.concat().join(" "), width);
-        styled(verdict_style(result.verdict), word) + &said[word.len()..]
+        paint(verdict_style(result.verdict), word) + &said[word.len()..]
     }
 }
 

@@ -94,10 +94,10 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     }
     let mut common = Vec::new();
     table.columns.retain(|column| {
-        let (name, words) = (column.head.on(Medium::Page), column.cells[0].words.on(Medium::Page));
+        let (name, words) = (column.head.text_on(Medium::Page), column.cells[0].words.text_on(Medium::Page));
         let is_shared = SHARED.contains(&name)
             && channels.len() > 1
-            && column.cells.iter().all(|cell| cell.words.on(Medium::Page) == words);
+            && column.cells.iter().all(|cell| cell.words.text_on(Medium::Page) == words);
         match (name, words) {
             _ if !is_shared || words == MISSING => {}
             ("gaps", "0") => common.push("no gaps".to_owned()),

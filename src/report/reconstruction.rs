@@ -315,7 +315,7 @@ mod tests {
             let own = own.unwrap_or_else(|| contribution(input, None, 0.0));
             source_cell(&own, &analysis.result, &analysis.cask_file)
         };
-        let from = |input: &str| known(input).words.on(Medium::Page).to_owned();
+        let from = |input: &str| known(input).words.text_on(Medium::Page).to_owned();
         assert_eq!(known("calibration of A2").mark, "default");
         assert_eq!(from("drop angle"), "cask file");
         assert_eq!(from("velocity step of A1"), "recording");

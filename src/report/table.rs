@@ -242,7 +242,7 @@ impl Words {
     }
 
     /// The text for a medium.
-    pub(crate) fn on(&self, medium: Medium) -> &str {
+    pub(crate) fn text_on(&self, medium: Medium) -> &str {
         match &self.short {
             Some(short) if medium != Medium::Page => short,
             _ => &self.full,

@@ -21,7 +21,7 @@ pub(super) fn lines(lines: impl IntoIterator<Item = String>) -> String {
 
 /// Every line of `text` in `style`.
 pub(super) fn styled_lines(style: Style, text: &str) -> String {
-    lines(text.lines().map(|line| styled(style, line)))
+    lines(text.lines().map(|line| paint(style, line)))
 }
 
 #[cfg(test)]
@@ -43,7 +43,7 @@ pub(crate) enum Style {
 }
 
 /// Puts `text` between the codes of `style`.
-pub(super) fn styled(style: Style, text: &str) -> String {
+pub(super) fn paint(style: Style, text: &str) -> String {
     let code = match style {
         Style::Bold => "1",
         Style::Dim => "2",

@@ -73,7 +73,7 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
 /// Analyses a scene and compares the result with its truth.
 pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
-    let analysis = scene.drop.analyzed(&scene.recording);
+    let analysis = scene.drop.analyze(&scene.recording);
     score::row(number, scene, analysis.as_ref())
 }
 
@@ -92,7 +92,7 @@ fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
     let mut drop = draw::draw_drop(Chance::new(seed, stream), &wish, exact);
     recorder::equip(&mut drop, &wish, exact);
     let recording = struck.map(|(kind, size)| kind.apply(&mut drop, size));
-    let recording = recording.unwrap_or_else(|| drop.recorded());
+    let recording = recording.unwrap_or_else(|| drop.record());
     let damage =
         struck.map(|(kind, size)| Damage { kind: kind.name.to_owned(), size, unit: kind.unit.to_owned() });
     RecordedScene { drop, damage, recording }
@@ -143,8 +143,8 @@ mod tests {
         let keys = ["drop.angular_velocity_deg_s", "tolerance.angular_velocity_deg_s"];
         drop.stated.defaults.extend(keys.map(str::to_owned));
         drop.scene.extras.rates.push(sensor);
-        let recording = drop.recorded();
-        let analysis = drop.analyzed(&recording);
+        let recording = drop.record();
+        let analysis = drop.analyze(&recording);
         score::row(number, RecordedScene { drop, damage: None, recording }, analysis.as_ref())
     }
 

@@ -98,7 +98,7 @@ impl DamageKind {
     pub(super) fn apply(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
         stated::apply(self.name, drop, size);
         chain::apply(self.name, drop, size);
-        let mut recording = drop.recorded();
+        let mut recording = drop.record();
         samples::apply(self.name, drop, &mut recording, size);
         recording
     }
@@ -190,7 +190,7 @@ mod tests {
         let describe = |drop: &DrawnDrop, recording: &SyntheticRecording| {
             format!("{:?} {:?} {recording:?}", drop.scene, drop.stated)
         };
-        let untouched = describe(&sound(), &sound().recorded());
+        let untouched = describe(&sound(), &sound().record());
         for kind in TABLE.iter() {
             let size = kind.sizes.last().or(kind.growing.last()).copied().expect("a size");
             let mut struck = sound();
@@ -205,7 +205,7 @@ mod tests {
             };
             let mut made = sound();
             kind.wish(size).fulfil(&mut made.scene, &mut made.stated, &mut made.chance);
-            let is_made = describe(&made, &made.recorded()) != untouched;
+            let is_made = describe(&made, &made.record()) != untouched;
             let is_wished = Wish::parse(kind.needs, size).flight != BetweenImpacts::Free;
             assert_eq!(is_struck, !["drop", "flight"].contains(&kind.of) && !is_made, "{}", kind.name);
             assert!(is_struck || is_hard || is_made || is_wished, "{}", kind.name);

@@ -14,8 +14,8 @@ pub(super) fn apply(kind: &str, case: &mut DrawnDrop, recording: &mut SyntheticR
         "dead" => dies(case, recording, -1.0),
         "dies" => dies(case, recording, size / 100.0),
         "unplugged" => unplug(case, recording, size),
-        "limited_first" => limited(case, recording, 0, size),
-        "limited_second" => limited(case, recording, 1, size),
+        "limited_first" => limit(case, recording, 0, size),
+        "limited_second" => limit(case, recording, 1, size),
         "slewing" => limit_slew(case, recording, size),
         "overloaded" => overload(case, recording, size),
         "compressed" => compress(case, recording, size),
@@ -95,7 +95,7 @@ fn unplug(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
 const CONVERTER_G: f64 = 0.1;
 
 /// Limits the signal at `size` percent below the peak, with the converter's noise after it.
-fn limited(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usize, size: f64) {
+fn limit(case: &mut DrawnDrop, recording: &mut SyntheticRecording, which: usize, size: f64) {
     let channel = &mut recording.channels[which];
     let (limit, noise) = ((1.0 - size / 100.0) * peak(channel), CONVERTER_G * g_in(channel));
     for sample in &mut channel.samples {

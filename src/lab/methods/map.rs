@@ -46,7 +46,7 @@ fn analyze_drop(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
     let (drop, recording) = kind.grow(plan, size);
     let truth = &drop.motion.truth;
     // None where the recording is refused.
-    let result = drop.analyzed(&recording).map(|analysis| analysis.result);
+    let result = drop.analyze(&recording).map(|analysis| analysis.result);
     let [speed, k] = result.as_ref().map_or([None; 2], |result| [result.slap_down.speed, result.k]);
     // The error is infinite if a number is stated for an event that did not happen.
     let off = [(speed, truth.speed), (k, truth.k)]
@@ -116,7 +116,7 @@ mod tests {
         let kinds: Vec<&DamageKind> = damage::growing_kinds().collect();
         let hold = |kind: &&DamageKind| {
             let (drop, recording) = kind.grow(plan, kind.growing.last().copied().unwrap_or_default());
-            let Some(mut result) = drop.analyzed(&recording).map(|analysis| analysis.result) else {
+            let Some(mut result) = drop.analyze(&recording).map(|analysis| analysis.result) else {
                 return 0;
             };
             result.find_missing();

@@ -139,7 +139,7 @@ fn write_drops((class, struck): &DamagedClass, request: &TrialRequest, folder: &
         let mut drop = plan.draw();
         let kind = struck.and_then(|(name, size)| Some((damage::find_kind(name)?, size)));
         let recording = kind.map(|(kind, size)| kind.apply(&mut drop, size));
-        let recording = recording.unwrap_or_else(|| drop.recorded());
+        let recording = recording.unwrap_or_else(|| drop.record());
         let truth = drop.motion.truth;
         let scene = SceneFile { scene: drop.scene, stated: drop.stated };
         let name = format!("{} {number}.csv", class.name.replace(['%', ','], ""));

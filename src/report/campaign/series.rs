@@ -4,7 +4,7 @@
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
 use crate::numerics::as_f64;
-use crate::numerics::pooled::{Pooled, ScatterWord, compare_with_others, pooled};
+use crate::numerics::pooled::{Pooled, ScatterWord, combine, compare_with_others};
 use crate::report::rounding::plain;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
@@ -242,7 +242,7 @@ fn pool<'a>(angles_deg: [f64; 2], quantity: PooledQuantity, rows: &[&'a BatchRow
     let kept: Vec<(f64, f64)> =
         values.iter().zip(&found).filter(|(_, (_, is_out))| !is_out).map(|(value, _)| *value).collect();
     // If all contradict one another none is more credible, and their mean is not shown.
-    let pooled = pooled(if kept.is_empty() { &values } else { &kept })?;
+    let pooled = combine(if kept.is_empty() { &values } else { &kept })?;
     let members = rows.into_iter().zip(found).map(|(row, (e_n, is_out))| PoolMember { row, e_n, is_out });
     Some(Pool { angles_deg, quantity, members: members.collect(), pooled })
 }

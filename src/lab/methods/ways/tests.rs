@@ -21,7 +21,7 @@ struct Prepared {
 fn prepared(class: &DropClass, count: u64) -> Vec<Prepared> {
     let prepared = |plan: &DropPlan| {
         let drop = plan.draw();
-        let written = drop.recorded();
+        let written = drop.record();
         let (recording, file) = (drop.read(&written).expect("a recording that is read"), &drop.stated);
         let velocity_m_s = file.drop.transverse_velocity_m_s();
         let coarse = events::Changes::new(&recording.channels).locate(velocity_m_s).expect("an impact");
