@@ -16,9 +16,9 @@ const QUALITY: f64 = 10.0;
 const LOWEST_HZ: f64 = 5.0;
 const PER_OCTAVE: f64 = 12.0;
 const HIGHEST_SHARE: f64 = 0.1;
-/// A channel is at rest again, or rings about its rest level, if its mean over this time at its end, s, is
-/// within half of gravity above g, g, and within the residual of a ringing of a period or more, √2/π of its
-/// RMS: a level beyond that would be the spectrum at low frequencies.
+/// A channel is at rest again, or rings about its rest level, if its mean over this time at its end, s, does
+/// not exceed one and a half times gravity, g, plus the mean that ringing over a period or more may leave,
+/// √2/π of its RMS: a higher level would dominate the spectrum at low frequencies.
 const END_S: f64 = 0.025;
 const MOST_LEVEL_G: f64 = 1.5;
 const MOST_OF_RINGING: f64 = 0.45;

@@ -37,13 +37,13 @@ pub enum Effect {
     Channel,
     /// Removes a channel's velocity step, and the motion unless the other channels determine that step.
     VelocityStep,
-    /// Takes a channel that nothing replaces.
+    /// Removes a channel that nothing replaces.
     ChannelAndMotion,
     /// Removes the second end's channel, and all quantities that it alone shows.
     SecondEnd,
-    /// Takes all that follows the flight.
+    /// Removes all that follows the flight.
     SlapDown,
-    /// Takes the second end's impact.
+    /// Removes the second end's impact.
     SecondImpact,
     /// Removes the motion: it differs from the model, or the samples do not show it.
     Motion,

@@ -35,7 +35,8 @@ pub(super) fn critical_angles(
     Criterion::ALL.into_iter().enumerate().map(critical).collect()
 }
 
-/// The largest value at angles that no single impact reaches, if above `largest`, or if that is NaN.
+/// The highest of the values with its angle, if no single impact reaches it: it exceeds `largest`, or
+/// `largest` is NaN.
 fn highest(values: impl Iterator<Item = (f64, f64)>, largest: f64) -> Option<(f64, f64)> {
     let highest = values.reduce(|top, next| if next.1 > top.1 { next } else { top });
     highest.filter(|top| largest.is_nan() || top.1 > largest)
