@@ -281,6 +281,7 @@ mod tests {
             let samples = Samples::F64(vec![1.0, 2.0]);
             let uniform = Uniform {
                 start_s: 0.0,
+                span_s: None,
                 sample_rate_hz,
                 samples,
                 gaps: Vec::new(),
@@ -351,6 +352,7 @@ mod tests {
     fn a_channel_without_any_number_is_named() {
         let uniform = Uniform {
             start_s: 0.0,
+            span_s: None,
             sample_rate_hz: 1000.0,
             samples: Samples::F32(vec![f32::NAN; 3]),
             gaps: Vec::new(),
@@ -367,6 +369,7 @@ mod tests {
         let raw = |start_s| RawChannel {
             uniform: Uniform {
                 start_s,
+                span_s: None,
                 sample_rate_hz: 1.0,
                 samples: Samples::F64(vec![1.0, 2.0]),
                 gaps: Vec::new(),

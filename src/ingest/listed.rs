@@ -2,7 +2,8 @@
 
 use super::{IngestError, Limits, Progress, ReadRequest, RecordingFile, assemble, detect, foreign, read_raw};
 use crate::data::{
-    Cask, CaskFile, Channel, ChannelSpec, Contact, Drop, End, ListedChannel, Unit, acceleration_unit_m_s2,
+    Cask, CaskFile, Channel, ChannelSpec, Contact, Drop, End, ListedChannel, Listing, Unit,
+    acceleration_unit_m_s2,
 };
 use crate::numerics::as_f64;
 
@@ -49,6 +50,14 @@ pub fn read_listed<'a>(
     }
 }
 
+/// Times from the earliest first sample on.
+pub(super) fn count_from_first(Listing { channels, issues, .. }: &mut Listing) {
+    let first_s = channels.iter().filter_map(|channel| channel.start_s).fold(f64::INFINITY, f64::min);
+    let starts = channels.iter_mut().filter_map(|channel| channel.start_s.as_mut());
+    let places = issues.iter_mut().flat_map(|issue| [&mut issue.from_s, &mut issue.to_s]).flatten();
+    starts.chain(places).for_each(|time_s| *time_s -= first_s);
+}
+
 fn read_together(
     recording: RecordingFile,
     group: &[&ListedChannel],
@@ -81,7 +90,6 @@ fn read_together(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Listing;
     use crate::ingest::list;
     use std::path::Path;
 

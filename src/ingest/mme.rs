@@ -108,7 +108,7 @@ fn one_listed(
     };
     let found = match read.placed(None) {
         Ok(uniform) => {
-            uniform.list(None, &mut listed);
+            uniform.list(&mut listed);
             uniform.issues
         }
         Err(refusal) => vec![ClockFinding::Refused(refusal.beside(&channel.source)).into()],

@@ -22,7 +22,7 @@ pub(super) use stamps::line;
 use super::clock::{self, Claims, Taken};
 use super::refusal::Refusal;
 use crate::data::{Samples, TimesFinding};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, extent};
 use fit::BaseFit;
 use order::Ordered;
 use std::sync::OnceLock;
@@ -64,7 +64,8 @@ impl<'a> ChannelTimes<'a> {
         let Ordered { times_s, mut samples, is_coarse } =
             order::ordered(self.each_s, self.rise, samples, &mut issues)?;
         if is_coarse {
-            return coarse::place(&times_s, samples, claims, issues);
+            let placed = coarse::place(&times_s, samples, claims, issues)?;
+            return Ok(Uniform { span_s: Some(self.span_s()), ..placed });
         }
         let fit = if self.rise { self.fit()? } else { BaseFit::new(&times_s)? };
         let span_s = times_s[times_s.len() - 1] - times_s[0];
@@ -84,7 +85,16 @@ impl<'a> ChannelTimes<'a> {
             samples = missing::spread(&samples, &fit);
             gaps = missing::spans(&samples);
         }
-        Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s, issues })
+        let span_s = Some(self.span_s());
+        Ok(Uniform { start_s, span_s, sample_rate_hz, samples, gaps, time_jitter_s, issues })
+    }
+
+    /// The earliest and the latest of the times, s.
+    fn span_s(&self) -> (f64, f64) {
+        match self.each_s {
+            [first_s, .., last_s] if self.rise => (*first_s, *last_s),
+            each_s => extent(each_s.iter().copied()),
+        }
     }
 
     /// The base nearest to the times as they stand, where they rise.
@@ -129,7 +139,7 @@ pub(super) fn at_taken(start_s: f64, taken: Taken, mut samples: Samples) -> Resu
     let mut issues = Vec::new();
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     issues.extend(taken.issues);
-    Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+    Ok(Uniform { start_s, span_s: None, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 #[cfg(test)]

@@ -15,11 +15,6 @@ pub(super) struct HeldColumn {
 }
 
 impl HeldColumn {
-    /// For so many values without a second thought.
-    pub(super) fn with_capacity(count: usize) -> Self {
-        Self { even: None, each: Vec::with_capacity(count) }
-    }
-
     /// Takes the next values; `is_time`: those of rising times, which may keep to a rule.
     pub(super) fn extend(&mut self, values: &[f64], is_time: bool) {
         if is_time && self.even.is_none() && self.each.is_empty() {

@@ -84,7 +84,8 @@ impl Even {
     pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, Refusal> {
         time_base::check_lengths(self.count, samples.len())?;
         let taken = claims.weigh(Some(&clock::of_times(self.rate(), 0.0)))?;
-        time_base::at_taken(self.at(0), taken, samples)
+        let span_s = Some((self.at(0), self.at(self.count.max(1) - 1)));
+        Ok(Uniform { span_s, ..time_base::at_taken(self.at(0), taken, samples)? })
     }
 }
 

@@ -144,6 +144,11 @@ impl Layout {
         self.times.sure.contains(&column) || self.times.nanoseconds == Some(column)
     }
 
+    /// Whether a column is the first that names the sensor of each row.
+    pub(super) fn tells_sensors(&self, column: usize) -> bool {
+        self.sensors.first().is_some_and(|sensors| sensors.column == column)
+    }
+
     /// The column to be added to that of times, which holds whole seconds.
     pub(super) fn nanoseconds(&self, time: usize) -> Option<usize> {
         self.times.nanoseconds.filter(|_| self.times.taken == Some(time))

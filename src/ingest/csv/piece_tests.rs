@@ -1,7 +1,7 @@
 //! Random tables by pieces of any size: the rows, the error and the ending are those of reading it in order.
 
 use super::super::lines::Lines;
-use super::list::Survey;
+use super::columns::HeldColumn;
 use super::pieces::Sizes;
 use super::rows::{RowError, read};
 use super::wanted::Wanted;
@@ -37,7 +37,7 @@ fn input(rows: &[u8], ahead: usize) -> Text {
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
     let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
-    let empty = || Table::new(layout, &[], &wanted, vec![HeldColumn::default(); 3]);
+    let empty = || Table::new(layout, &[], &wanted);
     let mut table = empty();
     let end = read(input(rows, ahead), (layout, &wanted), &mut table, sizes, &|_| ());
     let kept = match end {
@@ -47,9 +47,9 @@ fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2]
         }
         Err(error) => format!("{error:?}"),
     };
-    let mut survey = Survey::of(&wanted, empty());
-    let end = read(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
-    [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {survey:?}"))]
+    let mut listed = empty().for_listing();
+    let end = read(input(rows, ahead), (layout, &wanted), &mut listed, sizes, &|_| ());
+    [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {listed:?}"))]
 }
 
 /// A line with its break: mostly a row, now and then one that ends the reading.
@@ -164,7 +164,7 @@ fn rows_before_a_failure_to_read_are_looked_at_first() {
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {
         let mut text = input(b"", 0);
         text.rest = Lines::of(Box::new(Broken(Cursor::new(rows.into_bytes()))));
-        let mut table = Table::new(&layout, &[], &wanted, vec![HeldColumn::default(); 3]);
+        let mut table = Table::new(&layout, &[], &wanted);
         let error = read(text, (&layout, &wanted), &mut table, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");

@@ -8,7 +8,7 @@ use crate::data::{ChannelSpec, RowsOf, Source};
 use std::path::Path;
 
 /// What one channel takes from the table.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct ColumnPlan {
     pub column: usize,
     pub time_column: Option<usize>,
@@ -23,6 +23,19 @@ pub(super) struct ColumnPlan {
 }
 
 impl ColumnPlan {
+    /// A column with its times, of which the cask file says nothing.
+    pub(super) fn of_column(column: usize, time_column: Option<usize>, layout: &Layout) -> Self {
+        let Layout { preamble, .. } = layout;
+        Self {
+            column,
+            time_column,
+            rows: None,
+            start_s: preamble.start_s(column),
+            ends_alone: preamble.has_several_rates(),
+            claims: Claims { stated: preamble.statements(column), ..Claims::default() },
+        }
+    }
+
     /// What `spec` asks for, with the `time` that the cask file names for it.
     pub(super) fn of(
         path: &Path,
@@ -59,11 +72,9 @@ impl ColumnPlan {
                 },
             ));
         }
-        let claims = Claims {
-            cask_hz: spec.sample_rate_hz,
-            are_times_named: time.is_some(),
-            stated: layout.preamble.statements(column),
-        };
+        let plan = Self::of_column(column, time_column, layout);
+        let (cask_hz, are_times_named) = (spec.sample_rate_hz, time.is_some());
+        let claims = Claims { cask_hz, are_times_named, ..plan.claims };
         if time_column.is_none() && claims.is_empty() {
             let (why, mend) = match no_times(layout) {
                 Some(why) => (format!(": {why}"), "correct it in a copy"),
@@ -75,9 +86,7 @@ impl ColumnPlan {
             let problem = format!("no column of times was found{why}");
             return Err(Refusal::new(problem, format!("{mend}, or give this channel sample_rate_hz")));
         }
-        let start_s = layout.preamble.start_s(column);
-        let ends_alone = layout.preamble.has_several_rates();
-        Ok(Self { column, time_column, rows, start_s, ends_alone, claims })
+        Ok(Self { rows, claims, ..plan })
     }
 
     /// Whether the cask file says what to go by: a rate, or which column holds the times.

@@ -33,21 +33,17 @@ pub(super) fn value(cell: &[u8], decimal: u8) -> f64 {
 /// The rows in which a channel has a value.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Filled {
-    pub count: usize,
-    pub first: usize,
-    pub last: usize,
-    /// The smallest and the largest value.
-    pub range: (f64, f64),
+    count: usize,
+    first: usize,
+    last: usize,
     /// In how many stretches they lie.
     stretches: usize,
 }
 
 impl Filled {
     /// Takes the next.
-    pub(super) fn take(&mut self, row: usize, value: f64) {
+    pub(super) fn take(&mut self, row: usize) {
         let is_first = self.count == 0;
-        let (least, most) = if is_first { (value, value) } else { self.range };
-        self.range = (least.min(value), most.max(value));
         self.first = if is_first { row } else { self.first };
         self.stretches += usize::from(is_first || row > self.last + 1);
         self.count += 1;

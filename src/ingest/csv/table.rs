@@ -1,24 +1,29 @@
 //! The columns of a table to the samples of its channels on their time base.
 
 use super::columns::HeldColumn;
+use super::complaint;
 use super::even::Even;
 use super::layout::Layout;
+use super::pieces::Sizes;
 use super::plan::{self, ColumnPlan};
 use super::preamble;
-use super::rows::{RowsPart, Sink};
+use super::rows::{self, RowsPart, Sink};
 use super::sensors;
 use super::stamp::Stamps;
 use super::time_column;
 use super::wanted::Wanted;
-use crate::data::{Finding, Samples};
+use crate::data::{Finding, Samples, TableFinding};
+use crate::ingest::ReadRequest;
 use crate::ingest::clock::Clock;
 use crate::ingest::counting::{self, Counter, RowCounter};
-use crate::ingest::lines;
+use crate::ingest::error::IngestError;
+use crate::ingest::lines::{self, Text};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use crate::numerics::robust;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// The wanted columns of a table, kept whole, with what is said of them.
 #[derive(Debug)]
@@ -30,8 +35,18 @@ pub(super) struct Table<'a> {
     pub stamps: Stamps,
     /// What remarks among the rows say that may be a factor of the samples.
     pub factors: Vec<String>,
+    /// The words of each column for a listing; where there are none a word is a fault.
+    pub words: Vec<CellWords>,
     /// Of columns that bear out others.
     other_stamps: Stamps,
+}
+
+/// Cells of a column that are no numbers.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CellWords {
+    pub count: u64,
+    /// The first of them, or its beginning.
+    pub first: Option<String>,
 }
 
 /// Why the times of a channel are refused.
@@ -49,20 +64,29 @@ enum Base<'a> {
 
 impl Sink for Table<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.wanted.is_sensor[slot] {
-            return Some(sensors::value(cell, b'.'));
+        let number = self.number_of(slot, cell);
+        let Some(words) = self.words.get_mut(slot).filter(|_| !self.wanted.is_time[slot]) else {
+            return number;
+        };
+        let number = number.unwrap_or(f64::NAN);
+        if number.is_nan() {
+            words.count += 1;
+            words.first.get_or_insert_with(|| rows::shown(cell));
         }
-        if self.wanted.counter == Some(self.wanted.columns[slot]) {
-            return Some(counting::of_words(&lines::text(cell)).unwrap_or(f64::NAN));
-        }
-        if self.wanted.is_witness[slot] {
-            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
-        }
-        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
+        Some(number)
     }
 
     fn append(&mut self, parts: &mut [RowsPart]) {
-        self.extend(parts, |slot| slot);
+        // A table of one piece is held as it is.
+        let may_keep_rule = parts.len() > 1;
+        // Most of the time the system hands out the memory, a page after the other.
+        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
+            |(slot, (column, is_time))| {
+                for part in &*parts {
+                    column.extend(&part.0[slot], *is_time && may_keep_rule);
+                }
+            },
+        );
         parts.iter_mut().for_each(RowsPart::clear);
     }
 
@@ -76,34 +100,67 @@ impl Sink for Table<'_> {
 }
 
 impl<'a> Table<'a> {
-    /// Before the first row; the `columns` are empty.
-    pub(super) fn new(
-        layout: &'a Layout,
-        plans: &'a [ColumnPlan],
-        wanted: &'a Wanted,
-        columns: Vec<HeldColumn>,
-    ) -> Self {
+    /// Before the first row.
+    pub(super) fn new(layout: &'a Layout, plans: &'a [ColumnPlan], wanted: &'a Wanted) -> Self {
+        let columns = vec![HeldColumn::default(); wanted.columns.len()];
         let (stamps, other_stamps) = (Stamps::default(), Stamps::default());
-        Self { layout, plans, wanted, columns, stamps, factors: Vec::new(), other_stamps }
+        Self { layout, plans, wanted, columns, stamps, factors: Vec::new(), words: Vec::new(), other_stamps }
     }
 
-    /// Takes over the rows of `parts`, in which the values of a slot lie at its `place`.
-    pub(super) fn extend(&mut self, parts: &[RowsPart], place: impl Fn(usize) -> usize + Sync) {
-        // A table of one piece is held as it is.
-        let may_keep_rule = parts.len() > 1;
-        // Most of the time the system hands out the memory, a page after the other.
-        self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
-            |(slot, (column, is_time))| {
-                for part in parts {
-                    column.extend(&part.0[place(slot)], *is_time && may_keep_rule);
-                }
-            },
-        );
+    /// With words that are no fault.
+    pub(super) fn for_listing(self) -> Self {
+        Self { words: vec![CellWords::default(); self.columns.len()], ..self }
     }
 
-    /// Turns the times into s, and compares them with other columns of times; warnings where those do not
-    /// bear them out.
-    pub(super) fn settle_times(&mut self) -> Result<Vec<Finding>, Refused> {
+    /// Takes the rows of `text`; how they ended, where they broke off.
+    pub(super) fn read(
+        &mut self,
+        text: Text,
+        request: ReadRequest,
+    ) -> Result<Option<TableFinding>, IngestError> {
+        let Self { layout, wanted, columns, .. } = self;
+        // What is set aside is a guess from the first rows; more is taken as it comes.
+        let most_rows = request.limits.samples_bytes() / (8 * columns.len().max(1) as u64);
+        let rows = layout.rows_expected(text.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
+        for column in columns.iter_mut() {
+            column.each.reserve(rows);
+        }
+        let (layout, wanted, sizes) = (*layout, *wanted, Sizes::of(request.limits, text.bytes));
+        rows::read(text, (layout, wanted), self, sizes, request.progress)
+            .map_err(|error| complaint::row_error(request, (layout, wanted), error))
+    }
+
+    /// The value of a cell that is no number, where it stands for one.
+    fn number_of(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.wanted.is_sensor[slot] {
+            return Some(sensors::value(cell, b'.'));
+        }
+        if self.wanted.counter == Some(self.wanted.columns[slot]) {
+            return Some(counting::of_words(&lines::text(cell)).unwrap_or(f64::NAN));
+        }
+        if self.wanted.is_witness[slot] {
+            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
+        }
+        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
+    }
+
+    /// The values of a column that is held.
+    pub(super) fn values(&self, column: usize) -> Cow<'_, [f64]> {
+        self.columns[self.wanted.slot(column)].values()
+    }
+
+    /// Turns the times into s, and holds them against other columns of times and the one that counts the
+    /// rows; warnings where those do not bear them out.
+    ///
+    /// # Errors
+    /// The times are none, or what stands beside them contradicts them.
+    pub(super) fn settle(&mut self) -> Result<Vec<Finding>, Refused> {
+        let mut issues = self.settle_times()?;
+        issues.extend(self.place_by_counter()?);
+        Ok(issues)
+    }
+
+    fn settle_times(&mut self) -> Result<Vec<Finding>, Refused> {
         let mut issues = Vec::new();
         let mut clocks: Vec<usize> = self.plans.iter().filter_map(|plan| plan.time_column).collect();
         clocks.sort_unstable();
@@ -203,7 +260,7 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// They do, and the cask file does not name the times.
-    pub(super) fn place_by_counter(&mut self) -> Result<Option<Finding>, Refused> {
+    fn place_by_counter(&mut self) -> Result<Option<Finding>, Refused> {
         let values = |column: usize| self.columns[self.wanted.slot(column)].values();
         let header = |column: usize| self.layout.columns[column].header.as_str();
         let counter = self.wanted.counter.filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
@@ -218,10 +275,9 @@ impl<'a> Table<'a> {
         Ok(Some(counter.finding()))
     }
 
-    /// How many samples a channel has at most.
+    /// How many rows it has.
     pub(super) fn rows(&self) -> usize {
-        let held = self.plans.iter().map(|plan| self.columns[self.wanted.slot(plan.column)].len());
-        held.max().unwrap_or_default()
+        self.columns.first().map_or(0, HeldColumn::len)
     }
 
     /// Where no times tell what is missing, leaves out blank lines behind the table.
@@ -233,9 +289,9 @@ impl<'a> Table<'a> {
             return Ok(());
         }
         let is_row = |row: &usize| self.columns.iter().any(|column| !column.each[*row].is_nan());
-        let all = 0..self.columns.first().map_or(0, HeldColumn::len);
-        let rows = all.rev().find(is_row).map_or(0, |last| last + 1);
+        let rows = (0..self.rows()).rev().find(is_row).map_or(0, |last| last + 1);
         let blank = rows - (0..rows).filter(is_row).count();
+        self.columns.iter_mut().for_each(|column| column.each_mut().truncate(rows));
         if blank > rows / 3 {
             return Err(Refusal::new(
                 format!(
@@ -245,76 +301,76 @@ impl<'a> Table<'a> {
                 "delete the empty lines in a copy, or name a column of times",
             ));
         }
-        self.columns.iter_mut().for_each(|column| column.each_mut().truncate(rows));
         Ok(())
     }
 
-    /// For each channel, which rows are its samples where not all are: those with a time, as in
+    /// Which rows are samples of a channel with such `values` where not all are: those with a time, as in
     /// `Time;A1;Time;A2` one pair may end before the other, of its own sensor, and with a value where each
     /// topic has rows of its own.
     ///
     /// # Errors
     /// No row is of the sensor that the cask file names.
-    pub(super) fn own_rows(&self) -> Result<Vec<Option<Vec<bool>>>, Refused> {
-        let of_plan =
-            |(plan, of): (usize, &ColumnPlan)| self.rows_of(of).map_err(|refusal| Refused { plan, refusal });
-        self.plans.iter().enumerate().map(of_plan).collect()
-    }
-
-    fn rows_of(&self, plan: &ColumnPlan) -> Result<Option<Vec<bool>>, Refusal> {
-        let held = |column: usize| &self.columns[self.wanted.slot(column)];
-        let has_none = |column: usize| held(column).each.iter().filter(|value| value.is_nan()).count() > 0;
-        let lacks_times = plan.time_column.is_some_and(has_none);
-        let lacks_values = has_none(plan.column) && plan.time_column != Some(plan.column);
+    pub(super) fn rows_of(&self, plan: &ColumnPlan, values: &[f64]) -> Result<Option<Vec<bool>>, Refusal> {
+        let has_none = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count() > 0;
+        let each = |time: usize| &self.columns[self.wanted.slot(time)].each;
+        let lacks_times = plan.time_column.is_some_and(|time| has_none(each(time)));
+        let lacks_values = has_none(values) && plan.time_column != Some(plan.column);
         if plan.rows.is_none() && !lacks_times && !lacks_values {
             return Ok(None);
         }
-        let times = plan.time_column.map(|time| held(time).values());
+        let times = plan.time_column.map(|time| self.values(time));
         let mut is_own: Vec<bool> = match &times {
             Some(times) => times.iter().map(|time| !time.is_nan()).collect(),
-            None => vec![true; held(plan.column).len()],
+            None => vec![true; values.len()],
         };
         if let Some((column, is)) = &plan.rows {
             let own = sensors::value(is.trim().as_bytes(), self.layout.dialect.decimal);
-            let ids = held(*column).values();
+            let ids = self.values(*column);
             is_own.iter_mut().zip(&*ids).for_each(|(is_own, id)| *is_own &= id.total_cmp(&own).is_eq());
             if !is_own.contains(&true) {
                 return Err(plan::no_such_sensor(self.layout, *column, is));
             }
         }
-        let values = held(plan.column).values();
-        if lacks_values && times.is_some() && is_sparse(&values, &is_own) {
-            is_own.iter_mut().zip(&*values).for_each(|(is_own, value)| *is_own &= !value.is_nan());
+        if lacks_values && times.is_some() && is_sparse(values, &is_own) {
+            is_own.iter_mut().zip(values).for_each(|(is_own, value)| *is_own &= !value.is_nan());
+        }
+        if times.is_none() && plan.ends_alone {
+            let end = values.iter().rposition(|value| !value.is_nan()).map_or(0, |last| last + 1);
+            is_own[end..].fill(false);
         }
         Ok(Some(is_own))
     }
 
     /// The samples of each channel on their base, for which they are taken out of the table.
     ///
-    /// `own_rows` are those of [`Self::own_rows`].
-    pub(super) fn uniforms(&mut self, own_rows: &[Option<Vec<bool>>]) -> Vec<Result<Uniform, Refusal>> {
-        let Self { plans, wanted, columns, .. } = self;
-        let samples = |(at, plan): (usize, &ColumnPlan)| {
-            // The last channel to use a column takes it instead of copying it.
-            let is_used = plans[at + 1..].iter().any(|later| later.column == plan.column)
-                || plans.iter().any(|other| other.time_column == Some(plan.column));
-            let values = columns[wanted.slot(plan.column)].each_mut();
-            if is_used { values.clone() } else { std::mem::take(values) }
+    /// # Errors
+    /// None of the rows is a channel's own, or their times make no record.
+    pub(super) fn uniforms(&mut self) -> Vec<Result<Uniform, Refusal>> {
+        let mut users = vec![0; self.columns.len()];
+        for plan in self.plans {
+            let beside = plan.time_column.into_iter().chain(plan.rows.as_ref().map(|rows| rows.0));
+            beside.chain([plan.column]).for_each(|column| users[self.wanted.slot(column)] += 1);
+        }
+        let mut take = |plan: &ColumnPlan| {
+            let slot = self.wanted.slot(plan.column);
+            (users[slot] == 1).then(|| std::mem::take(self.columns[slot].each_mut()))
         };
-        let samples: Vec<Vec<f64>> = plans.iter().enumerate().map(samples).collect();
+        let samples: Vec<Option<Vec<f64>>> = self.plans.iter().map(&mut take).collect();
+        let Self { plans, wanted, columns, .. } = &*self;
         // Columns of times are fitted once, however many channels use them.
         let times = columns.iter().zip(&wanted.is_time);
         let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
         let base_of = |plan: &ColumnPlan| bases[wanted.slot(plan.time_column?)].as_ref();
-        let times_of = |plan: &ColumnPlan| Some(columns[wanted.slot(plan.time_column?)].values());
-        let channels = samples.into_par_iter().zip(*plans).zip(own_rows);
-        let uniform = |((samples, plan), is_own): ((Vec<f64>, &ColumnPlan), &Option<Vec<bool>>)| {
-            let Some(is_own) = is_own else { return on_base(samples, base_of(plan), plan) };
-            let times = times_of(plan).map(|times| picked(&times, is_own));
+        let uniform = |(samples, plan): (Option<Vec<f64>>, &ColumnPlan)| {
+            let samples = samples.map_or_else(|| self.values(plan.column), Cow::Owned);
+            let Some(is_own) = self.rows_of(plan, &samples)? else {
+                return on_base(samples.into_owned(), base_of(plan), plan);
+            };
+            let times = plan.time_column.map(|time| picked(&self.values(time), &is_own));
             let base = times.as_deref().map(|times| Base::Each(ChannelTimes::new(times)));
-            on_base(picked(&samples, is_own), base.as_ref(), plan)
+            on_base(picked(&samples, &is_own), base.as_ref(), plan)
         };
-        channels.map(uniform).collect()
+        samples.into_par_iter().zip(*plans).map(uniform).collect()
     }
 }
 
@@ -322,10 +378,7 @@ fn base(column: &HeldColumn) -> Base<'_> {
     column.even.map_or_else(|| Base::Each(ChannelTimes::new(&column.each)), Base::Even)
 }
 
-fn on_base(mut samples: Vec<f64>, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, Refusal> {
-    if base.is_none() && plan.ends_alone {
-        samples.truncate(samples.iter().rposition(|sample| !sample.is_nan()).map_or(0, |last| last + 1));
-    }
+fn on_base(samples: Vec<f64>, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, Refusal> {
     let samples = Samples::F64(samples);
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
@@ -334,7 +387,8 @@ fn on_base(mut samples: Vec<f64>, base: Option<&Base>, plan: &ColumnPlan) -> Res
     }
 }
 
-fn picked(values: &[f64], is_own: &[bool]) -> Vec<f64> {
+/// The values of these rows.
+pub(super) fn picked(values: &[f64], is_own: &[bool]) -> Vec<f64> {
     values.iter().zip(is_own).filter(|(_, is_own)| **is_own).map(|(value, _)| *value).collect()
 }
 
@@ -344,7 +398,7 @@ fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
     let values = picked(values, is_own);
     // A channel that begins late or ends early has no row of another's.
     let present = values.iter().enumerate().filter(|(_, value)| !value.is_nan());
-    present.for_each(|(row, value)| filled.take(row, *value));
+    present.for_each(|(row, _)| filled.take(row));
     filled.lie_between()
 }
 

@@ -1,7 +1,7 @@
 //! Tables as they come from loggers and spreadsheets.
 
 use super::*;
-use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode, RowsOf};
+use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode, Listing, RowsOf};
 use crate::ingest::{Limits, ReadRequest};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
@@ -20,6 +20,13 @@ pub(super) fn read_bytes(content: &[u8], cask_file: &CaskFile) -> Result<RawReco
     let path = dir.path().join("r.csv");
     std::fs::write(&path, content).unwrap();
     read(ReadRequest::silent(&path, Limits::default()), cask_file)
+}
+
+fn list_bytes(content: &[u8]) -> Listing {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.csv");
+    std::fs::write(&path, content).unwrap();
+    list(ReadRequest::silent(&path, Limits::default())).unwrap()
 }
 
 pub(super) fn values(recording: &RawRecording, channel: usize) -> Vec<f64> {
@@ -171,14 +178,8 @@ fn rows_across_chunks_are_whole() {
 
 #[test]
 fn a_table_is_listed() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("r.csv");
-    std::fs::write(
-        &path,
-        "Lauf 3\nZeit [ms];A1 [g];Notiz;leer\n0;1,5;ok;\n1;-2,5;ok;\n3;7;;\n4;1;;\n5;1;;\n",
-    )
-    .unwrap();
-    let listing = list(ReadRequest::silent(&path, Limits::default())).unwrap();
+    let listing =
+        list_bytes(b"Lauf 3\nZeit [ms];A1 [g];Notiz;leer\n0;1,5;ok;\n1;-2,5;ok;\n3;7;;\n4;1;;\n5;1;;\n");
     assert_eq!(
         (listing.counts["rows"], listing.counts["columns"], listing.counts["preamble_lines"]),
         (5, 4, 1)
@@ -229,6 +230,19 @@ fn rows_of_several_sensors_are_never_one_signal() {
 }
 
 #[test]
+fn rows_that_a_counter_misses_are_listed_as_missing() {
+    let row = |i: u32| format!("{},{}\n", if i < 40 { i } else { i + 3 }, i % 7);
+    for (header, times) in [("Sample,A1\n", false), ("Sample,A1,t_s\n", true)] {
+        let timed = |i: u32| format!("{},{}\n", row(i).trim(), f64::from(i) / 1e3);
+        let row = |i: u32| if times { timed(i) } else { row(i) };
+        let listing = list_bytes(&table(header, 80, row));
+        let [found] = &listing.issues[..] else { panic!("{:?}", listing.issues) };
+        assert!(found.message.contains("\"Sample\""), "{found:?}");
+        assert_eq!(listing.channels[1].samples, Some(80));
+    }
+}
+
+#[test]
 fn states_constants_and_counters_name_no_sensor() {
     let state = |i: u32| if (30..50).contains(&i) { "TRIG" } else { "OK" };
     let row = |i: u32| format!("{},{},{i},7,box,{i}\n", f64::from(i) / 8000.0, state(i));
@@ -252,9 +266,12 @@ fn rows_of_other_topics_are_no_samples() {
             let cells = if i.is_multiple_of(2) { format!("{i};") } else { format!(";{i}") };
             format!("{};{cells}\n", time.replace('.', decimal))
         };
-        let read = read_bytes(&table("__time;/a/x;/b/x\n", 100, row), &cask_file(&["/b/x", "/a/x"])).unwrap();
-        for channel in &read.channels {
+        let text = table("__time;/a/x;/b/x\n", 100, row);
+        let read = read_bytes(&text, &cask_file(&["/a/x", "/b/x"])).unwrap();
+        let listed = list_bytes(&text).channels;
+        for (channel, listed) in read.channels.iter().zip(listed) {
             let uniform = &channel.uniform;
+            assert_eq!((listed.sample_rate_hz, listed.samples), (Some(uniform.sample_rate_hz), Some(50)));
             assert!(
                 (uniform.sample_rate_hz - 8000.0).abs() < 1.0 && uniform.samples.len() == 50,
                 "{uniform:?}"

@@ -37,6 +37,30 @@ impl Wanted {
         wanted
     }
 
+    /// All columns, for a listing, with those of times. A row may lack a time that is not of the first of
+    /// these: a pair of columns may end before others.
+    pub(super) fn all(clocks: &[Option<usize>], layout: &Layout) -> Self {
+        let (taken, times) = (layout.times.taken, || clocks.iter().flatten().copied());
+        let columns: Vec<usize> = (0..layout.columns.len()).collect();
+        let mark = |marked: &mut dyn Iterator<Item = usize>| {
+            let mut is_marked = vec![false; columns.len()];
+            marked.for_each(|column| is_marked[column] = true);
+            is_marked
+        };
+        let is_time = mark(&mut times());
+        let witnesses = times().flat_map(|time| layout.witnesses(time)).map(|(column, _)| column);
+        let mut witnesses = witnesses.chain(layout.times.nanoseconds).filter(|column| !is_time[*column]);
+        let is_timed = |column: usize| layout.time_of(column) == taken && !layout.holds_times(column);
+        Self {
+            is_witness: mark(&mut witnesses),
+            is_sensor: mark(&mut layout.sensors.iter().take(1).map(|sensors| sensors.column)),
+            counter: layout.counter.filter(|column| !is_time[*column]),
+            clocks: columns.iter().map(|column| taken.filter(|_| is_timed(*column))).collect(),
+            is_time,
+            columns,
+        }
+    }
+
     /// The columns of values, each with that of its times, and those that bear times out.
     pub(super) fn new(values: &[(usize, Option<usize>)], witnesses: &[usize]) -> Self {
         let times: Vec<usize> = values.iter().filter_map(|(_, time)| *time).collect();

@@ -12,7 +12,6 @@ use crate::ingest::clock::Claims;
 use crate::ingest::counting::{RowCounter, with_missing};
 use crate::ingest::refusal::Refusal;
 use crate::ingest::time_base::{self, ChannelTimes, Uniform};
-use crate::numerics::extent;
 
 /// A channel before its samples are read.
 pub(super) struct DatasetChannel {
@@ -31,8 +30,6 @@ pub(super) struct DatasetChannel {
 /// Samples on one base.
 pub(super) struct Based {
     pub uniform: Uniform,
-    /// The first and the last of their times, s, where they have times.
-    pub span_s: Option<(f64, f64)>,
     /// What is said of its start.
     pub start: Start,
 }
@@ -162,7 +159,7 @@ impl DatasetChannel {
                 let told = clocks::witness((time, &times_s), other, is_decided);
                 uniform.issues.extend(told.map_err(at)?);
             }
-            return Ok(Based { uniform, span_s: Some(extent(times_s.iter().copied())), start });
+            return Ok(Based { uniform, start });
         }
         self.by_rate(samples, unfit)
     }
@@ -186,7 +183,7 @@ impl DatasetChannel {
         };
         let mut uniform = placed.map_err(|fault| fault.at(&self.column.source))?;
         uniform.issues.extend(told);
-        Ok(Based { uniform, span_s: None, start: start.clone() })
+        Ok(Based { uniform, start: start.clone() })
     }
 }
 

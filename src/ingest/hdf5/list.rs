@@ -10,6 +10,7 @@ use super::room::File;
 use super::sensors::RecordSensors;
 use super::starts::{self, Start};
 use crate::data::{AttributeFinding, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat};
+use crate::ingest::listed::count_from_first;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
 use crate::numerics::as_f64;
@@ -72,14 +73,6 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     listing.channels.sort_by_key(|listed| listed.kind == BROKEN);
     count_from_first(&mut listing);
     listing
-}
-
-/// Times from the earliest first sample on.
-fn count_from_first(Listing { channels, issues, .. }: &mut Listing) {
-    let first_s = channels.iter().filter_map(|channel| channel.start_s).fold(f64::INFINITY, f64::min);
-    let starts = channels.iter_mut().filter_map(|channel| channel.start_s.as_mut());
-    let places = issues.iter_mut().flat_map(|issue| [&mut issue.from_s, &mut issue.to_s]).flatten();
-    starts.chain(places).for_each(|time_s| *time_s -= first_s);
 }
 
 impl Lister {
@@ -174,7 +167,7 @@ impl Lister {
             Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
             Ok(based) => {
                 let uniform = based.uniform;
-                uniform.list(based.span_s, listed);
+                uniform.list(listed);
                 self.starts.push((source.clone(), based.start));
                 self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.tag(source)));
             }

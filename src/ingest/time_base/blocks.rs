@@ -147,7 +147,7 @@ impl Laid {
         let gaps = missing::mark(&mut samples, lost, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
         issues.extend(of_rate);
         let sample_rate_hz = stated_hz.unwrap_or(sample_rate_hz);
-        Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
+        Uniform { start_s, span_s: None, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
     }
 }
 

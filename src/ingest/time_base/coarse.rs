@@ -96,7 +96,7 @@ pub(super) fn place(
     };
     issues.extend(taken.issues);
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
-    Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+    Ok(Uniform { start_s, span_s: None, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 /// Times and samples with those that are missing.

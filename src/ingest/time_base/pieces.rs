@@ -11,6 +11,8 @@ use std::ops::Range;
 pub struct Uniform {
     /// Time of sample 0, in the clock of the times given, s.
     pub start_s: f64,
+    /// The earliest and the latest of the times given, s; `None` where there are none.
+    pub span_s: Option<(f64, f64)>,
     /// Rate, Hz.
     pub sample_rate_hz: f64,
     /// Samples; NaN where missing.
@@ -24,15 +26,14 @@ pub struct Uniform {
 }
 
 impl Uniform {
-    /// Adds to a listing when the samples were taken; `span_s` is the first and the last of their times, s,
-    /// where they have any.
-    pub(in crate::ingest) fn list(&self, span_s: Option<(f64, f64)>, listed: &mut ListedChannel) {
+    /// Adds to a listing when the samples were taken.
+    pub(in crate::ingest) fn list(&self, listed: &mut ListedChannel) {
         let has_gap = self.issues.iter().any(|issue| issue.code == IssueCode::Gap);
         let even_s = as_f64(self.samples.len().saturating_sub(1)) / self.sample_rate_hz;
         listed.sample_rate_hz = Some(self.sample_rate_hz);
-        listed.start_s = Some(span_s.map_or(self.start_s, |(first_s, _)| first_s));
-        listed.duration_s = Some(span_s.map_or(even_s, |(first_s, last_s)| last_s - first_s));
-        listed.gaps = span_s.map(|_| if has_gap { self.gaps.len() as u64 } else { 0 });
+        listed.start_s = Some(self.span_s.map_or(self.start_s, |(first_s, _)| first_s));
+        listed.duration_s = Some(self.span_s.map_or(even_s, |(first_s, last_s)| last_s - first_s));
+        listed.gaps = self.span_s.map(|_| if has_gap { self.gaps.len() as u64 } else { 0 });
     }
 }
 
