@@ -11,11 +11,10 @@ mod pieces;
 mod resample;
 mod stamps;
 
-pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
+pub(super) use block_rate::place as place_blocks;
 pub use blocks::from_blocks;
 pub(super) use error::check_lengths;
 use error::check_rate;
-pub(super) use pieces::BlockContent;
 pub use pieces::{Block, Uniform};
 pub(super) use stamps::line;
 

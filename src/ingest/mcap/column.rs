@@ -3,7 +3,7 @@
 use super::numbers::{Extent, append, push};
 use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
-use crate::ingest::{counting::SteadyNumbers, factors, refusal::Refusal, time_base::PREFIX};
+use crate::ingest::{counting::SteadyNumbers, factors, refusal::Refusal};
 
 mod based;
 
@@ -38,12 +38,12 @@ pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
 pub(super) struct Column {
     /// Of each message that gave samples, since 1970.
     times_ns: Vec<i64>,
-    /// Of all messages, one after another; of the first blocks alone where there is an extent.
+    /// Of all messages, one after another.
     samples: Samples,
     /// How many samples each message gave, where one gave an array.
     counts: Vec<usize>,
-    /// For a listing.
-    pub(super) extent: Option<Extent>,
+    /// Earlier ones that did not fit in memory, for a listing.
+    pub(super) forgotten: Option<Extent>,
     /// How many messages carry a stamp that was used.
     pub(super) good_stamps: u64,
     /// How many carry one that is zero or not understood.
@@ -94,11 +94,6 @@ fn state<T: PartialEq>(known: &mut Vec<T>, stated: T) {
 }
 
 impl Column {
-    /// Without samples; with an extent in place of the samples of blocks where it is for a listing.
-    pub(super) fn new(is_listed: bool) -> Self {
-        Self { extent: is_listed.then(Extent::default), ..Self::default() }
-    }
-
     /// Takes what one message gave; `tick` is the number that is its time, where it carries one.
     pub(super) fn take(&mut self, value: Value, time: MessageTime, tick: Option<(f64, &Beside)>) {
         let count = match &value {
@@ -114,15 +109,11 @@ impl Column {
             self.turn_to_blocks();
         }
         let is_block = is_array || !self.counts.is_empty();
-        let is_kept = !is_block || self.is_prefix();
-        if let Some(extent) = &mut self.extent {
-            extent.see(&value, is_block);
-        }
         self.times_ns.push(time.ns);
         self.counts.extend(is_block.then_some(count));
         match value {
-            Value::Number { value, is_narrow } if is_kept => push(&mut self.samples, value, is_narrow),
-            Value::Array(mut samples) if is_kept => append(&mut self.samples, &mut samples),
+            Value::Number { value, is_narrow } => push(&mut self.samples, value, is_narrow),
+            Value::Array(mut samples) => append(&mut self.samples, &mut samples),
             _ => {}
         }
         let place = self.times_ns.len() - 1;
@@ -210,11 +201,9 @@ impl Column {
         state(&mut self.rates, rate.clone());
     }
 
-    /// Whether all samples so far are held, and those of one more block are: for a listing the first of them
-    /// will do.
-    fn is_prefix(&self) -> bool {
-        let held = self.samples.len();
-        self.extent.as_ref().is_none_or(|extent| held < PREFIX && held == extent.samples)
+    /// How many samples there are, and their range.
+    pub(super) fn extent(&self) -> Extent {
+        Extent::of(&self.samples).with(self.forgotten.as_ref())
     }
 
     /// Takes single numbers for blocks of one sample: some writers leave out the brackets of such a block.
@@ -223,13 +212,6 @@ impl Column {
             return;
         }
         self.counts.resize(self.times_ns.len(), 1);
-        if let Some(extent) = &mut self.extent {
-            let mut of_numbers = Extent::default();
-            for i in 0..self.samples.len() {
-                of_numbers.see(&Value::Number { value: self.samples.get(i), is_narrow: false }, true);
-            }
-            (extent.holes, extent.digests) = (of_numbers.holes, of_numbers.digests);
-        }
     }
 
     /// Moves over what another column took of the messages that follow; that one is as new, but for the
@@ -242,17 +224,15 @@ impl Column {
         } else if !other.counts.is_empty() {
             self.turn_to_blocks();
         }
-        if self.counts.is_empty() || self.is_prefix() {
-            append(&mut self.samples, &mut other.samples);
-        }
+        append(&mut self.samples, &mut other.samples);
         self.times_ns.append(&mut other.times_ns);
         self.counts.append(&mut other.counts);
         match &mut other.samples {
             Samples::F32(samples) => samples.clear(),
             wide @ Samples::F64(_) => *wide = Samples::default(),
         }
-        if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
-            own.append(std::mem::take(more));
+        if let Some(more) = other.forgotten.take() {
+            self.forgotten = Some(more.with(self.forgotten.as_ref()));
         }
         if let Some(more) = other.ticks.take() {
             let ticks = self.ticks.get_or_insert_with(|| SentTimes { each: Vec::new(), ..more.clone() });
@@ -280,11 +260,11 @@ impl Column {
     }
 
     /// Gives the memory of times and samples back, in a listing.
-    pub(super) fn forget_times(&mut self) {
-        if let (false, Some(extent)) = (self.is_empty(), &mut self.extent) {
-            let kept = Extent { digests: Vec::new(), is_without_times: true, ..std::mem::take(extent) };
+    pub(super) fn forget(&mut self) {
+        if !self.is_empty() {
+            let forgotten = Some(self.extent());
             let Self { units, rates, refused, .. } = std::mem::take(self);
-            *self = Self { extent: Some(kept), units, rates, refused, ..Self::default() };
+            *self = Self { forgotten, units, rates, refused, ..Self::default() };
         }
     }
 
@@ -313,8 +293,7 @@ impl Column {
     /// Memory of its times and samples.
     pub(super) fn held_bytes(&self) -> u64 {
         let sample_bytes = if matches!(self.samples, Samples::F32(_)) { 4 } else { 8 };
-        let digests = self.extent.as_ref().map_or(0, |extent| extent.digests.len());
-        let others = self.times_ns.len() + self.counts.len() + digests;
+        let others = self.times_ns.len() + self.counts.len();
         (sample_bytes * self.samples.len() + 8 * others) as u64
     }
 

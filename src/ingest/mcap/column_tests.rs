@@ -28,22 +28,27 @@ fn take(column: &mut Column, range: std::ops::Range<i64>, blocks_from: i64) {
 
 #[test]
 fn a_column_in_two_parts_is_the_column_in_one() {
-    for is_listed in [false, true] {
-        for (parted_at, blocks_from) in (0..6).flat_map(|at| [(at, 6), (at, 2), (at, 0)]) {
-            let [mut whole, mut first, mut second] = [(); 3].map(|()| Column::new(is_listed));
-            take(&mut whole, 0..6, blocks_from);
-            take(&mut first, 0..parted_at, blocks_from);
-            take(&mut second, parted_at..6, blocks_from);
-            first.append(&mut second);
-            assert!(second.is_empty() && second.samples.is_empty());
-            assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{is_listed} {parted_at} {blocks_from}");
-        }
+    for (parted_at, blocks_from) in (0..6).flat_map(|at| [(at, 6), (at, 2), (at, 0)]) {
+        let [mut whole, mut first, mut second] = [(); 3].map(|()| Column::default());
+        take(&mut whole, 0..6, blocks_from);
+        take(&mut first, 0..parted_at, blocks_from);
+        take(&mut second, parted_at..6, blocks_from);
+        first.append(&mut second);
+        assert!(second.is_empty() && second.samples.is_empty());
+        assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{parted_at} {blocks_from}");
+        // A listing shows the same of samples that did not fit in memory.
+        let mut late = Column::default();
+        take(&mut first, 6..9, blocks_from);
+        take(&mut late, 6..9, blocks_from);
+        whole.forget();
+        whole.append(&mut late);
+        assert_eq!(whole.extent(), first.extent());
     }
 }
 
 #[test]
 fn numbers_beside_arrays_are_blocks_of_one() {
-    let mut column = Column::new(false);
+    let mut column = Column::default();
     column.take(number(1.0), stamp(0), None);
     column.take(block(&[2.0, 3.0]), stamp(1), None);
     column.take(number(4.0), stamp(2), None);
@@ -53,7 +58,7 @@ fn numbers_beside_arrays_are_blocks_of_one() {
 #[test]
 fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
     let column = |step_ns: i64| {
-        let mut column = Column::new(false);
+        let mut column = Column::default();
         let zero = MessageTime::of(Some(&Value::Stamp(0)), 1_700_000_000_000_000_000);
         column.take(block(&[1.0, 2.0]), zero, None);
         column.take(block(&[3.0, 4.0]), stamp(step_ns), None);

@@ -10,6 +10,7 @@ use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat,
 use crate::ingest::ReadRequest;
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::refusal::Refusal;
+use crate::ingest::time_base::Uniform;
 use std::collections::{BTreeMap, HashMap};
 
 /// Lists what a file holds.
@@ -85,7 +86,7 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
             });
             continue;
         };
-        let Extent { samples, range, .. } = column.extent.clone().unwrap_or_default();
+        let Extent { samples, range } = column.extent();
         let (name, field) = (topic.name.clone(), path.to_string());
         let (source, place) = if is_alone {
             (format!("{name}.{field}"), None)
@@ -129,14 +130,20 @@ fn add(listing: &mut Listing, of_channel: &mut [TopicSeries], is_alone: bool, ze
 /// # Errors
 /// Why it would refuse them; too few samples are no fault of a recording.
 fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), Refusal> {
-    if column.extent.as_ref().is_some_and(|extent| extent.is_without_times) {
+    if column.forgotten.is_some() {
         let problem = "its times take more memory than is allowed, and tell no rate here";
         return Err(Refusal::new(problem, "allow more with --max-memory"));
     }
     column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));
-    if channel.samples < Some(2) { Ok(()) } else { column.list_times(zero_ns, channel) }
+    if channel.samples >= Some(2) {
+        // The first sample stands where its base begins, whenever its message was stamped.
+        let uniform = Uniform { span_s: None, ..column.uniform(zero_ns, None)? };
+        uniform.list(channel);
+        channel.gaps = Some(uniform.gaps.len() as u64);
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -143,7 +143,7 @@ impl Gathered {
             if value == Value::Missing && self.leaves.is_empty() && topic.is_json() {
                 self.leaves = json::Fields::of(message.data).leaves;
             }
-            let column = self.column_of(said.sensor.as_ref(), at, is_listed);
+            let column = self.column_of(said.sensor.as_ref(), at);
             said.unit.into_iter().for_each(|unit| column.state_unit(unit));
             said.rates.iter().for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(said.stamp, message.log_time_ns);
@@ -197,12 +197,7 @@ impl Gathered {
     }
 
     /// The column of a field, of the sensor that a message names.
-    fn column_of(
-        &mut self,
-        named: Option<&(Cow<str>, &Beside)>,
-        field: usize,
-        is_listed: bool,
-    ) -> &mut Column {
+    fn column_of(&mut self, named: Option<&(Cow<str>, &Beside)>, field: usize) -> &mut Column {
         let is = named.map(|(is, _)| &**is);
         let known = self.sensors.iter().position(|own| own.rows.as_ref().map(|rows| &*rows.is) == is);
         let rows =
@@ -210,14 +205,14 @@ impl Gathered {
         let at = known.unwrap_or_else(|| self.add(named.map(rows)));
         let columns = &mut self.sensors[at].columns;
         if columns.len() <= field {
-            columns.resize_with(field + 1, || Column::new(is_listed));
+            columns.resize_with(field + 1, Column::default);
         }
         &mut columns[field]
     }
 
     /// A series for each sensor and field of the channel `number`, after its last message; one without a
     /// field where its topic has none.
-    pub(super) fn series(mut self, topic: Rc<Topic>, number: u16, is_listed: bool) -> Vec<TopicSeries> {
+    pub(super) fn series(mut self, topic: Rc<Topic>, number: u16) -> Vec<TopicSeries> {
         let mut sensors = std::mem::take(&mut self.sensors);
         if sensors.is_empty() {
             sensors.push(Sensor { rows: None, columns: Vec::new() });
@@ -228,7 +223,7 @@ impl Gathered {
         let channel = Rc::new(TopicChannel { topic, number, gathered: self });
         let mut all = Vec::with_capacity(sensors.len() * fields.len());
         for Sensor { rows, mut columns } in sensors {
-            columns.resize_with(fields.len(), || Column::new(is_listed));
+            columns.resize_with(fields.len(), Column::default);
             for (field, mut column) in fields.iter().cloned().zip(columns) {
                 column.settle_clock();
                 if has_further {
@@ -281,8 +276,8 @@ pub(super) struct Part {
     /// By the channel's place in the file, as far as one had a message.
     pub(super) gathered: Vec<Gathered>,
     slots: Slots,
-    /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of
-    /// their own.
+    /// So many bytes of times and samples may be held for a listing; `None` where samples are read, which
+    /// have a limit of their own.
     most_listed_bytes: Option<u64>,
     /// Memory of times and samples.
     pub(super) held_bytes: u64,
@@ -315,10 +310,10 @@ impl Part {
         self.keep_within();
     }
 
-    /// Lists a file that holds more times than there is memory for without them.
+    /// Lists a file that holds more than there is memory for without times.
     fn keep_within(&mut self) {
         if self.most_listed_bytes.is_some_and(|most| self.held_bytes > most) {
-            self.gathered.iter_mut().flat_map(Gathered::columns_mut).for_each(Column::forget_times);
+            self.gathered.iter_mut().flat_map(Gathered::columns_mut).for_each(Column::forget);
             self.held_bytes = 0;
         }
     }

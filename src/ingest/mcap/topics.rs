@@ -252,9 +252,9 @@ impl<'a> Topics<'a> {
         Ok(())
     }
 
-    /// An empty part, one of so many that are held at a time.
-    pub(super) fn part(&self, count: usize) -> Part {
-        Part::new(self.asked.is_none().then(|| self.limits.samples_bytes() / (2 * count as u64)))
+    /// An empty part, which in a listing may hold the `share`th part of what samples may take.
+    pub(super) fn part(&self, share: usize) -> Part {
+        Part::new(self.asked.is_none().then(|| self.limits.samples_bytes() / share as u64))
     }
 
     /// A note on what there was no room to list.
@@ -267,7 +267,6 @@ impl<'a> Topics<'a> {
     /// What each channel with messages gave for each field, by topics in the order of the file; of types
     /// without a message one that no other has on its topic.
     pub(super) fn finish(self, taken: Part) -> Vec<TopicSeries> {
-        let is_listed = self.asked.is_none();
         let mut channels: Vec<Vec<(u16, Gathered)>> = self.all.iter().map(|_| Vec::new()).collect();
         for (AskedChannel { topic, number, factors }, mut gathered) in
             self.channels.into_iter().zip(taken.gathered)
@@ -289,7 +288,7 @@ impl<'a> Topics<'a> {
             }
             let topic = Rc::new(topic);
             for (number, gathered) in channels {
-                all.extend(gathered.series(topic.clone(), number, is_listed));
+                all.extend(gathered.series(topic.clone(), number));
             }
         }
         all

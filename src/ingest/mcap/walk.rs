@@ -233,8 +233,10 @@ impl<'a> Walk<'a> {
     fn chunk(&mut self, claimed: u64, available: u64) -> Result<ControlFlow<()>, IngestError> {
         let part_bytes = self.request.limits.part_bytes();
         self.hold("one of its chunks takes", claimed.min(available), part_bytes)?;
-        let mut chunk =
-            self.spare.pop().unwrap_or_else(|| Chunk::new(self.topics.part(rayon::current_num_threads())));
+        let mut chunk = self
+            .spare
+            .pop()
+            .unwrap_or_else(|| Chunk::new(self.topics.part(2 * rayon::current_num_threads())));
         (chunk.start, chunk.claimed) = (self.at, claimed);
         std::mem::swap(&mut self.body, &mut chunk.body);
         self.read(claimed.min(available))?;

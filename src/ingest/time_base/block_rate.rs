@@ -3,7 +3,7 @@
 
 use super::blocks::{self, Laid};
 use super::error::check_rate;
-use super::pieces::{Block, BlockContent, Piece, Uniform, pieces};
+use super::pieces::{Block, Piece, Uniform, are_same, overlaps, pieces};
 use super::stamps::{Intervals, Told};
 use crate::data::{Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
@@ -21,32 +21,23 @@ const SHARED_OF: usize = 10;
 /// Fewer may as well be sent again, corrected.
 const LEAST_SHARED: usize = 3;
 
-/// Of so many samples the first blocks of a channel are kept where its samples are not: enough to tell
-/// whether they overlap.
-pub(crate) const PREFIX: usize = 1 << 16;
-
 /// Blocks on a uniform base by what is claimed of their rate, their `samples` one after another.
 ///
 /// # Errors
 /// [`Refusal`] where claims and stamps give no rate, or stamps no record.
 pub(crate) fn place(blocks: &[Block], claims: &Claims, samples: Samples) -> Result<Uniform, Refusal> {
-    let content = BlockContent { samples: &samples, digests: None };
-    Ok(lay(blocks, claims, &content)?.filled(samples))
+    Ok(lay(blocks, claims, &samples)?.filled(samples))
 }
 
-/// The same as far as a listing shows it.
-///
-/// # Errors
-/// As [`place`].
-pub(crate) fn lay(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Laid, Refusal> {
+fn lay(blocks: &[Block], claims: &Claims, samples: &Samples) -> Result<Laid, Refusal> {
     claims.cask_hz.map_or(Ok(()), check_rate)?;
-    no_shared_stamps(blocks, content)?;
+    no_shared_stamps(blocks, samples)?;
     let nearest_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));
     let told = Intervals::of(blocks).told(nearest_hz);
     let Some(nearest_hz) = nearest_hz else {
-        return blocks::lay(blocks, alone(blocks, told)?, content);
+        return blocks::lay(blocks, alone(blocks, told)?, samples);
     };
-    let is_window = |told: &Told| nearest_hz < told.rate_hz && content.overlaps(blocks, nearest_hz);
+    let is_window = |told: &Told| nearest_hz < told.rate_hz && overlaps(samples, blocks, nearest_hz);
     let own = told.filter(|told| !told.is_few && !is_window(told));
     let own = own.map(|told| Statement::by("the stamps of its blocks", told.rate_hz, told.uncertainty));
     let taken = claims.weigh(own.as_ref())?;
@@ -62,7 +53,7 @@ pub(crate) fn lay(blocks: &[Block], claims: &Claims, content: &BlockContent) -> 
     // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps
     // would leave a gap behind every block, or let each cover the next.
     let laid_hz = own.filter(|own| !is_borne_out(own)).map_or(nearest_hz, |own| own.rate_hz);
-    let mut laid = blocks::lay(blocks, laid_hz, content)?;
+    let mut laid = blocks::lay(blocks, laid_hz, samples)?;
     laid.stated_hz = claims.cask_hz.filter(|hz| hz.total_cmp(&laid_hz).is_ne());
     laid.of_rate = issues;
     Ok(laid)
@@ -89,12 +80,12 @@ fn alone(blocks: &[Block], told: Option<Told>) -> Result<f64, Refusal> {
 
 /// Refuses blocks of which many carry the stamp of the one before though their samples differ: nothing tells
 /// where one is lost.
-fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refusal> {
+fn no_shared_stamps(blocks: &[Block], samples: &Samples) -> Result<(), Refusal> {
     let pieces = pieces(blocks);
     let is_shared = |pair: &&[Piece]| {
         let [one, other] = pair else { return false };
         one.start_s.total_cmp(&other.start_s).is_eq()
-            && (one.samples.len() != other.samples.len() || !content.are_same(one, other))
+            && (one.samples.len() != other.samples.len() || !are_same(samples, one, other))
     };
     let count = pieces.windows(2).filter(is_shared).count();
     if count < LEAST_SHARED || SHARED_OF * count <= blocks.len() {

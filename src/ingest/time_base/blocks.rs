@@ -4,7 +4,7 @@ use super::error::{self, check_lengths, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
 use super::missing;
 use super::order::{is_same, no_mixture};
-use super::pieces::{Block, BlockContent, Piece, Uniform, pieces};
+use super::pieces::{Block, Piece, Uniform, are_same, pieces};
 use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
 use crate::data::{Finding, Samples, Span, TimesFinding};
 use crate::ingest::clock::RATE_TOLERANCE;
@@ -36,16 +36,16 @@ impl Doubles {
 pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, Refusal> {
     let count: usize = blocks.iter().map(|block| block.count).sum();
     check_lengths(count, samples.len())?;
-    let laid = lay(blocks, rate_hz, &BlockContent { samples: &samples, digests: None })?;
+    let laid = lay(blocks, rate_hz, &samples)?;
     Ok(laid.filled(samples))
 }
 
 /// Where blocks lie on a uniform base.
-pub(crate) struct Laid {
+pub(super) struct Laid {
     /// Those that are kept, in the order of their stamps.
     pieces: Vec<Piece>,
     /// Time of the first sample, s.
-    pub(crate) start_s: f64,
+    start_s: f64,
     /// At which the blocks follow one another, Hz.
     sample_rate_hz: f64,
     /// The cask file's, where its stamps contradict it, Hz.
@@ -53,7 +53,7 @@ pub(crate) struct Laid {
     /// What is to be said of the rate.
     pub(super) of_rate: Vec<Finding>,
     /// Samples that are missing between blocks, from when to when, s.
-    pub(crate) gaps: Vec<missing::Gap>,
+    gaps: Vec<missing::Gap>,
     doubles: Doubles,
     issues: Vec<Finding>,
 }
@@ -62,7 +62,7 @@ pub(crate) struct Laid {
 ///
 /// # Errors
 /// As that.
-pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Result<Laid, Refusal> {
+pub(super) fn lay(blocks: &[Block], rate_hz: f64, samples: &Samples) -> Result<Laid, Refusal> {
     check_rate(rate_hz)?;
     if let Some(index) = blocks.iter().position(|block| !block.start_s.is_finite()) {
         return Err(error::not_finite(index + 1, blocks[index].start_s));
@@ -70,8 +70,8 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
     let mut pieces = pieces(blocks);
     pieces.retain(|piece| !piece.samples.is_empty());
     let (mut issues, mut doubles) = (Vec::new(), Doubles::default());
-    sort(&mut pieces, &mut issues, content)?;
-    drop_doubles(&mut pieces, rate_hz, &mut doubles, content);
+    sort(&mut pieces, &mut issues, samples)?;
+    drop_doubles(&mut pieces, rate_hz, &mut doubles, samples);
     let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
     if present < 2 {
         return Err(error::too_few(present));
@@ -96,19 +96,9 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
 }
 
 impl Laid {
-    /// The rate that the samples are taken at, Hz.
-    pub(crate) fn rate_hz(&self) -> f64 {
-        self.stated_hz.unwrap_or(self.sample_rate_hz)
-    }
-
-    /// Number of samples, missing ones too.
-    pub(crate) fn count(&self) -> usize {
-        self.pieces.iter().map(Piece::end).max().unwrap_or(0)
-    }
-
     /// The samples at their places; of a block less what of it is already there.
     pub(super) fn filled(self, held: Samples) -> Uniform {
-        let count = self.count();
+        let count = self.pieces.iter().map(Piece::end).max().unwrap_or(0);
         let Self { pieces, start_s, sample_rate_hz, stated_hz, of_rate, gaps, mut doubles, mut issues } =
             self;
         let (mut stretches, mut end) = (Vec::with_capacity(pieces.len()), 0_usize);
@@ -151,7 +141,7 @@ impl Laid {
     }
 }
 
-fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent) -> Result<(), Refusal> {
+fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, samples: &Samples) -> Result<(), Refusal> {
     let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else {
         return Ok(());
     };
@@ -162,7 +152,7 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent)
         let (one, other) = (&pieces[a], &pieces[b]);
         starts_s[a].total_cmp(&starts_s[b]).is_eq()
             && one.samples.len() == other.samples.len()
-            && content.are_same(one, other)
+            && are_same(samples, one, other)
     };
     no_mixture(&starts_s, order.into_iter(), is_copy)?;
     let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
@@ -173,11 +163,11 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent)
 }
 
 /// Drops blocks that start where the one before does.
-fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, content: &BlockContent) {
+fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, samples: &Samples) {
     pieces.dedup_by(|later, kept| {
         let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
         if is_double {
-            let is_equal = later.samples.len() == kept.samples.len() && content.are_same(later, kept);
+            let is_equal = later.samples.len() == kept.samples.len() && are_same(samples, later, kept);
             doubles.add(is_equal, kept.start_s, later.start_s + as_f64(later.samples.len()) / rate_hz);
             if later.samples.len() > kept.samples.len() {
                 std::mem::swap(later, kept);

@@ -51,7 +51,7 @@ pub(super) fn mark(
 
 /// A stretch without samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Gap {
+pub(super) struct Gap {
     /// Samples that are missing.
     pub lost: usize,
     /// Time of the last sample before, s.

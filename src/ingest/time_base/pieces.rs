@@ -48,8 +48,6 @@ pub struct Block {
 
 /// A block, its samples a range of those of all blocks.
 pub(super) struct Piece {
-    /// Which block it is, in the order of the file.
-    pub(super) number: usize,
     pub(super) start_s: f64,
     pub(super) samples: Range<usize>,
     /// The place of its first sample on the base, once it is laid.
@@ -66,48 +64,34 @@ impl Piece {
 /// The blocks with the places of their samples among those of all.
 pub(super) fn pieces(blocks: &[Block]) -> Vec<Piece> {
     let mut end = 0;
-    let piece = |(number, block): (usize, &Block)| {
+    let piece = |block: &Block| {
         let samples = end..end + block.count;
         end = samples.end;
-        Piece { number, start_s: block.start_s, samples, place: 0 }
+        Piece { start_s: block.start_s, samples, place: 0 }
     };
-    blocks.iter().enumerate().map(piece).collect()
+    blocks.iter().map(piece).collect()
 }
 
-/// The samples of blocks as far as the rate depends on them.
-pub(crate) struct BlockContent<'a> {
-    /// Those of the first blocks at least, one block after another.
-    pub(crate) samples: &'a Samples,
-    /// A number for the samples of each block, where not all are at hand.
-    pub(crate) digests: Option<&'a [u64]>,
+/// Whether two blocks of the same length hold the same of these `samples`.
+pub(super) fn are_same(samples: &Samples, one: &Piece, other: &Piece) -> bool {
+    is_run(samples, one.samples.start, other.samples.start, one.samples.len())
 }
 
-impl BlockContent<'_> {
-    /// Whether two blocks of the same length hold the same samples.
-    pub(super) fn are_same(&self, one: &Piece, other: &Piece) -> bool {
-        match self.digests {
-            Some(digests) => digests[one.number] == digests[other.number],
-            None => self.is_run(one.samples.start, other.samples.start, one.samples.len()),
-        }
-    }
+/// Whether so many samples from `one` on are those from `other` on.
+fn is_run(samples: &Samples, one: usize, other: usize, count: usize) -> bool {
+    one.max(other) + count <= samples.len()
+        && (0..count).all(|i| is_same(samples.get(one + i), samples.get(other + i)))
+}
 
-    /// Whether so many samples from `one` on are those from `other` on.
-    fn is_run(&self, one: usize, other: usize, count: usize) -> bool {
-        one.max(other) + count <= self.samples.len()
-            && (0..count).all(|i| is_same(self.samples.get(one + i), self.samples.get(other + i)))
-    }
-
-    /// Whether the first blocks end, at a rate, with the samples that the next begins with: windows that
-    /// overlap.
-    pub(super) fn overlaps(&self, blocks: &[Block], rate_hz: f64) -> bool {
-        const LOOKED_AT: usize = 8;
-        let mut end = 0;
-        blocks.windows(2).take(LOOKED_AT).all(|pair| {
-            let count = pair[0].count;
-            end += count;
-            let left = as_f64(count) - (pair[1].start_s - pair[0].start_s) * rate_hz;
-            let shared = (0..=count.min(pair[1].count)).find(|&n| as_f64(n) >= left - 0.5).unwrap_or(0);
-            self.is_run(end - shared, end, shared)
-        })
-    }
+/// Whether the first blocks end, at a rate, with the samples that the next begins with: windows that overlap.
+pub(super) fn overlaps(samples: &Samples, blocks: &[Block], rate_hz: f64) -> bool {
+    const LOOKED_AT: usize = 8;
+    let mut end = 0;
+    blocks.windows(2).take(LOOKED_AT).all(|pair| {
+        let count = pair[0].count;
+        end += count;
+        let left = as_f64(count) - (pair[1].start_s - pair[0].start_s) * rate_hz;
+        let shared = (0..=count.min(pair[1].count)).find(|&n| as_f64(n) >= left - 0.5).unwrap_or(0);
+        is_run(samples, end - shared, end, shared)
+    })
 }

@@ -2,14 +2,14 @@
 //! their log times to how their pace differs from that of the stamps.
 
 use super::{Column, SEQUENCE, SentTimes, StatedRate, seconds_from};
-use crate::data::{Finding, ListedChannel, McapFinding};
+use crate::data::{Finding, McapFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE};
 use crate::ingest::counting::RowCounter;
 use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::mcap::topics::LOG_TIME;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::shown;
-use crate::ingest::time_base::{self, Block, BlockContent, Uniform};
+use crate::ingest::time_base::{self, Block, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use crate::numerics::as_f64;
 
@@ -68,30 +68,6 @@ impl Column {
         time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
     }
 
-    /// Adds to a listing when its samples were taken, as [`Column::uniform`] would have them; of blocks it
-    /// needs no samples.
-    ///
-    /// # Errors
-    /// As that.
-    pub(crate) fn list_times(self, zero_ns: i64, listed: &mut ListedChannel) -> Result<(), Refusal> {
-        let (start_s, sample_rate_hz, count, gaps) = match &self.extent {
-            Some(extent) if !self.counts.is_empty() => {
-                let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
-                let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-                (laid.start_s, laid.rate_hz(), laid.count(), laid.gaps.len() + extent.holes)
-            }
-            _ => {
-                let uniform = self.uniform(zero_ns, None)?;
-                (uniform.start_s, uniform.sample_rate_hz, uniform.samples.len(), uniform.gaps.len())
-            }
-        };
-        listed.sample_rate_hz = Some(sample_rate_hz);
-        listed.start_s = Some(start_s);
-        listed.duration_s = Some(as_f64(count - 1) / sample_rate_hz);
-        listed.gaps = Some(gaps as u64);
-        Ok(())
-    }
-
     /// Takes the numbers that messages carry for their times, in ns, where they rise as times do; `source`
     /// names what they are the times of.
     ///
@@ -105,8 +81,7 @@ impl Column {
             self.bad_stamps = count as u64;
             return Ok(());
         }
-        let samples = self.extent.as_ref().map_or(self.samples.len(), |extent| extent.samples);
-        let samples_each = as_f64(samples) / as_f64(count);
+        let samples_each = as_f64(self.samples.len()) / as_f64(count);
         let stated = || Some(self.rates.first()?.statement(f64::NAN)?.rate_hz);
         let stated_hz = cask_hz.or_else(stated);
         let path = FieldPath::parse(&field);
