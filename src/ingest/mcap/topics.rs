@@ -64,6 +64,8 @@ pub(super) struct Topics<'a> {
     pub(super) schemas: HashMap<u16, Schema<'static>>,
     /// In the order of the file.
     all: Vec<Topic>,
+    /// How many of them are undecided: to ask all of them at each chunk takes the square of a large file.
+    undecided: usize,
     /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
     /// announce one of them under every number.
     by_type: HashMap<(String, u16, String), Option<usize>>,
@@ -158,6 +160,7 @@ impl<'a> Topics<'a> {
         if let Some(leaves) = topic.message_type.as_ref().and_then(MessageType::leaves) {
             self.prepare(&mut topic, leaves);
         }
+        self.undecided += usize::from(topic.is_undecided());
         self.all.push(topic);
         is_asked.then_some(self.all.len() - 1)
     }
@@ -202,7 +205,7 @@ impl<'a> Topics<'a> {
                 }
             }
         }
-        if !chunk.is_bad() && self.all.iter().any(Topic::is_undecided) {
+        if !chunk.is_bad() && self.undecided > 0 {
             let messages = chunk.records().filter(|(opcode, _)| *opcode == op::MESSAGE);
             messages.for_each(|(_, body)| self.look_at(body));
         }
@@ -237,6 +240,7 @@ impl<'a> Topics<'a> {
                 self.prepare(&mut topic, leaves);
             }
         }
+        self.undecided -= usize::from(!topic.is_undecided());
         self.all[at] = topic;
     }
 
