@@ -19,21 +19,23 @@ const ELSEWHERE: f64 = 0.1;
 const STRUCK: f64 = 1.5;
 /// A jump this near to the separation, over the contact, is the end of the contact.
 const LETS_GO: f64 = 0.1;
-/// A channel that a break leaves with nothing but noise falls to its level within so many samples, by all but
-/// this share …
-const FALLS: usize = 4;
-const SETTLED: f64 = 0.3;
-/// … is still so many samples after that, in which a recorder's filter rings …
-const RINGS: usize = 16;
-/// … and stays so for so long, s, and so many samples. None of 364 simulated sound beams does, and 76 of 115
-/// that break for 1 to 20 ms or for good.
+/// A cable that breaks leaves its channel with nothing but noise: in so many samples the channel comes within
+/// the second share of the change of its new level.
+const FALL_SAMPLES: usize = 4;
+const SETTLED_SHARE: f64 = 0.3;
+/// A recorder's filter rings for so many samples behind the break.
+const RING_SAMPLES: usize = 16;
+/// The channel is then still for at least so long, s, and for so many samples. None of 364 simulated sound
+/// beams is so named, and 76 of 115 with a cable that breaks for 1 to 20 ms or for good.
 const STILL_S: f64 = 1e-3;
 const LEAST_STILL: usize = 16;
-/// It moved by so many standard deviations of its noise before, and by this share of its peak, …
-const MOVED: f64 = 40.0;
-const MOVED_SHARE: f64 = 0.1;
-/// … and has so many of them at most when it is still, beside what as many samples scatter by.
-const STILL: f64 = 1.25;
+/// The break changes the channel by at least so many standard deviations of its noise, and this share of its
+/// peak.
+const LEAST_CHANGE: f64 = 40.0;
+const LEAST_CHANGE_SHARE: f64 = 0.1;
+/// A still channel has at most so many times its noise before the contact, beside the scatter of that many
+/// samples.
+const STILL_NOISE: f64 = 1.25;
 /// Looked at from so long before the first contact, and until so long before the slap-down, s.
 const BEFORE_S: f64 = 1e-3;
 /// Where no slap-down is found: so long after the first contact, s.
@@ -93,21 +95,22 @@ fn is_struck(signal: &Signal, at_s: f64, size: f64) -> bool {
         .any(|i| step(force, i) > ELSEWHERE * size && is_isolated(force, i, STRUCK))
 }
 
-/// By how much a channel changes behind a sample as it falls on a level and stays there with nothing but
-/// noise, m/s²; none where it does not.
+/// Change of a channel behind a sample as it falls to a level and stays there with nothing but noise, m/s²;
+/// none where it does not.
 fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
     let (force, noise) = (&signal.force_m_s2, signal.noise_m_s2);
     let count = LEAST_STILL.max(as_count(STILL_S * signal.sample_rate_hz));
-    let still = force.get(i + RINGS..i + RINGS + count)?;
-    let is_near = |f: &f64| (f - still[0]).abs() < MOVED / 4.0 * noise;
+    let still = force.get(i + RING_SAMPLES..i + RING_SAMPLES + count)?;
+    let is_near = |f: &f64| (f - still[0]).abs() < LEAST_CHANGE / 4.0 * noise;
     if (force[i] - still[0]).abs() < least || !still.iter().all(is_near) {
         return None;
     }
     let level = reduce::sum(still) / as_f64(count);
     let change = level - force[i];
-    let settles = force[i + FALLS..i + RINGS].iter().all(|f| (f - level).abs() < SETTLED * change.abs());
-    let variance = reduce::sum_of(still, |f| (f - level).powi(2)) / as_f64(count - 1);
-    let most = STILL * noise * (1.0 + 3.0 / (2.0 * as_f64(count)).sqrt());
+    let mut settling = force[i + FALL_SAMPLES..i + RING_SAMPLES].iter();
+    let settles = settling.all(|f| (f - level).abs() < SETTLED_SHARE * change.abs());
+    let variance = reduce::sum_by(still, |f| (f - level).powi(2)) / as_f64(count - 1);
+    let most = STILL_NOISE * noise * (1.0 + 3.0 / (2.0 * as_f64(count)).sqrt());
     (settles && variance < most.powi(2) && change.abs() > least).then_some(change)
 }
 
@@ -117,7 +120,7 @@ fn first_stop(
     mut within: Range<usize>,
     alone: impl Fn(f64) -> bool,
 ) -> Option<(usize, f64)> {
-    let least = (MOVED * signal.noise_m_s2).max(MOVED_SHARE * reduce::peak(&signal.force_m_s2));
+    let least = (LEAST_CHANGE * signal.noise_m_s2).max(LEAST_CHANGE_SHARE * reduce::peak(&signal.force_m_s2));
     within.find_map(|i| {
         let change = stop_m_s2(signal, least, i).filter(|_| alone(signal.time_s(i)))?;
         Some((i, change))

@@ -17,17 +17,17 @@ const STRETCHES: usize = 20;
 /// Samples of a stretch that its spread is taken from: known to 5 %.
 const SAMPLED: usize = 500;
 
-/// A channel ends at its stop where it has stood there for so long, s, and so many samples at the least …
+/// A channel that stands at its stop to its end does so for at least so long, s, and for so many samples.
 const AT_STOP_S: f64 = 0.01;
 const LEAST_AT_STOP: usize = 64;
-/// … within so many spreads of these samples, and this share of the level, …
+/// Those samples lie within so many spreads and this share of the level.
 const WITHIN_SPREADS: f64 = 6.0;
 const WITHIN_SHARE: f64 = 1e-3;
-/// … and no reading is farther from 0 than the level by more than this share: rest after a drop is far below
-/// the impact.
+/// No reading exceeds the stop by more than this share: the level at rest after a drop is far below the impact.
 const BEYOND_STOP: f64 = 0.1;
 
-/// From which sample on a channel, one of `all`, stands at its stop to its end, and the finding that says so.
+/// Returns the first of the samples that stand at the channel's stop to its end, and the finding that says so;
+/// `all` are the recording's channels.
 pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
     let count = channel.samples.len();
     let last = count.checked_sub(LEAST_AT_STOP.max(as_count(AT_STOP_S * channel.sample_rate_hz)))?;
@@ -42,7 +42,7 @@ pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)
     let is_beside_others = all.iter().any(|other| is_like(&other));
     let found = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
     let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
-    is_stop.then(|| (from, found.on(&channel.name).between(from_s, to_s)))
+    is_stop.then(|| (from, found.tag(&channel.name).span(from_s, to_s)))
 }
 
 /// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².

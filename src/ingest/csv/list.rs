@@ -99,7 +99,7 @@ fn column(table: &Table, plan: &ColumnPlan, clocks: &BTreeMap<usize, String>) ->
         Ok(Some(is_own)) => picked(&values, &is_own).into(),
         Err(_) => Vec::new().into(),
     };
-    let range = ListedChannel::range_of(own.iter().copied());
+    let range = ListedChannel::value_range(own.iter().copied());
     let words = &table.words[plan.column];
     let tells_sensors = layout.tells_sensors(plan.column);
     let unreadable = if tells_sensors {

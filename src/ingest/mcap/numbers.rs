@@ -2,7 +2,7 @@
 //! their range.
 
 use crate::data::{ListedChannel, Samples};
-use crate::numerics::single;
+use crate::numerics::to_f32;
 
 /// One more number; single precision as long as all are narrow.
 pub(super) fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
@@ -43,13 +43,13 @@ pub(super) struct Extent {
 impl Extent {
     pub(super) fn of(samples: &Samples) -> Self {
         let each = (0..samples.len()).map(|i| samples.get(i));
-        Self { samples: samples.len(), range: ListedChannel::range_of(each) }
+        Self { samples: samples.len(), range: ListedChannel::value_range(each) }
     }
 
     /// The extent of both together.
     pub(super) fn with(self, more: Option<&Self>) -> Self {
         let Some(more) = more else { return self };
         let ends = [self.range, more.range].into_iter().flatten().flat_map(<[f64; 2]>::from);
-        Self { samples: self.samples + more.samples, range: ListedChannel::range_of(ends) }
+        Self { samples: self.samples + more.samples, range: ListedChannel::value_range(ends) }
     }
 }
