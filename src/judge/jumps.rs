@@ -73,15 +73,12 @@ fn largest_jump(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) 
     let force = &signal.force_m_s2;
     let least = SHARE_OF_PEAK * reduce::peak(force);
     let high = steps_with_sides(force, within).filter(|i| step(force, *i) > least);
-    let is_lost = |i: usize| {
-        signal.gaps.iter().chain(&signal.clipped).any(|s| s.from <= i + AROUND && i < s.to + AROUND)
-    };
     let is_jump = |&i: &usize| {
         let level = |samples: Range<usize>| robust::median(&mut force[samples].to_vec());
         let left = level(i + 1..i + 1 + AROUND) - level(i + 1 - AROUND..i + 1);
         is_isolated(force, i, ISOLATED)
             && left * (force[i + 1] - force[i]).signum() > LASTS * step(force, i)
-            && !is_lost(i)
+            && !has_lost(signal, (i + 1).saturating_sub(AROUND)..i + AROUND + 1)
             && alone(step(force, i), signal.time_s(i))
     };
     high.filter(is_jump).max_by(|one, other| step(force, *one).total_cmp(&step(force, *other)))
@@ -95,6 +92,11 @@ fn is_struck(signal: &Signal, at_s: f64, size: f64) -> bool {
         .any(|i| step(force, i) > ELSEWHERE * size && is_isolated(force, i, STRUCK))
 }
 
+/// Whether samples of a range are missing or stand at a limit.
+fn has_lost(signal: &Signal, range: Range<usize>) -> bool {
+    signal.gaps.iter().chain(&signal.clipped).any(|span| span.from < range.end && range.start < span.to)
+}
+
 /// Change of a channel behind a sample as it falls to a level and stays there with nothing but noise, m/s²;
 /// none where it does not.
 fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
@@ -102,7 +104,8 @@ fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
     let count = LEAST_STILL.max(as_count(STILL_S * signal.sample_rate_hz));
     let still = force.get(i + RING_SAMPLES..i + RING_SAMPLES + count)?;
     let is_near = |f: &f64| (f - still[0]).abs() < LEAST_CHANGE / 4.0 * noise;
-    if (force[i] - still[0]).abs() < least || !still.iter().all(is_near) {
+    let is_lost = || has_lost(signal, i.saturating_sub(AROUND)..i + RING_SAMPLES + count);
+    if (force[i] - still[0]).abs() < least || !still.iter().all(is_near) || is_lost() {
         return None;
     }
     let level = reduce::sum(still) / as_f64(count);

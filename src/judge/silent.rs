@@ -1,5 +1,5 @@
-//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum; and
-//! to those that stand at their stop from some time to their end.
+//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum;
+//! and to those that stand at their stop from some time to their end.
 
 use crate::data::{Axis, Channel, ChannelFinding, Finding, of_either};
 use crate::numerics::{as_count, reduce, robust};
@@ -23,11 +23,12 @@ const LEAST_AT_STOP: usize = 64;
 /// Those samples lie within so many spreads and this share of the level.
 const WITHIN_SPREADS: f64 = 6.0;
 const WITHIN_SHARE: f64 = 1e-3;
-/// No reading exceeds the stop by more than this share: the level at rest after a drop is far below the impact.
+/// No reading exceeds the stop by more than this share: the level at rest after a drop is far below the
+/// impact.
 const BEYOND_STOP: f64 = 0.1;
 
-/// Returns the first of the samples that stand at the channel's stop to its end, and the finding that says so;
-/// `all` are the recording's channels.
+/// Returns the first of the samples that stand at the channel's stop to its end, and the finding that says
+/// so; `all` are the recording's channels.
 pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
     let count = channel.samples.len();
     let last = count.checked_sub(LEAST_AT_STOP.max(as_count(AT_STOP_S * channel.sample_rate_hz)))?;
