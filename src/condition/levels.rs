@@ -5,8 +5,6 @@ use super::runs::runs;
 use crate::data::Span;
 use crate::numerics::{as_f64, reduce, robust};
 
-/// Fewest samples at a limit.
-const LEAST_RUN: usize = 3;
 /// Standard deviations that white noise stays within over some thousand samples, on either side.
 const NOISE_FACTOR: f64 = 4.0;
 /// A channel's peak is so many standard deviations of its noise at the least: below that any force may hide
@@ -22,13 +20,15 @@ pub(super) struct Extremity {
     beyond: f64,
     /// Amplifiers limit both signs alike: a level below this share of the peak is none of their limits.
     symmetry: f64,
+    /// Fewest samples at the limit.
+    least_run: usize,
 }
 
 /// A filter behind the limit rings so far.
-pub(super) const RINGS: Extremity = Extremity { beyond: 0.03, symmetry: 0.6 };
-/// It does so where an impact elsewhere is much shorter than the filter: there the level of the peak's own
+pub(super) const RINGS: Extremity = Extremity { beyond: 0.03, symmetry: 0.6, least_run: 3 };
+/// It does so where an impact elsewhere is much shorter than the filter: there a long level of the peak's own
 /// sign counts.
-const RINGS_ELSEWHERE: Extremity = Extremity { beyond: 0.15, symmetry: 0.9 };
+const RINGS_ELSEWHERE: Extremity = Extremity { beyond: 0.15, symmetry: 0.9, least_run: 32 };
 /// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
 /// plain one is of the second.
 const FLATTEST: i32 = 4;
@@ -68,7 +68,7 @@ impl<'a> Gauge<'a> {
     }
 
     /// The runs at a limit that is so far from what the channel reads elsewhere.
-    pub fn limits_of(&self, Extremity { beyond, symmetry }: Extremity) -> Vec<Span> {
+    pub fn limits_of(&self, Extremity { beyond, symmetry, least_run }: Extremity) -> Vec<Span> {
         let mut found = Vec::new();
         let (low, high) = self.extremes;
         for (sign, extreme) in [(1.0, high), (-1.0, -low)] {
@@ -83,7 +83,7 @@ impl<'a> Gauge<'a> {
                 let at_level = runs(&self.force[near.from..near.to], |f| (sign * f - level).abs() <= within);
                 let spans = at_level.iter().map(|s| Span { from: near.from + s.from, to: near.from + s.to });
                 let is_limit = |span: &Span| {
-                    span.to - span.from >= LEAST_RUN
+                    span.to - span.from >= least_run
                         && extreme - level <= beyond
                         && self.is_noise(*span)
                         && self.kinks(*span).iter().all(|fall| sign * fall > 1.0)
