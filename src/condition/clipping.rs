@@ -1,6 +1,6 @@
 //! Samples to the runs that stand at a limit of the measuring chain.
 
-use super::levels::{Gauge, RINGS};
+use super::levels::Gauge;
 use super::runs::runs;
 use crate::data::{Axis, Channel, ChannelFinding, Finding, LEAST_FLANK, Span};
 use crate::numerics::{as_f64, reduce, robust};
@@ -90,7 +90,7 @@ pub(super) fn clipped(
 /// rounded.
 fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits_of(RINGS);
+    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();
     flanks.retain(|flank| {
         let (from, to) = (force[flank.from], force[flank.to]);
         let is_long = flank.to - flank.from >= LEAST_FLANK && (from - to).abs() > FLANK_SHARE * peak;
@@ -340,18 +340,6 @@ mod tests {
         assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, 100).len(), 1);
         // The stated limit of 300 g is 2942 m/s²: then noise does not matter.
         assert!(!clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, 100).is_empty());
-    }
-
-    #[test]
-    fn a_limit_that_a_filter_rings_beyond_elsewhere_is_one() {
-        // A level of 3000 with noise behind it; a short blow later rings beyond it by a tenth.
-        let with_blow = |level: f64| {
-            let mut force = limited(0.0, 1.0);
-            force.iter_mut().for_each(|f| *f = f.min(level));
-            force.extend((0..40).map(|i| 3300.0 * (f64::from(i) / 40.0 * std::f64::consts::PI).sin()));
-            clipped(&channel(None), &force, 0.0, 1.0, 100).len()
-        };
-        assert_eq!((with_blow(3000.0), with_blow(2000.0)), (1, 0));
     }
 
     #[test]

@@ -5,6 +5,8 @@ use super::runs::runs;
 use crate::data::Span;
 use crate::numerics::{as_f64, reduce, robust};
 
+/// Fewest samples at a limit.
+const LEAST_RUN: usize = 3;
 /// Standard deviations that white noise stays within over some thousand samples, on either side.
 const NOISE_FACTOR: f64 = 4.0;
 /// A channel's peak is so many standard deviations of its noise at the least: below that any force may hide
@@ -13,22 +15,10 @@ const LEAST_PEAK: f64 = 28.0;
 /// A limit is level within this share of it, beside the noise: an amplifier that recovers drifts, and a
 /// filter behind the limit rings, by up to 2 % in 100 simulated overloads.
 const LEVEL_SHARE: f64 = 0.005;
-/// What tells a limit of a channel from what it reads elsewhere.
-#[derive(Clone, Copy)]
-pub(super) struct Extremity {
-    /// No sample is beyond the limit by more than this share of it.
-    beyond: f64,
-    /// Amplifiers limit both signs alike: a level below this share of the peak is none of their limits.
-    symmetry: f64,
-    /// Fewest samples at the limit.
-    least_run: usize,
-}
-
-/// A filter behind the limit rings so far.
-pub(super) const RINGS: Extremity = Extremity { beyond: 0.03, symmetry: 0.6, least_run: 3 };
-/// It does so where an impact elsewhere is much shorter than the filter: there a long level of the peak's own
-/// sign counts.
-const RINGS_ELSEWHERE: Extremity = Extremity { beyond: 0.15, symmetry: 0.9, least_run: 32 };
+/// No sample of the channel is beyond a limit by more than this share, which such ringing reaches.
+const BEYOND_SHARE: f64 = 0.03;
+/// Amplifiers limit both signs alike: a level below this share of the peak is none of their limits.
+const SYMMETRY: f64 = 0.6;
 /// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
 /// plain one is of the second.
 const FLATTEST: i32 = 4;
@@ -63,19 +53,13 @@ impl<'a> Gauge<'a> {
 
     /// The runs at a limit.
     pub fn limits(&self) -> Vec<Span> {
-        let found = [RINGS, RINGS_ELSEWHERE].map(|extremity| self.limits_of(extremity));
-        found.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
-    }
-
-    /// The runs at a limit that is so far from what the channel reads elsewhere.
-    pub fn limits_of(&self, Extremity { beyond, symmetry, least_run }: Extremity) -> Vec<Span> {
         let mut found = Vec::new();
         let (low, high) = self.extremes;
         for (sign, extreme) in [(1.0, high), (-1.0, -low)] {
-            if extreme < symmetry * self.peak || self.peak < LEAST_PEAK * self.noise {
+            if extreme < SYMMETRY * self.peak || self.peak < LEAST_PEAK * self.noise {
                 continue;
             }
-            let beyond = (beyond * extreme).max(2.0 * NOISE_FACTOR * self.noise);
+            let beyond = (BEYOND_SHARE * extreme).max(2.0 * NOISE_FACTOR * self.noise);
             let least = extreme - beyond - NOISE_FACTOR * self.noise;
             let within = NOISE_FACTOR * self.noise + LEVEL_SHARE * extreme;
             for near in runs(self.force, |f| sign * f >= least) {
@@ -83,7 +67,7 @@ impl<'a> Gauge<'a> {
                 let at_level = runs(&self.force[near.from..near.to], |f| (sign * f - level).abs() <= within);
                 let spans = at_level.iter().map(|s| Span { from: near.from + s.from, to: near.from + s.to });
                 let is_limit = |span: &Span| {
-                    span.to - span.from >= least_run
+                    span.to - span.from >= LEAST_RUN
                         && extreme - level <= beyond
                         && self.is_noise(*span)
                         && self.kinks(*span).iter().all(|fall| sign * fall > 1.0)

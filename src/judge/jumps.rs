@@ -17,8 +17,10 @@ const LASTS: f64 = 0.3;
 /// struck as well, as all places of a rigid body are.
 const ELSEWHERE: f64 = 0.1;
 const STRUCK: f64 = 1.5;
-/// A jump this near to the separation, over the contact, is the end of the contact.
+/// A jump this near to the separation, over the contact, is the end of the contact; and so is a stop within the
+/// second share.
 const LETS_GO: f64 = 0.1;
+const LEAVES: f64 = 0.25;
 /// A cable that breaks leaves its channel with nothing but noise: in so many samples the channel comes within
 /// the second share of the change of its new level.
 const FALL_SAMPLES: usize = 4;
@@ -26,13 +28,13 @@ const SETTLED_SHARE: f64 = 0.3;
 /// A recorder's filter rings for so many samples behind the break.
 const RING_SAMPLES: usize = 16;
 /// The channel is then still for at least so long, s, and for so many samples. None of 364 simulated sound
-/// beams is so named, and 76 of 115 with a cable that breaks for 1 to 20 ms or for good.
+/// beams is so named, and 63 of 115 with a cable that breaks for 1 to 20 ms or for good.
 const STILL_S: f64 = 1e-3;
 const LEAST_STILL: usize = 16;
 /// The break changes the channel by at least so many standard deviations of its noise, and this share of its
 /// peak.
 const LEAST_CHANGE: f64 = 40.0;
-const LEAST_CHANGE_SHARE: f64 = 0.1;
+const LEAST_CHANGE_SHARE: f64 = 0.2;
 /// A still channel has at most so many times its noise before the contact, beside the scatter of that many
 /// samples.
 const STILL_NOISE: f64 = 1.25;
@@ -49,13 +51,15 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let jumps = across().filter_map(|signal| {
         let within = signal.index_from(contact_s - BEFORE_S)..signal.index_from(to_s);
         let others = || across().filter(|other| other.name != signal.name);
-        let goes_on = |at_s: f64| !events.separation.is_some_and(|left| is_end(left, at_s, contact_s));
-        let is_alone = |size, at_s| goes_on(at_s) && others().all(|other| !is_struck(other, at_s, size));
+        let goes_on =
+            |at_s: f64, share| !events.separation.is_some_and(|left| is_end(left, at_s, share, contact_s));
+        let is_alone =
+            |size, at_s| goes_on(at_s, LETS_GO) && others().all(|other| !is_struck(other, at_s, size));
         let jump = || {
             let at = largest_jump(signal, within.clone(), is_alone)?;
             Some((at, signal.force_m_s2[at + 1] - signal.force_m_s2[at]))
         };
-        let stops_alone = |at_s| goes_on(at_s) && others().all(|other| !stops_about(other, at_s));
+        let stops_alone = |at_s| goes_on(at_s, LEAVES) && others().all(|other| !stops_about(other, at_s));
         let (at, size_m_s2) = jump().or_else(|| first_stop(signal, within.clone(), stops_alone))?;
         let found = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
         Some(found.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
@@ -64,8 +68,8 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
 }
 
 /// Whether a jump is the end of the contact: a stiff end that keeps nothing lets go within a sample.
-fn is_end(left: At, at_s: f64, contact_s: f64) -> bool {
-    (at_s - left.time_s).abs() < LETS_GO * (left.time_s - contact_s) + 2.0 * left.u_s
+fn is_end(left: At, at_s: f64, share: f64, contact_s: f64) -> bool {
+    (at_s - left.time_s).abs() < share * (left.time_s - contact_s) + 2.0 * left.u_s
 }
 
 /// The sample before the largest jump within a range, of those whose size and time are `alone`.
