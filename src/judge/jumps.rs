@@ -17,8 +17,8 @@ const LASTS: f64 = 0.3;
 /// struck as well, as all places of a rigid body are.
 const ELSEWHERE: f64 = 0.1;
 const STRUCK: f64 = 1.5;
-/// A jump this near to the separation, over the contact, is the end of the contact; and so is a stop within the
-/// second share.
+/// A jump this near to the separation, over the contact, is the end of the contact; and so is a stop within
+/// the second share.
 const LETS_GO: f64 = 0.1;
 const LEAVES: f64 = 0.25;
 /// A cable that breaks leaves its channel with nothing but noise: in so many samples the channel comes within
