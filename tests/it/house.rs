@@ -228,7 +228,7 @@ fn no_type_name_stands_twice() {
 }
 
 /// Lines of code in `src` at most: who deletes some lowers it, who needs more deletes elsewhere.
-const BUDGET: usize = 50_700;
+const BUDGET: usize = 50_670;
 
 /// How many lines of a text are code, neither blank nor comment nor of tests, and the modules that it has for
 /// tests alone.
