@@ -152,13 +152,15 @@ fn moved(
     let taken = taken(integrated, &measured, second.as_ref())?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
-    let up_to_crush = if second.is_none() { find(true) } else { None };
     let u_late_s = [End::First, End::Second].map(|end| {
         let most_s = |s| motion::largest_delay_s(&flight, s, cask.length_m, taken.quantities.duration.value);
         transverse(signals, end).map_or(0.0, most_s) / 3.0_f64.sqrt()
     });
-    let tabulated = |second| impacts::tabulated(file, integrated, &taken, second, u_late_s);
-    let tabulated = tabulated(second.as_ref().or(up_to_crush.as_ref()))
+    let tabulated =
+        |second: Option<&SecondImpact>| impacts::tabulated(file, integrated, &taken, second, u_late_s);
+    let tabulated = tabulated(second.as_ref())
+        .filter(Tabulated::has_second)
+        .or_else(|| tabulated(find(true).as_ref()))
         .or_else(|| tabulated(None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let untested = taken.find_untested(&|flight| {

@@ -56,6 +56,11 @@ impl Tabulated {
         self
     }
 
+    /// True if the second impact is stated, in all or up to its greatest crush.
+    pub fn has_second(&self) -> bool {
+        self.tables[1].is_some()
+    }
+
     /// The finding where the force of the first contact falls between two maxima as if L touched twice.
     pub fn two_maxima(&self) -> Option<Finding> {
         let FirstTouch { dip, k, .. } = *self.touch.as_ref()?;
@@ -157,8 +162,6 @@ pub(super) fn tabulated(
     };
     let of_second = known.get(1).filter(|_| is_one).filter(is_passive);
     let is_open = second.is_some_and(|second| second.is_open);
-    // A corner that goes on sinking has not reached its greatest crush.
-    let after = after.filter(|course| !is_open || course.contact.rises_again());
     let of_second = after.zip(of_second).map(|(course, numbers)| {
         let table = both.table(End::Second, &course, numbers);
         if is_open { up_to_crush(table) } else { table }

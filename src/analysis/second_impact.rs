@@ -19,6 +19,12 @@ const MOST_LEFT: f64 = 0.015;
 const OF_TWO_CONTACTS: f64 = 0.2;
 const OF_TWO_CONTACTS_RINGING: f64 = 0.8;
 
+/// A corner stands still when it sinks with less than this share of the velocity with which it struck: less
+/// than a thousandth of its energy is left. This is sought in such steps, for so long after it struck.
+const STILL: f64 = 0.02;
+const CRUSH_STEP_S: f64 = 5e-4;
+const LONGEST_CRUSH_S: f64 = 0.1;
+
 /// What one contact says of itself.
 pub(super) struct Course {
     pub motion: Motion,
@@ -107,12 +113,22 @@ fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
     is_told.then_some((left, flight))
 }
 
-/// When the force on R has gone, and what the integrals give there: it ends what no flight follows.
-fn pressed(integrated: &Integrated) -> Option<(At, FlightFit)> {
-    let record_end_s = flight_search::record_end_s(&integrated.signals);
+/// Time at which the corner of R stands still once the force on R has gone, and the integrals there: up to it
+/// a contact is followed that no flight follows.
+fn standstill(integrated: &Integrated, setup: &Setup) -> Option<(At, FlightFit)> {
+    let to_s = flight_search::record_end_s(&integrated.signals).min(integrated.contact_s + LONGEST_CRUSH_S);
     let struck = transverse(&integrated.signals, End::First)?;
-    let time_s = events::first_separation(struck, integrated.contact_s, record_end_s)?;
-    Some((At { time_s, u_s: 0.0 }, motion::flight_at(integrated, time_s)))
+    let pressed_s = events::first_separation(struck, integrated.contact_s, to_s);
+    let from_s = pressed_s.unwrap_or(integrated.contact_s + CRUSH_STEP_S);
+    let end = |time_s| (At { time_s, u_s: 0.0 }, motion::flight_at(integrated, time_s));
+    let is_still = |(left, flight): &(At, FlightFit)| {
+        let first_contact = Some(At { time_s: integrated.contact_s, u_s: 0.0 });
+        let times = Events { first_contact, separation: Some(*left), ..Events::default() };
+        let moved = motion::outcome(integrated, flight, &times, setup);
+        moved.is_some_and(|motion| motion.rebound_m_s > -STILL * setup.impact_velocity_m_s)
+    };
+    let steps = (0_u32..).map(|i| from_s + f64::from(i) * CRUSH_STEP_S).take_while(|time_s| *time_s < to_s);
+    steps.map(end).find(is_still)
 }
 
 impl Mirror {
@@ -134,7 +150,7 @@ impl<'a> SecondImpact<'a> {
     pub fn find(mirror: &'a Mirror, file: &CaskFile, measured: &fit::FitData, is_open: bool) -> Option<Self> {
         let (before, first) = (measured.flight, measured.setup);
         let Mirror { mut setup, struck, ref signals, ref integrated } = *mirror;
-        let end = if is_open { pressed(integrated) } else { told(&in_mirror(file, &setup), integrated) };
+        let end = if is_open { standstill(integrated, &setup) } else { told(&in_mirror(file, &setup), integrated) };
         let (left, flight) = end?;
         let times = Events { first_contact: Some(struck), separation: Some(left), ..Events::default() };
         let needed = motion::outcome(integrated, &flight, &times, &setup)?.impulse_ratio;

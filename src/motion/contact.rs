@@ -96,11 +96,6 @@ impl ContactCourse {
         })
     }
 
-    /// True if the corner has passed its greatest crush.
-    pub fn rises_again(&self) -> bool {
-        self.crush_m.last().is_some_and(|last_m| *last_m < largest(&self.crush_m))
-    }
-
     /// Work of the vertical force up to the greatest crush over the mass, m²/s².
     pub fn work_to_greatest_crush_m2_s2(&self) -> f64 {
         let greatest_m = largest(&self.crush_m);
