@@ -133,7 +133,7 @@ def fly(step, steps, body, omega, zeta, corner_w, corner_b, sensor_w, sensor_b, 
             log[1] = np.array([t, vx, vz, spin, theta])
         if normal[1] > 0 and struck < 0:
             struck = t
-            log[2] = np.array([t, vx, vz, spin, theta])
+            log[2], log[3, 3] = np.array([t, vx, vz, spin, theta]), deepest[0]
             log[3, 1] = 1.0 if left < 0 else 0.0
         elif normal[1] == 0 and struck >= 0 and ended < 0:
             ended = t
@@ -148,7 +148,7 @@ def fly(step, steps, body, omega, zeta, corner_w, corner_b, sensor_w, sensor_b, 
             axial += off * ((spin + bd) ** 2 * sine - (turning + bdd) * cosine)
             shear -= off * ((spin + bd) ** 2 * cosine + (turning + bdd) * sine)
             out[j, i] = shear * cosine - axial * sine if sensors[j, 2] == 0 else axial * cosine + shear * sine
-    log[3, 3:] = deepest
+    log[3, 4] = deepest[1]
 
 
 def draw(rng):
