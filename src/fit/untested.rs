@@ -15,6 +15,9 @@ const MOST_USUAL: f64 = 20.0;
 /// this many times 1 % of its area, whereas base strain of 1 % adds 1 %: ∫ sin³ over ∫ sin of half a sine.
 const COMPRESSION_LOSS: f64 = 2.0 / 3.0;
 
+/// A usual radius of a corner that counts as sharp, m.
+const ROUNDING_M: f64 = 0.01;
+
 /// Effect of one standard uncertainty of an input, if the cask file were wrong by it.
 pub(super) struct Influence {
     pub quantities: Quantities<f64>,
@@ -24,8 +27,8 @@ pub(super) struct Influence {
 
 /// A mistake that no check finds.
 pub(super) struct SilentMistake {
-    /// The input's place among all.
-    input: usize,
+    /// The input's place among all; `None` if it is none of them, and no check knows it.
+    input: Option<usize>,
     /// Smallest size that makes the speed or k wrong, in standard uncertainties of the input.
     wrong_u: f64,
     untested: Untested,
@@ -58,12 +61,29 @@ pub(super) fn find_silent(
         let untested = Untested { moves, ..of_key };
         let with_it = linearity(own, &untested);
         silent.extend(std::iter::once(untested).chain(with_it).map(|untested| SilentMistake {
-            input,
+            input: Some(input),
             wrong_u,
             untested,
         }));
     }
+    let round = rounded_corner(measured, stated);
+    silent.extend(round.map(|untested| SilentMistake { input: None, wrong_u: 0.0, untested }));
     silent
+}
+
+/// A corner of the first end that is not sharp: it rolls on its radius as it leaves, and k of the point that
+/// touches is less than that of the sharp corner by Δk = ω ρ (cos φ − sin φ)/v0.
+fn rounded_corner(measured: &FitData, stated: &Quantities) -> Option<Untested> {
+    let (sin, cos) = measured.setup.angle_rad.sin_cos();
+    let rolls_m_s = stated.angular_velocity.value * ROUNDING_M * (cos - sin);
+    let k = (rolls_m_s / stated.impact_velocity.value).abs();
+    (WRONG_HALF_WIDTHS * stated.k.u95 <= MOST_USUAL * k).then(|| Untested {
+        what: "radius of the first end's corner".into(),
+        key: "cask.height_m".into(),
+        by: "10 mm",
+        moves: UntestedMoves { k: Some(k), slap_down_speed_m_s: stated.speed.map(|_| 0.0) },
+        remedy: "measure the corner: k is that of a sharp one",
+    })
 }
 
 /// Nonlinearity of a channel at its peak, beside its base strain: both change only the velocity step, so a
@@ -89,7 +109,8 @@ pub(super) fn list_untested(
     finds: &dyn Fn(&FlightFit) -> bool,
 ) -> Vec<Untested> {
     let is_found = |mistake: &&SilentMistake| {
-        let input = std::slice::from_ref(&inputs[mistake.input]);
+        let Some(input) = mistake.input else { return false };
+        let input = std::slice::from_ref(&inputs[input]);
         [-1.0, 1.0].iter().all(|sign| finds(&base.shift(input, &[sign * mistake.wrong_u]).flight))
     };
     silent.iter().filter(|mistake| !is_found(mistake)).map(|mistake| mistake.untested.clone()).collect()
