@@ -65,7 +65,7 @@ fn quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Find
     for channel in &mut as_dc.channels {
         channel.coupling = Coupling::Dc;
     }
-    let reach = condition::Reach { after_s: 0.0, ..condition::Reach::of(&file.cask, &file.drop) };
+    let reach = condition::Reach { after_s: 0.0, ..condition::Reach::for_drop(&file.cask, &file.drop) };
     let event = CoarseEvent { near_s: to_s, spread_s: 0.0, velocity_step_m_s: file.drop.impact_velocity_m_s };
     let corrections = Corrections { offset: true, hum: false, ..file.corrections };
     let (signals, mut found) = condition::condition(&as_dc, &event, &reach, corrections);

@@ -99,13 +99,14 @@ impl Impact {
             findings.push(ChannelFinding::Ahead { ahead_s: -ahead.delay_s }.tag(&ahead.channel));
             return None;
         }
-        let usual = condition::Reach::of(&file.cask, drop);
-        let farthest = if seek.sought == Sought::Late { usual.longest() } else { usual };
+        let usual = condition::Reach::for_drop(&file.cask, drop);
+        let farthest = if seek.sought == Sought::Late { usual.with_longest_flight() } else { usual };
         let last_within_s =
             |reach: condition::Reach| changes.last_s(&event, drop.impact_velocity_m_s, reach.after_s);
         let last_s = last_within_s(farthest);
-        let goes_on = last_within_s(farthest.longest()) > last_s;
-        let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
+        let goes_on = last_within_s(farthest.with_longest_flight()) > last_s;
+        let reach =
+            last_s.map_or(farthest, |last_s| farthest.limit_to(last_s - event.near_s - event.spread_s));
         let (mut signals, found) = conditioned(recording, file, &event, &reach);
         let left_out = silent.iter().filter(|f| f.effect == Effect::Channel).chain(&copied);
         signals.retain(|signal| left_out.clone().all(|f| f.channel.as_ref() != Some(&signal.name)));
@@ -120,7 +121,7 @@ impl Impact {
         let another = changes.find_another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
         findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
         // Where nothing happens any more the record was looked at as far as any flight lasts.
-        let sought = if goes_on { farthest } else { farthest.longest() };
+        let sought = if goes_on { farthest } else { farthest.with_longest_flight() };
         let sought_to_s = event.near_s + event.spread_s + sought.after_s;
         let u_joined_s = u_joined_s(recording, &signals);
         let u_skew_s = align(file, &mut signals, contact.time_s, seek.waves_s, findings).hypot(u_joined_s);
@@ -176,7 +177,7 @@ pub(super) fn own_contact(recording: &Recording, file: &CaskFile) -> Option<OwnC
     let event =
         events::Changes::new(&recording.channels).locate(missing_end::least_step_m_s(file, recording));
     let event = event.filter(|event| event.velocity_step_m_s.abs() > least_m_s)?;
-    let reach = condition::Reach::of(&file.cask, &file.drop);
+    let reach = condition::Reach::for_drop(&file.cask, &file.drop);
     let (mut signals, _) = conditioned(recording, file, &event, &reach);
     skin::turn_into_plane(&mut signals, &file.channels);
     let at = first_contact(&file.cask, &signals, &event)?;

@@ -21,7 +21,7 @@ pub(super) fn measured(
 /// What one channel reads, where it is an angular-rate sensor.
 fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit) -> Option<MeasuredRotation> {
     let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
-    let usual_s = condition::Reach::of(&file.cask, &file.drop).before_s;
+    let usual_s = condition::Reach::for_drop(&file.cask, &file.drop).before_s;
     condition::measured_rotation(channel, spec.rate?, usual_s, events, flight)
 }
 

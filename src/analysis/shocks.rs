@@ -132,10 +132,10 @@ impl<'a> ShockSearch<'a> {
 
     /// A channel over the impacts, counted from its level in the free fall.
     fn accelerations(&self, channel: &Channel) -> Signal {
-        let usual = Reach::of(&self.file.cask, &self.file.drop);
+        let usual = Reach::for_drop(&self.file.cask, &self.file.drop);
         let reach = Reach { after_s: self.end_s() + LONGEST_S - self.contact_s, ..usual };
         let event = CoarseEvent { near_s: self.contact_s, spread_s: 0.0, velocity_step_m_s: 0.0 };
-        condition::signal(channel, &event, &reach, self.file.corrections).0
+        condition::condition_channel(channel, &event, &reach, self.file.corrections).0
     }
 
     /// The shocks of a signal, or of the vector of several.
