@@ -8,7 +8,7 @@ use super::second_impact::{Mirror, SecondImpact};
 use super::setup::{by_law, sticking};
 use crate::data::{
     AssumedFriction, At, AxialSource, Axis, CaskFile, Contact, Contribution, DropFinding, End, Estimate,
-    Events, Finding, FlightFit, MethodChoice, Motion, Opening, Quantities, Setup, Signal, Untested,
+    Events, Finding, FlightFit, MethodChoice, Motion, OpenedInput, Quantities, Setup, Signal, Untested,
     transverse,
 };
 use crate::motion::{self, CornerRinging, Integrated};
@@ -28,7 +28,7 @@ pub(super) struct FlightResult {
     pub reconstruction: MethodChoice,
     pub untested: Vec<Untested>,
     /// Where a closure is missed, the inputs of which another number would explain it.
-    pub openings: Vec<Opening>,
+    pub opened_inputs: Vec<OpenedInput>,
     pub tabulated: Option<Tabulated>,
     /// The speed of R's corner, ringing and swinging included.
     pub local_speed: Option<Estimate>,
@@ -72,7 +72,7 @@ fn fitted(
     events: &mut Events,
     findings: &mut Vec<Finding>,
 ) -> Option<FlightFit> {
-    let found = flight_search::find(file, integrated, impact.patience)?;
+    let found = flight_search::find(file, integrated, impact.effort)?;
     let signals: &[Signal] = &integrated.signals;
     let is_made = |end| impact.stand_in.as_ref().is_some_and(|s| s.end == end);
     let shows_slap_down = !is_made(End::Second);
@@ -171,7 +171,7 @@ fn moved(
         .map(|at| At { u_s: at.u_s.hypot(u_late_s[1]), ..at })
         .and_then(|at| motion::second_end_ringing(integrated, moved, turning_rad_s, at, as_taken, cask));
     let local_speed = ringing.and_then(|ringing| of_corner(&motion, taken.quantities.speed?, ringing));
-    let fit::SelectedMethod { quantities, budget, choice: reconstruction, openings, .. } = taken;
+    let fit::SelectedMethod { quantities, budget, choice: reconstruction, opened_inputs, .. } = taken;
     Some(FlightResult {
         flight,
         setup,
@@ -180,7 +180,7 @@ fn moved(
         budget,
         reconstruction,
         untested,
-        openings,
+        opened_inputs,
         tabulated,
         local_speed,
         u_late_s,

@@ -102,11 +102,11 @@ struct Search<'a> {
 
 /// How long a flight is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Patience {
+pub enum SearchEffort {
     /// From one beginning after the other, until one explains it.
-    EachBeginning,
+    EveryStart,
     /// From the first beginning alone: one of many trials, which the right one passes so.
-    OneBeginning,
+    FirstStart,
 }
 
 /// The signals of both ends, free of ringing as far as it is known.
@@ -141,8 +141,8 @@ struct Attempt {
 
 /// Finds separation, slap-down and flight; of several beginnings the first that explains the flight and
 /// brings R to the target, else the best. `None` without transverse channels on both ends.
-pub fn find(file: &CaskFile, integrated: &Integrated, patience: Patience) -> Option<FoundFlight> {
-    let beginnings = if patience == Patience::OneBeginning { 1 } else { FIRST_ENDS.len() };
+pub fn find(file: &CaskFile, integrated: &Integrated, effort: SearchEffort) -> Option<FoundFlight> {
+    let beginnings = if effort == SearchEffort::FirstStart { 1 } else { FIRST_ENDS.len() };
     let mut found = searched(file, integrated, true, beginnings)?;
     if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
@@ -232,7 +232,7 @@ fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
 /// What the cask turns by from first contact to separation, rad.
 pub fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
     let integrated = Integrated::new(signals, contact_s);
-    let moved = find(file, &integrated, Patience::EachBeginning)?.moved(file, &integrated)?;
+    let moved = find(file, &integrated, SearchEffort::EveryStart)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
 

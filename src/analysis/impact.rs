@@ -1,7 +1,7 @@
 //! A recording to its first impact: the conditioned signals, when L touches, and what the time before it
 //! shows.
 
-use super::flight_search::{self, Patience};
+use super::flight_search::{self, SearchEffort};
 use super::{missing_end, rest, skin};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, Cask, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop,
@@ -20,7 +20,7 @@ pub(super) struct Seek {
     /// Which impacts.
     pub sought: Sought,
     /// How long the flight is sought.
-    pub patience: Patience,
+    pub effort: SearchEffort,
     /// How much later than the corner the struck end's sensor may answer, and the longest that a bending wave
     /// takes along the cask, s.
     pub waves_s: [f64; 2],
@@ -55,7 +55,7 @@ pub(super) struct Impact {
     pub is_record_end: bool,
     pub goes_on: bool,
     /// How long the flight after it is sought.
-    pub patience: Patience,
+    pub effort: SearchEffort,
     /// What pairs of sensors on the skin read across the plane of the drop.
     pub across: Vec<Signal>,
     /// The channels beside the accelerometers.
@@ -141,7 +141,7 @@ impl Impact {
             sought_to_s: sought_to_s.min(recording.end_s()),
             is_record_end: recording.end_s() <= sought_to_s,
             goes_on,
-            patience: seek.patience,
+            effort: seek.effort,
             across,
             others: Arc::clone(&recording.others),
         };

@@ -48,7 +48,7 @@ use crate::{ingest, judge, motion};
 use comparison::Measured;
 use end_drop::EndImpact;
 use flight::FlightResult;
-use flight_search::Patience;
+use flight_search::SearchEffort;
 use impact::{Impact, Seek, Sought};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -88,7 +88,7 @@ pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let recording = &*without_torn_ends(recording);
     rayon::scope(|_| {
         let cask_file = &with_rotation(recording, cask_file);
-        let whole = analyse_once(recording, cask_file, Patience::EachBeginning);
+        let whole = analyse_once(recording, cask_file, SearchEffort::EveryStart);
         second_look::leave_one_out(recording, cask_file, whole)
     })
 }
@@ -139,9 +139,9 @@ fn flight_result(
     recording: &Recording,
     file: &CaskFile,
     sought: Sought,
-    patience: Patience,
+    effort: SearchEffort,
 ) -> ImpactAndFlight {
-    let seek = Seek { sought, patience, waves_s: [0.0, file.cask.length_m / BENDING_WAVE_M_S] };
+    let seek = Seek { sought, effort, waves_s: [0.0, file.cask.length_m / BENDING_WAVE_M_S] };
     let found = impact_and_flight(recording, file, seek);
     match slower_waves_s(&found, file.cask.length_m) {
         Some(waves_s) => impact_and_flight(recording, file, Seek { waves_s, ..seek }),
@@ -190,7 +190,7 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     let is_left_out = OF_ROTATION.iter().all(|key| file.defaults.iter().any(|default| default == key));
     let has_sensor = file.others.iter().any(|spec| spec.rate.is_some());
     let before = (is_left_out && has_sensor).then(|| {
-        let (_, found) = flight_result(recording, file, Sought::Usual, Patience::EachBeginning);
+        let (_, found) = flight_result(recording, file, Sought::Usual, SearchEffort::EveryStart);
         let AfterImpact { impact, events, flown, .. } = found?;
         let read = rotation::measured(&impact, file, &flown?.flight, &events);
         let known = read.iter().filter_map(|rotation| rotation.before);
@@ -207,11 +207,11 @@ fn with_rotation<'a>(recording: &Recording, file: &'a CaskFile) -> Cow<'a, CaskF
     Cow::Owned(file)
 }
 
-fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> Analysis {
-    let (mut findings, mut found) = flight_result(recording, file, Sought::Usual, patience);
+fn analyse_once(recording: &Recording, file: &CaskFile, effort: SearchEffort) -> Analysis {
+    let (mut findings, mut found) = flight_result(recording, file, Sought::Usual, effort);
     // From steep angles a cask may strike later than its angle has it.
     if found.as_ref().is_some_and(|f| f.events.slap_down.is_none() && f.impact.goes_on) {
-        let farther = flight_result(recording, file, Sought::Late, patience);
+        let farther = flight_result(recording, file, Sought::Late, effort);
         if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
             (findings, found) = farther;
         }
@@ -220,7 +220,7 @@ fn analyse_once(recording: &Recording, file: &CaskFile, patience: Patience) -> A
     let has_slap_down = found.as_ref().is_some_and(|f| f.events.slap_down.is_some());
     let arm_m = planar::first_arm_m(file.cask.cog_m, file.cask.height_m, file.drop.angle_rad);
     if file.drop.is_on_end() && !(has_slap_down && arm_m > 0.0) {
-        let along = flight_result(recording, file, Sought::OnEnd, patience);
+        let along = flight_result(recording, file, Sought::OnEnd, effort);
         if along.1.is_some() {
             (findings, found) = along;
         }

@@ -59,7 +59,7 @@ pub(super) fn of(
         summary.clipped.clone_from(&signal.clipped);
     }
     let mut motion = None;
-    let openings = flown.as_ref().map_or_else(Vec::new, |flown| flown.openings.clone());
+    let opened_inputs = flown.as_ref().map_or_else(Vec::new, |flown| flown.opened_inputs.clone());
     let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     if let Some(EndImpact { first, k }) = on_end {
@@ -99,7 +99,7 @@ pub(super) fn of(
     let (setup, (cutoff_hz, _)) = (sticking(file), motion::cutoff_hz(file.filter, file.cask.mass_kg));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
     let curves = move || Curves { channels: channels(), motion, ..Curves::default() };
-    Analysis { openings, ..analysis(recording, file, result, curves) }
+    Analysis { opened_inputs, ..analysis(recording, file, result, curves) }
 }
 
 /// Lets the intervals reach as far as what is not followed: a landing of L that may come before R strikes, a
@@ -148,7 +148,7 @@ fn analysis(
     let of_others = move || others.channels.iter().filter_map(curve).collect();
     let curves = LazyCurves::new(Box::new(move || Curves { others: of_others(), ..curves() }));
     let start_unix_ns = recording.start_unix_ns;
-    Analysis { result, cask_file: file.clone(), curves, start_unix_ns, openings: Vec::new() }
+    Analysis { result, cask_file: file.clone(), curves, start_unix_ns, opened_inputs: Vec::new() }
 }
 
 /// The result with the times of the events and, where they are measured, the quantities.
