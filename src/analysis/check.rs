@@ -112,7 +112,7 @@ fn gather_findings(
             expected_g: is_dc.then(|| drop.weight_m_s2(channel.axis) / G),
             noise_g: signal.noise_m_s2 / G,
             findings,
-            open: judge::open_causes(channel, *level, drop),
+            open: judge::hidden_causes(channel, *level, drop),
         }
     };
     let channels = levels.iter().zip(signals).map(channel).collect();

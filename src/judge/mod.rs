@@ -25,7 +25,7 @@ mod turned;
 
 pub use across::{judge_across, judge_alone};
 pub use at_rest::{
-    LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
+    LEAST_BEFORE_S, expected_peaks, hidden_causes, judge_chain, judge_levels, judge_record, pulse_lengths_s,
 };
 pub use bandwidth::judge_bandwidth;
 pub use blows::{is_sharp, judge_blows};
