@@ -43,7 +43,7 @@ impl JudgedFlight {
         ));
         let known = (quantities.k, quantities.speed);
         let contact_s = impact.contact.time_s;
-        let is_determined = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
+        let is_determined = judge::determines_lost_steps(reconstruction, known, impact.recorded(), contact_s);
         let is_step = |f: &Finding| is_determined && f.effect == Effect::VelocityStep;
         let takes_motion = |f: &Finding| f.removes(ResultPart::Motion) && !is_step(f);
         if !findings.iter().any(|f| f.severity == Severity::Error && takes_motion(f)) {
@@ -67,7 +67,7 @@ impl JudgedFlight {
             return None;
         }
         findings.iter_mut().filter(|f| is_step(f)).for_each(|f| f.effect = Effect::Channel);
-        judge::note_what_is_held(findings, quantities.k, quantities.speed);
+        judge::downgrade_harmless(findings, quantities.k, quantities.speed);
         let compared = compare::compare(&predict::bodies(&file.cask), file, quantities, &predict::predict_by);
         let (model, comparison) = compared.unzip();
         let comparison = comparison.flatten();

@@ -29,8 +29,8 @@ pub use at_rest::{
 };
 pub use bandwidth::judge_bandwidth;
 pub use blows::{is_sharp, judge_blows};
-pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places, note_what_is_held};
-pub use closures::{MOST_U95_K, MOST_U95_SPEED, judge_closures, judge_strained, tells_lost_steps};
+pub use channels::{downgrade_harmless, is_cut_off, judge_channels, judge_noise, judge_places};
+pub use closures::{MOST_U95_K, MOST_U95_SPEED, determines_lost_steps, judge_closures, judge_strained};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};

@@ -73,7 +73,7 @@ fn what_the_numbers_are_known_to_holds_noise_and_a_coarse_step() {
     let severities = |k_u95: f64, speed_u95: f64| {
         let mut found = [noise.clone().tag("A1"), coarse.clone().tag("A1")];
         let (k, speed) = (Estimate::new(0.5, k_u95, "1"), Estimate::new(20.0, speed_u95, "m/s"));
-        note_what_is_held(&mut found, k, Some(speed));
+        downgrade_harmless(&mut found, k, Some(speed));
         found.map(|found| found.severity)
     };
     assert_eq!(severities(0.05, 0.5), [Severity::Note, Severity::Note]);
