@@ -100,7 +100,7 @@ fn judge_motion(solution: &FlightResult, impact: &Impact, events: &Events, file:
         let up_m_s = motion.curve.first_end_vertical_m_s.get(at);
         up_m_s.is_some_and(|up_m_s| *up_m_s < -FALLING_SHARE * file.drop.impact_velocity_m_s)
     };
-    found.extend(judge::judge_rest(impact.recorded(), events).filter(|rest| !is_falling(rest)));
+    found.extend(judge::judge_force_pause(impact.recorded(), events).filter(|rest| !is_falling(rest)));
     found.extend(judge::judge_strained(reconstruction, quantities.k));
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
@@ -134,7 +134,7 @@ fn change_motion(
     [shocks.from_s, shocks.to_s]
         .into_iter()
         .flatten()
-        .any(|at_s| step_m_s(at_s).is_none_or(|by| judge::moves_the_cask(by, drop.impact_velocity_m_s)))
+        .any(|at_s| step_m_s(at_s).is_none_or(|by| judge::changes_motion(by, drop.impact_velocity_m_s)))
 }
 
 /// Change of the predicted slap-down speed by touches of L that are too shallow to count as impacts, m/s.

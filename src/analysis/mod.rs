@@ -71,7 +71,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     result.keys = ingest::cask_file::settings(cask_file, recording);
     result.prototype = cask_file.scale.map(|scale| result.to_prototype(scale));
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
-    result.limits = cask_file.limits.iter().map(|limit| judge::beside_limit(limit, result)).collect();
+    result.limits = cask_file.limits.iter().map(|limit| judge::compare_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
     rayon::scope(|_| {
         others::add(recording, cask_file, &mut analysis);
@@ -80,7 +80,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     });
     let result = &mut analysis.result;
     result.verdict = judge::verdict(&mut result.quality);
-    judge::behind_the_motion(&mut result.quality, &result.other_channels);
+    judge::sort_other_channels_last(&mut result.quality, &result.other_channels);
     result.find_missing();
     analysis
 }

@@ -35,10 +35,10 @@ pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use jumps::judge_jumps;
-pub use late_blow::{judge_late_blow, judge_rest, moves_the_cask};
-pub use limits::beside_limit;
+pub use late_blow::{changes_motion, judge_force_pause, judge_late_blow};
+pub use limits::compare_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
-pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotation};
+pub use others::{judge_other, judge_rate_level, judge_rotation, sort_other_channels_last};
 pub use result::{
     beside, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch,
 };
