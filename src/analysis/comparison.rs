@@ -35,7 +35,7 @@ impl JudgedFlight {
         let (reconstruction, quantities) = (&method.choice, &method.quantities);
         findings.extend(judge::judge_coupling(&impact.signals, flight, file));
         findings.extend(judge::judge_rigid(
-            judge::places(&impact.signals),
+            judge::transverse_places(&impact.signals),
             flight,
             &file.tolerances,
             &file.drop,

@@ -158,7 +158,7 @@ fn reconstruct(
         .or_else(|| tabulate(None))
         .map(|t| if impact.is_one_ended() { t.without_course() } else { t });
     let untested = method.find_untested(&|flight| {
-        let places = judge::places(&impact.signals);
+        let places = judge::transverse_places(&impact.signals);
         judge::judge_rigid(places, flight, &file.tolerances, &file.drop, events).is_some()
     });
     let ringing =

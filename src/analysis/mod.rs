@@ -70,7 +70,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let result = &mut analysis.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
     result.prototype = cask_file.scale.map(|scale| result.to_prototype(scale));
-    result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
+    result.observed = cask_file.observed.iter().map(|seen| judge::compare_observed(seen, result)).collect();
     result.limits = cask_file.limits.iter().map(|limit| judge::compare_limit(limit, result)).collect();
     result.quality.extend(judge::judge_observed(&result.observed));
     rayon::scope(|_| {

@@ -1,7 +1,7 @@
 //! Finds shocks in a flight that its ringing does not predict: loose contents that strike the cask, once or
 //! repeatedly.
 
-use super::turned::turned_m_s2;
+use super::tilt::tilt_m_s2;
 use crate::data::{Cask, ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
 use crate::numerics::reduce::{self, block_means, block_size, converter_step, peak};
@@ -108,7 +108,7 @@ fn find_deviations<'a>(
     let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
     let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
     let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
-    let least_m_s2 = |s| TILT_SPREAD * turned_m_s2(s, signals, flight, cask).abs();
+    let least_m_s2 = |s| TILT_SPREAD * tilt_m_s2(s, signals, flight, cask).abs();
     let means = |signal| deviations(signal, &span_s, least_m_s2(signal));
     whole.map(|signal| ChannelDeviations { signal, means: means(signal) }).collect()
 }

@@ -21,7 +21,7 @@ mod separation;
 mod silent;
 mod skew;
 mod taps;
-mod turned;
+mod tilt;
 
 pub use across::{judge_across, judge_alone};
 pub use at_rest::{
@@ -40,9 +40,10 @@ pub use limits::compare_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
 pub use others::{judge_other, judge_rate_level, judge_rotation, sort_other_channels_last};
 pub use result::{
-    beside, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch,
+    compare_observed, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed,
+    judge_touch,
 };
-pub use rigid::{SensorPlace, judge_rigid, places};
+pub use rigid::{SensorPlace, judge_rigid, transverse_places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};
 pub use silent::{judge_silent, judge_torn};
