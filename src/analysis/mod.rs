@@ -99,7 +99,7 @@ pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// impact. A channel beside others of its kind is left out; of any other the samples before remain.
 fn cut_stuck_ends(recording: &Recording) -> Cow<'_, Recording> {
     let all = &recording.channels;
-    let stuck: Vec<_> = all.par_iter().map(|channel| judge::judge_torn(channel, all)).collect();
+    let stuck: Vec<_> = all.par_iter().map(|channel| judge::judge_at_stop(channel, all)).collect();
     if stuck.iter().all(Option::is_none) {
         return Cow::Borrowed(recording);
     }

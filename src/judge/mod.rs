@@ -1,4 +1,4 @@
-//! Everything found on the way to findings and a verdict: what speaks against the result.
+//! Judges everything that the stages found: findings and a verdict.
 
 mod across;
 mod at_rest;
@@ -46,18 +46,18 @@ pub use result::{
 pub use rigid::{SensorPlace, judge_rigid, transverse_places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};
-pub use silent::{judge_silent, judge_torn};
+pub use silent::{judge_at_stop, judge_silent};
 pub use skew::judge_skew;
 pub use taps::judge_taps;
 
 use crate::data::{Events, Finding, Severity, Verdict};
 
-/// Free fall before first contact that the offset may come from, s.
+/// Length of free fall before first contact that may determine the offset, s.
 const OFFSET_WINDOW_S: f64 = 0.25;
-/// Into the slap-down, s: its onset.
+/// Interval after the slap-down that its onset includes, s.
 const ONSET_S: f64 = 2e-3;
 
-/// A local warning far from the drop does not weigh on the result and becomes a note.
+/// Turns a local warning far from the drop into a note, since it does not affect the result.
 pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     let Some(contact_s) = events.first_contact_s() else { return };
     let from_s = contact_s - OFFSET_WINDOW_S;
@@ -71,8 +71,7 @@ pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     }
 }
 
-/// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a
-/// review.
+/// Sorts the findings, errors first, and returns the verdict: any error fails, any warning asks for a review.
 pub fn verdict(findings: &mut [Finding]) -> Verdict {
     findings.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
     match findings.first().map(|f| f.severity) {

@@ -1,6 +1,6 @@
 //! Judges the channels beside the accelerometers.
 
-use super::silent::SILENT;
+use super::silent::SILENT_SPREADS;
 use super::weigh_by_distance;
 use crate::data::{
     AtRest, Channel, ChannelFinding, Effect, Events, Finding, MeasuredRotation, OtherSummary, RestFinding,
@@ -59,7 +59,7 @@ fn judge_noise(summary: &OtherSummary) -> Option<ChannelFinding> {
     };
     let (rest, noise) = summary.rest.zip(summary.noise)?;
     let farthest = (largest.value - rest).max(rest - smallest.value);
-    if farthest <= SILENT * noise {
+    if farthest <= SILENT_SPREADS * noise {
         return Some(ChannelFinding::OtherStill { farthest: Some(farthest), unit });
     }
     let is_noisy = noise > NOTABLE_NOISE * farthest;
