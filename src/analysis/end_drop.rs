@@ -15,7 +15,7 @@ use crate::{events, judge};
 /// Time over which the velocity after the contact is averaged, s, or as long as the contact if that is
 /// longer: five periods of the first axial mode of a cask of 5 m.
 const FLIGHT_S: f64 = 0.01;
-/// Begin of the integral before first contact, s: the free fall in it adds only noise.
+/// Start of the integral before first contact, s: the free fall in it adds only noise.
 const CLEAR_S: f64 = 1e-3;
 /// Share of the contact's length after which its force has faded.
 const FADING_SHARE: f64 = 0.25;
@@ -37,7 +37,7 @@ pub(super) fn end_impact(
     let nearest = axial().min_by(|a, b| a.position_m.total_cmp(&b.position_m));
     let separation = nearest.and_then(|signal| find_separation(signal, impact.contact.time_s));
     let events = Events { separation, ..impact.events() };
-    let after_s = impact.sought_to_s - separation.map_or(impact.contact.time_s, |at| at.time_s);
+    let after_s = impact.search_end_s - separation.map_or(impact.contact.time_s, |at| at.time_s);
     findings.push(judge::judge_no_slap_down(&file.cask, &file.drop, after_s, impact.is_record_end));
     findings.extend(nearest.is_none().then(|| DropFinding::NoAxial.into()));
     let rebound = find_rebound(impact, file, &events);

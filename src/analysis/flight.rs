@@ -93,7 +93,7 @@ fn fit_flight(
     events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(found.seat_s) });
     events.slap_down = found.slap_down.filter(|_| shows_slap_down);
     if events.slap_down.is_none() && shows_slap_down {
-        let after_s = impact.sought_to_s - left_s;
+        let after_s = impact.search_end_s - left_s;
         findings.push(judge::judge_no_slap_down(&file.cask, &file.drop, after_s, impact.is_record_end));
     }
     let flight = found.flight.filter(|flight| !impact.is_one_ended() || flight.can_rank_fits());

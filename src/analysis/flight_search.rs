@@ -127,7 +127,7 @@ struct SearchStart {
 struct SearchState {
     separation: At,
     slap_down: Option<At>,
-    /// Begin of the next fit, clear of the contact, s.
+    /// Start of the next fit, clear of the contact, s.
     free_s: f64,
     /// End of the flight, s.
     end_s: f64,
@@ -219,7 +219,7 @@ fn calm_m_s2(second: &motion::RingingRemoved, flight: &FlightFit) -> f64 {
     quarters_s.into_iter().map(largest_m_s2).fold(f64::INFINITY, f64::min)
 }
 
-/// Begin of the first fit, which ends at `end_s`, unless something shows a longer contact, s.
+/// Start of the first fit, which ends at `end_s`, unless something shows a longer contact, s.
 fn clearance_end_s(contact_s: f64, end_s: f64) -> f64 {
     contact_s + (CLEARANCE_SHARE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S)
 }

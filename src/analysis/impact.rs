@@ -50,7 +50,7 @@ pub(super) struct Impact {
     pub fall_s: Option<Range<f64>>,
     /// End of the search for the slap-down, s; true if the record ends there; true if a later event remains
     /// that a longer flight explains.
-    pub sought_to_s: f64,
+    pub search_end_s: f64,
     pub is_record_end: bool,
     pub has_later_event: bool,
     /// Effort of the search for the flight.
@@ -104,8 +104,7 @@ impl Impact {
             |reach: condition::Reach| changes.last_s(&event, drop.impact_velocity_m_s, reach.after_s);
         let last_s = last_within_s(farthest);
         let has_later_event = last_within_s(farthest.with_longest_flight()) > last_s;
-        let reach =
-            last_s.map_or(farthest, |last_s| farthest.limit_to(last_s - event.near_s - event.spread_s));
+        let reach = last_s.map_or(farthest, |last_s| farthest.cut_at(last_s - event.near_s - event.spread_s));
         let (mut signals, found) = condition_event(recording, file, &event, &reach);
         let removed = silent.iter().filter(|f| f.effect == Effect::Channel).chain(&copied);
         signals.retain(|signal| removed.clone().all(|f| f.channel.as_ref() != Some(&signal.name)));
@@ -121,7 +120,7 @@ impl Impact {
         findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
         // Without a later event the record is searched for the longest flight.
         let reach = if has_later_event { farthest } else { farthest.with_longest_flight() };
-        let sought_to_s = event.near_s + event.spread_s + reach.after_s;
+        let search_end_s = event.near_s + event.spread_s + reach.after_s;
         let u_joined_s = u_joined_s(recording, &signals);
         let u_skew_s = align(file, &mut signals, contact.time_s, search.waves_s, findings).hypot(u_joined_s);
         exchange_axes(&mut signals, is_on_end);
@@ -137,8 +136,8 @@ impl Impact {
             reconstructed_end,
             rests,
             fall_s,
-            sought_to_s: sought_to_s.min(recording.end_s()),
-            is_record_end: recording.end_s() <= sought_to_s,
+            search_end_s: search_end_s.min(recording.end_s()),
+            is_record_end: recording.end_s() <= search_end_s,
             has_later_event,
             effort: search.effort,
             across,

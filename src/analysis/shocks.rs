@@ -40,7 +40,7 @@ struct ShockSearch<'a> {
     file: &'a CaskFile,
     result: &'a DropResult,
     cutoff_hz: f64,
-    /// Begin of the first impact, s, from the motion or from the channels themselves.
+    /// Start of the first impact, s, from the motion or from the channels themselves.
     contact_s: f64,
 }
 
@@ -188,7 +188,7 @@ fn accelerometer(other: &Channel) -> Option<Channel> {
     Some(Channel { scale_m_s2, axis: Axis::Transverse, ..other.clone() })
 }
 
-/// Begin of the first impact in the channels themselves, s: the median of those that show one.
+/// Start of the first impact in the channels themselves, s: the median of those that show one.
 fn find_impact_s(recording: &Recording) -> Option<f64> {
     let of_motion = recording.channels.iter().filter_map(first_look::find_impact_s);
     let others = recording.others.channels.iter().filter_map(accelerometer);

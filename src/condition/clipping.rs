@@ -104,8 +104,8 @@ pub(super) fn judge_full_scale(channel: &Channel, force: &[f64], noise_m_s2: f64
     let full_scale_m_s2 = (channel.full_scale? * channel.scale_m_s2).abs();
     let reads_m_s2 = reduce::peak(force);
     let most_m_s2 = BEYOND_SHARE * full_scale_m_s2 + NOISE_FACTOR * noise_m_s2;
-    let found = ChannelFinding::BeyondFullScale { reads_m_s2, full_scale_m_s2 };
-    (reads_m_s2 > most_m_s2).then(|| found.tag(&channel.name))
+    let finding = ChannelFinding::BeyondFullScale { reads_m_s2, full_scale_m_s2 };
+    (reads_m_s2 > most_m_s2).then(|| finding.tag(&channel.name))
 }
 
 /// Returns the converter's step, the least distance of neighbours; 0 if the samples show none. If they were

@@ -163,8 +163,8 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     let stretches = dropouts.len();
     signal.gaps.extend(dropouts);
     signal.gaps.sort_by_key(|gap| gap.from);
-    let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
-    Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
+    let finding = ChannelFinding::Dropout { stretches, samples, most_m_s };
+    Some(finding.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
 }
 
 /// True if equal samples are one step of numbers cut to three digits, such as `7.27E+02`: the values around

@@ -60,7 +60,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     }
     let left_m_s =
         if take_off { residual_m_s(&lines, as_f64(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
-    let found = ChannelFinding::Hum {
+    let finding = ChannelFinding::Hum {
         amplitude_m_s2: fundamental.amplitude(),
         frequency_hz: fundamental.frequency_hz,
         harmonics: lines.len() - 1,
@@ -68,7 +68,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         left_m_s,
         severity: if left_m_s > MOST_RESIDUAL_M_S { Severity::Warning } else { Severity::Note },
     };
-    Some(found.tag(&signal.name))
+    Some(finding.tag(&signal.name))
 }
 
 /// Restores the amplitude that the mean over `block` samples takes from a line: sin(n x)/(n sin x), x = π

@@ -56,7 +56,7 @@ impl Reach {
     }
 
     /// Limits the reach to the ringing after the last change of velocity, s after the coarse event.
-    pub fn limit_to(self, last_change_s: f64) -> Self {
+    pub fn cut_at(self, last_change_s: f64) -> Self {
         Self { after_s: self.after_s.min(last_change_s.max(0.0) + LEAST_AFTER_S), ..self }
     }
 }

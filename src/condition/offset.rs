@@ -97,13 +97,13 @@ fn recorded_samples(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
 }
 
 fn judge_short_fall(signal: &Signal, length_s: f64, samples: usize) -> Finding {
-    let found = if length_s < LEAST_S {
+    let finding = if length_s < LEAST_S {
         ChannelFinding::ShortFreeFall { length_s: length_s.max(0.0) }
     } else {
         // So few samples in a fall of that length mean a wrong rate, not a late start.
         ChannelFinding::FewSamples { length_s, samples, sample_rate_hz: signal.sample_rate_hz }
     };
-    found.tag(&signal.name)
+    finding.tag(&signal.name)
 }
 
 /// Replaces outliers by the median, since a spike is no offset; returns the samples and the remaining spread.
@@ -124,12 +124,12 @@ fn replace_outliers(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
 fn judge_offset(name: &str, mean_m_s2: f64, is_removed: bool, large_m_s2: f64) -> Option<Finding> {
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
     if is_removed {
-        let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
-        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.tag(name));
+        let finding = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
+        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| finding.tag(name));
     }
     let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
-    (adds_m_s > 0.1 * SMALL_M_S).then(|| found.tag(name))
+    let finding = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
+    (adds_m_s > 0.1 * SMALL_M_S).then(|| finding.tag(name))
 }
 
 /// Reports a slope of the free fall beyond its noise whose continuation into the flight matters.
@@ -151,9 +151,9 @@ fn judge_drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<
     // The drift counts from the middle of the free fall, whose mean was subtracted, through contact and
     // flight.
     let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
-    let found = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
+    let finding = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
     (slope.abs() > LEAST_SLOPE_U * u_slope && adds_m_s > SMALL_M_S)
-        .then(|| found.tag(name).span(from_s, to_s))
+        .then(|| finding.tag(name).span(from_s, to_s))
 }
 
 #[cfg(test)]

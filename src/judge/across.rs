@@ -25,14 +25,14 @@ pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
     }
     let mean_m_s = flight_m_s.iter().sum::<f64>() / as_f64(flight_m_s.len().max(1));
     let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
-    let found = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
-    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
+    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| finding.tag(&signal.name))
 }
 
 /// Names a single sensor that does not read in the plane of the drop alone.
 pub fn judge_alone(signal: &Signal) -> Option<Finding> {
-    let found = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
-    (signal.u_around > LEAST_U_AROUND).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
+    (signal.u_around > LEAST_U_AROUND).then(|| finding.tag(&signal.name))
 }
 
 #[cfg(test)]

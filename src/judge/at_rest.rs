@@ -118,8 +118,8 @@ pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) ->
     let range_g = channel.range_m_s2().map(|range_m_s2| range_m_s2 / G);
     let too_small = |(i, peak): (usize, &ExpectedPeak)| {
         let (range_g, ExpectedPeak { lasts_s: pulse_s, peak_g }) = (range_g?, *peak);
-        let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
-        (range_g < peak_g).then(|| found.tag(&channel.name))
+        let finding = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
+        (range_g < peak_g).then(|| finding.tag(&channel.name))
     };
     let range = peaks.iter().enumerate().find_map(too_small);
     let rate =

@@ -79,7 +79,7 @@ fn judge_clipping(signal: &Signal, events: &Events) -> Vec<Finding> {
             during != DropPart::SlapDown && lost_m_s > MOST_LOST_M_S,
         );
         let level_m_s2 = signal.force_m_s2[first.from];
-        let found = if is_flank {
+        let finding = if is_flank {
             let fall_m_s2 = level_m_s2 - signal.force_m_s2[first.to - 1];
             let length_s = signal.time_s(first.to - 1) - signal.time_s(first.from);
             ChannelFinding::Slewed {
@@ -93,7 +93,7 @@ fn judge_clipping(signal: &Signal, events: &Events) -> Vec<Finding> {
             let limit_m_s2 = (level_m_s2 + signal.removed_offset_m_s2).abs();
             ChannelFinding::Clipped { limit_m_s2, samples, during, lost_m_s, takes_step }
         };
-        Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
+        Some(finding.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
     };
     let judge_kind = |is_flank| parts.clone().into_iter().filter_map(move |part| judge_part(part, is_flank));
     judge_kind(false).chain(judge_kind(true)).collect()
@@ -101,8 +101,8 @@ fn judge_clipping(signal: &Signal, events: &Events) -> Vec<Finding> {
 
 fn judge_gap(signal: &Signal, contact_s: f64, left_s: f64, shows_slap_down: bool) -> Option<Finding> {
     let inside = signal.overlaps(&signal.gaps, contact_s, left_s);
-    let found = ChannelFinding::LostStep { shows_slap_down };
-    inside.then(|| found.tag(&signal.name).span(contact_s, left_s))
+    let finding = ChannelFinding::LostStep { shows_slap_down };
+    inside.then(|| finding.tag(&signal.name).span(contact_s, left_s))
 }
 
 /// Judges each channel by itself and against the others, apart from its samples in the impact.
@@ -152,8 +152,8 @@ pub fn judge_noise(
     let fit_m_s = plateau.map(|(plateau, left_s)| plateau.u_m_s.hypot(walk_m_s(left_s - contact_s)));
     let u_m_s = walk_m_s(length_s).min(fit_m_s.unwrap_or(f64::INFINITY));
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
-    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| finding.tag(&signal.name))
 }
 
 /// Reports a recording that began in the impact: the velocity before its first sample is missing from the
@@ -166,9 +166,9 @@ fn judge_late_start(signal: &Signal, events: &Events) -> Option<Finding> {
     let peak = reduce::extremes(force, 0.0).1;
     let first = *force.first()?;
     let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
-    let found = ChannelFinding::BeginsInImpact { share: first / peak };
+    let finding = ChannelFinding::BeginsInImpact { share: first / peak };
     (is_struck && begins && peak > 0.0 && first > LATE_START_SHARE * peak)
-        .then(|| found.tag(&signal.name).span(signal.start_s, to_s))
+        .then(|| finding.tag(&signal.name).span(signal.start_s, to_s))
 }
 
 /// Reports sensors beyond the ends of the cask, and ends in the wrong order.
@@ -181,8 +181,8 @@ pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     for first in transverse(End::First) {
         for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
             let (position_m, second_m) = (first.position_m, second.position_m);
-            let found = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
-            findings.push(found.tag(&first.name));
+            let finding = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
+            findings.push(finding.tag(&first.name));
         }
     }
     let middle_m = length_m / 2.0;
@@ -216,13 +216,13 @@ fn judge_units(signals: &[Signal]) -> Vec<Finding> {
             if lowest <= 0.0 || highest / lowest <= factor / PEAK_FACTOR {
                 continue;
             }
-            let found = ChannelFinding::UnitFactor {
+            let finding = ChannelFinding::UnitFactor {
                 noise,
                 peak: highest / lowest,
                 other: small.name.clone(),
                 units: names,
             };
-            findings.push(found.tag(&large.name));
+            findings.push(finding.tag(&large.name));
         }
     }
     findings

@@ -45,8 +45,8 @@ pub fn judge_closures(choice: &MethodChoice, drop: &Drop, events: &Events) -> Ve
 pub fn judge_strained(choice: &MethodChoice, k: Estimate) -> Option<Finding> {
     let strained = choice.closures.iter().find(|c| c.largest_residual() > STRAINED_U)?;
     let is_missed = choice.closures.iter().any(|c| c.miss_in_u.abs() > MISSED_U);
-    let found = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
-    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| found.into())
+    let finding = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
+    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| finding.into())
 }
 
 /// True if the checks determine the velocity steps that channels lost to clipping or gaps: R's height at the

@@ -71,12 +71,12 @@ fn judge_undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]
     droops
         .iter()
         .map(|Trend { plateau, .. }| {
-            let found = ChannelFinding::AcUnstated {
+            let finding = ChannelFinding::AcUnstated {
                 droop_m_s2: plateau.zero_shift_m_s2,
                 step_m_s: plateau.velocity_step_m_s,
                 time_constant_s,
             };
-            found.tag(&plateau.channel).span(flight.from_s, flight.to_s)
+            finding.tag(&plateau.channel).span(flight.from_s, flight.to_s)
         })
         .collect()
 }
@@ -140,15 +140,16 @@ mod tests {
     }
 
     fn found(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<FindingKind> {
-        let findings = undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
+        let findings = judge_undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
         findings.into_iter().map(|f| f.what).collect()
     }
 
     #[test]
     fn a_first_end_that_the_target_carries_is_told_from_a_zero_shift() {
         let drop = Drop { impact_velocity_m_s: 3.13, ..Drop::from_height(0.5, 0.1) };
-        let is_carried =
-            |first, second| supported(&[signal("A1"), signal("A2")], &flight(first, second), &drop).is_some();
+        let is_carried = |first, second| {
+            judge_supported(&[signal("A1"), signal("A2")], &flight(first, second), &drop).is_some()
+        };
         // Near the corner 8.6 m/s² of g cos φ = 9.76, and −0.43 of that where the step is.
         assert!(is_carried((2.6, 8.6), (-1.12, -3.7)));
         // Both channels shifted in proportion, by more than a target can carry; one alone; out of proportion.

@@ -20,8 +20,8 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
     events.release_s?;
     let (end_s, contact_s) = events.fall_end_s.zip(events.first_contact_s())?;
     let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    let found = DropFinding::SoftTouch { end_s, contact_s };
-    (contact_s - end_s > MOST_LAG_SHARE * expected_s).then(|| Finding::from(found).span(end_s, contact_s))
+    let finding = DropFinding::SoftTouch { end_s, contact_s };
+    (contact_s - end_s > MOST_LAG_SHARE * expected_s).then(|| Finding::from(finding).span(end_s, contact_s))
 }
 
 /// Compares the length of the recorded fall with v0, if no motion could be determined that includes this
@@ -121,13 +121,13 @@ fn slowed_share(
 /// Reports another drop after the one at `event`.
 pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Finding {
     let (from_s, to_s) = (another.near_s, another.near_s + another.spread_s);
-    let found = DropFinding::SeveralDrops {
+    let finding = DropFinding::SeveralDrops {
         at_s: to_s,
         later_s: another.near_s - event.near_s,
         step_m_s: another.velocity_step_m_s.abs(),
         first_step_m_s: event.velocity_step_m_s.abs(),
     };
-    Finding::from(found).span(from_s, to_s)
+    Finding::from(finding).span(from_s, to_s)
 }
 
 #[cfg(test)]

@@ -60,8 +60,8 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
         };
         let stops_alone = |at_s| is_inside(at_s, STOP) && others().all(|other| !stops_about(other, at_s));
         let (at, size_m_s2) = jump().or_else(|| first_stop(signal, within.clone(), stops_alone))?;
-        let found = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
-        Some(found.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
+        let finding = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
+        Some(finding.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
     });
     jumps.collect()
 }

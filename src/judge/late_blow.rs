@@ -36,12 +36,12 @@ pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64, speed: Option<Estimate>)
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && changes_motion(s.step_m_s, v0_m_s))?;
     let (step_m_s, after_s) = (strike.step_m_s.abs(), strike.time_s - flight.from_s);
     let is_small = speed.is_some_and(|speed| step_m_s < speed.u95);
-    let found = if is_small {
+    let finding = if is_small {
         DropFinding::SmallBlow { step_m_s, after_s }
     } else {
         DropFinding::Blow { step_m_s, after_s }
     };
-    Some(Finding::from(found).span(strike.time_s, strike.time_s))
+    Some(Finding::from(finding).span(strike.time_s, strike.time_s))
 }
 
 /// Reports a first end on which the force pauses during its contact: it left the target before, and the later
@@ -66,8 +66,8 @@ pub fn judge_force_pause(signals: &[Signal], events: &Events) -> Option<Finding>
     (longest.start > 0 && is_long && returns).then(|| {
         let at_s = |mean: usize| contact_s + as_f64(mean * block) / struck.sample_rate_hz;
         let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
-        let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
-        found.tag(&struck.name).span(from_s, to_s)
+        let finding = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
+        finding.tag(&struck.name).span(from_s, to_s)
     })
 }
 

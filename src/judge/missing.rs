@@ -35,14 +35,14 @@ pub fn judge_no_impact(
 /// Reports that the second end shows no slap-down in the interval searched after the first one left; the
 /// record may end there, or the drop may be too steep.
 pub fn judge_no_slap_down(cask: &Cask, drop: &Drop, after_s: f64, is_record_end: bool) -> Finding {
-    let found = if let Some(too_steep) = too_steep(cask, drop) {
+    let finding = if let Some(too_steep) = too_steep(cask, drop) {
         too_steep
     } else if is_record_end && after_s < LONG_ENOUGH_S {
         DropFinding::EndsEarly { after_s }
     } else {
         DropFinding::NoSlapDown { after_s }
     };
-    found.into()
+    finding.into()
 }
 
 /// Reports an impact of L that lasts until R is down, which no impulse of L delays: no flight lies between

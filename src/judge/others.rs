@@ -47,8 +47,8 @@ fn judge_clipping(channel: &Channel, summary: &OtherSummary) -> Option<Finding> 
     let (first, last) = (summary.clipped.first()?, summary.clipped.last()?);
     let samples = summary.clipped.iter().map(|span| span.to - span.from).sum();
     let limit = channel.samples.get(first.from);
-    let found = ChannelFinding::OtherClipped { limit, samples, unit: channel.unit.clone() };
-    Some(found.tag(&channel.name).span(channel.time_s(first.from), channel.time_s(last.to)))
+    let finding = ChannelFinding::OtherClipped { limit, samples, unit: channel.unit.clone() };
+    Some(finding.tag(&channel.name).span(channel.time_s(first.from), channel.time_s(last.to)))
 }
 
 /// Reports a channel with nothing but noise, or with much of it.
@@ -93,12 +93,12 @@ pub fn judge_rotation(read: &MeasuredRotation, gained_rad_s: f64) -> Option<Chan
 /// Reports the level of an angular-rate sensor at rest, which must be 0; `unit_rad_s` is the unit of its
 /// level.
 pub fn judge_rate_level(channel: &Channel, rest: AtRest, unit_rad_s: f64) -> Finding {
-    let found = match () {
+    let finding = match () {
         () if rest.least_step_m_s2 == 0.0 => RestFinding::OneValue,
         () if !rest.is_still => RestFinding::Turning,
         () => RestFinding::Rate { reads_deg_s: DEGREES * unit_rad_s * rest.level_m_s2 },
     };
-    found.tag(&channel.name)
+    finding.tag(&channel.name)
 }
 
 #[cfg(test)]

@@ -115,9 +115,9 @@ pub fn judge_pressed(flight: &FlightFit, motion_findings: &[Finding]) -> Option<
     let frequency_hz = periods / (flight.to_s - flight.from_s);
     let is_contradicted =
         motion_findings.iter().any(|f| f.severity > Severity::Note && f.code != IssueCode::Swings);
-    let found = DropFinding::Pressed { frequency_hz, periods };
+    let finding = DropFinding::Pressed { frequency_hz, periods };
     (is_contradicted && frequency_hz < SLOWEST_BENDING_HZ && periods < PRESSED_PERIODS)
-        .then(|| Finding::from(found).span(flight.from_s, flight.to_s))
+        .then(|| Finding::from(finding).span(flight.from_s, flight.to_s))
 }
 
 /// Reports touches of L that the flight omits: `effect_m_s` is their effect on the slap-down speed in the
@@ -221,8 +221,8 @@ fn judge_flight(
         let short_m_s = if flight.can_rank_fits() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
         let &Plateau { slow_residual_m_s: residual_m_s, u_m_s, .. } = plateau;
         if residual_m_s > LARGE_RESIDUAL_M_S.min(short_m_s) || u_m_s > LARGE_U_SHARE * v0_m_s {
-            let found = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
-            findings.push(found.tag(&plateau.channel).span(flight.from_s, flight.to_s));
+            let finding = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
+            findings.push(finding.tag(&plateau.channel).span(flight.from_s, flight.to_s));
         }
     }
     findings
@@ -248,10 +248,10 @@ fn judge_shift(
     let held_m_s = quantities.speed.map_or(0.0, |speed| (speed_share * speed.u95).min(most_m_s));
     let small_m_s = held_m_s.max(least_m_s);
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
+    let finding = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
     let u_all_m_s2 = u_m_s2.hypot(U_TILT_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
     (flight.drift && beyond_m_s2 > 3.0 * u_all_m_s2)
-        .then(|| found.tag(&plateau.channel).span(flight.from_s, flight.to_s))
+        .then(|| finding.tag(&plateau.channel).span(flight.from_s, flight.to_s))
 }
 
 /// Reports modes that are fit artefacts, each on the channel that shows it most.
@@ -344,7 +344,7 @@ mod tests {
     fn what_moves_more_slowly_than_a_cask_bends_swings() {
         let found = |frequency_hz, v0_m_s| {
             let (flight, signals) = flight(frequency_hz);
-            swings(&flight, &signals, v0_m_s, &example::cask(1.0, 5.0, 0.0)).map(|f| f.code)
+            judge_swings(&flight, &signals, v0_m_s, &example::cask(1.0, 5.0, 0.0)).map(|f| f.code)
         };
         assert_eq!(found(15.0, 13.3), Some(IssueCode::Swings));
         assert_eq!(found(30.0, 13.3), None);

@@ -91,9 +91,9 @@ pub fn judge_rigid<'a>(
             Some((step, step.step_m_s - expected_m_s, u_m_s.hypot(step.u_m_s)))
         })
         .max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
-    let found = ChannelFinding::OffLine { off_m_s, u_m_s };
+    let finding = ChannelFinding::OffLine { off_m_s, u_m_s };
     (off_m_s.abs() > LEAST_DEVIATION_U * u_m_s && off_m_s.abs() > LEAST_M_S)
-        .then(|| found.tag(worst.name).span(flight.from_s, flight.to_s))
+        .then(|| finding.tag(worst.name).span(flight.from_s, flight.to_s))
 }
 
 /// Change of the step along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10 mm off its
@@ -161,7 +161,8 @@ mod tests {
         let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
         let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, angle_rad) };
         let events = example::events(0.0, 0.1);
-        judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events).and_then(|i| i.channel)
+        judge_rigid(transverse_places(&signals), &flight, &Tolerances::default(), &drop, &events)
+            .and_then(|i| i.channel)
     }
 
     #[test]
@@ -202,7 +203,7 @@ mod tests {
             let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, 0.26) };
             let left = Some(At::exact(0.024));
             let events = Events { separation: left, ..example::events(0.0, 0.1) };
-            judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events)
+            judge_rigid(transverse_places(&signals), &flight, &Tolerances::default(), &drop, &events)
         };
         // ∫Ω² of an Ω that rises to 6 rad/s in 24 of 30 ms is 36 (3/8 · 0.024 + 0.006) = 0.54 rad²/s.
         assert!(named(0.4 * 0.54).is_none(), "{:?}", named(0.4 * 0.54));

@@ -19,7 +19,7 @@ const FLANKS: [(f64, f64); 2] = [(0.15, 0.904), (0.5, 2.0 / 3.0)];
 const REACHED_SHARE: f64 = 0.5;
 /// The flank lies this many standard deviations of the noise above zero.
 const NOISE_FACTOR: f64 = 6.0;
-/// Begin of the band, as a share of the sample rate, in which an anti-alias filter leaves no content; it ends
+/// Start of the band, as a share of the sample rate, in which an anti-alias filter leaves no content; it ends
 /// at half the rate.
 const BAND_SHARE: f64 = 0.4;
 /// Largest content of the band over the maximum of the spectrum: 0.05 aliases to 2.5 % of the velocity step.
@@ -116,8 +116,8 @@ pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64, share: f6
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
         let off_percent = 100.0 * share * PI * PI / 12.0 / (samples * samples);
         let least_hz = fit_rate_hz(length_s);
-        let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
-        found.tag(name)
+        let finding = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
+        finding.tag(name)
     })
 }
 

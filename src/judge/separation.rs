@@ -16,8 +16,8 @@ pub fn judge_separation(flight: &FlightFit, left_s: f64) -> Option<Finding> {
     let mut missed = flight.plateaus.iter().filter_map(|plateau| {
         let most_m_s = LARGE_MISMATCH_M_S.max(RESIDUALS * plateau.residual_m_s);
         let mismatch_m_s = plateau.early_mismatch_m_s.filter(|off_m_s| off_m_s.abs() > most_m_s)?;
-        let found = ChannelFinding::EarlyMismatch { mismatch_m_s }.tag(&plateau.channel);
-        Some(found.span(left_s, flight.from_s))
+        let finding = ChannelFinding::EarlyMismatch { mismatch_m_s }.tag(&plateau.channel);
+        Some(finding.span(left_s, flight.from_s))
     });
     missed.next().filter(|_| missed.next().is_none())
 }
@@ -29,8 +29,8 @@ pub fn judge_unresolved(flight: &FlightFit, two_maxima: Option<Finding>) -> Opti
     let flight_s = flight.to_s - flight.from_s;
     let is_open = two_maxima.is_some_and(|_| flight.first_bending_hz(flight_s) * flight_s < 1.0);
     let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
-    let found = DropFinding::Unresolved { flight_s, modes_hz };
-    (is_open || !flight.resolves_modes()).then(|| Finding::from(found).span(flight.from_s, flight.to_s))
+    let finding = DropFinding::Unresolved { flight_s, modes_hz };
+    (is_open || !flight.resolves_modes()).then(|| Finding::from(finding).span(flight.from_s, flight.to_s))
 }
 
 #[cfg(test)]

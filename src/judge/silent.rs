@@ -41,9 +41,9 @@ pub fn judge_at_stop(channel: &Channel, all: &[Channel]) -> Option<(usize, Findi
     let is_stop = high.max(-low) < (1.0 + BEYOND_STOP) * level.abs() && level.abs() > SILENT_SPREADS * within;
     let is_like = |o: &&Channel| (o.end, o.axis) == (channel.end, channel.axis) && o.name != channel.name;
     let is_beside_others = all.iter().any(|other| is_like(&other));
-    let found = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
+    let finding = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
     let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
-    is_stop.then(|| (from, found.tag(&channel.name).span(from_s, to_s)))
+    is_stop.then(|| (from, finding.tag(&channel.name).span(from_s, to_s)))
 }
 
 /// Largest deviation of a channel from its median, m/s², and the spread of its samples where it is quietest,
@@ -67,8 +67,9 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
         channel.axis == Axis::Axial || heard.iter().any(|(other, _)| is_like(other))
     };
     let judge_dead = |(channel, r): &(&&Channel, &Excursion)| {
-        let found = ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
-        found.tag(&channel.name)
+        let finding =
+            ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
+        finding.tag(&channel.name)
     };
     silent.iter().map(judge_dead).collect()
 }

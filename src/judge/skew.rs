@@ -19,7 +19,7 @@ pub fn judge_skew(
     let &Onset { delay_s, u_s, .. } = onset;
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);
     let slack_s = 2.0 * u_s + SAMPLES / rate_hz;
-    let found = if delay_s < -slack_s - lag_s {
+    let finding = if delay_s < -slack_s - lag_s {
         ChannelFinding::AnswersEarly { delay_s, u_s, is_shifted }
     } else if delay_s > wave_s + slack_s {
         ChannelFinding::AnswersLate { delay_s, u_s, wave_s, is_shifted }
@@ -28,7 +28,7 @@ pub fn judge_skew(
     } else {
         return None;
     };
-    Some(found.tag(&onset.channel))
+    Some(finding.tag(&onset.channel))
 }
 
 #[cfg(test)]

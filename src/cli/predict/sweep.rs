@@ -136,7 +136,7 @@ mod tests {
         ] {
             let swept = parse(text).unwrap();
             assert_eq!(swept.variable, variable, "{text}");
-            assert!(sweep(&format!("{}=0.5:0.6:0.1", name(variable))).is_ok(), "{text}");
+            assert!(parse(&format!("{}=0.5:0.6:0.1", name(variable))).is_ok(), "{text}");
         }
         assert_eq!(values("k=0,1:0,9:0,1").len(), 9);
     }
