@@ -55,7 +55,7 @@ impl Middle {
         let (signals, _) = stages::condition(
             &recording,
             &event,
-            &stages::Reach::of(&cask_file.cask, &cask_file.drop),
+            &stages::Reach::for_drop(&cask_file.cask, &cask_file.drop),
             cask_file.corrections,
         );
         let setup = stages::sticking(&cask_file);
@@ -99,7 +99,7 @@ fn locate(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn condition_channels(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    let reach = stages::Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
+    let reach = stages::Reach::for_drop(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
     bencher
         .counter(items(samples))
         .bench(|| stages::condition(&m.recording, &m.event, &reach, Corrections::default()));

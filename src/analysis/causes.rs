@@ -1,127 +1,128 @@
-//! An analysis that something speaks against to the one mistake in the cask file with which everything
-//! closes.
+//! Finds the one mistake in the cask file that explains an analysis which contradicts itself.
 
 use super::analyse_once;
-use super::flight_search::Patience;
-use super::second_look::{Doubt, closes, is_too_large};
+use super::flight_search::SearchEffort;
+use super::second_look::{Inconsistency, is_consistent, is_too_large};
 use crate::data::shown::digits;
 use crate::data::{
-    Analysis, Axis, CaskFile, Channel, ChannelFinding, Cure, DECISIVE_CHI_SQUARE, DropFinding, DropResult,
-    Effect, End, Events, Finding, FindingKind, FlightFit, IssueCode, Opening, Recording, RecordingFormat,
-    ResultPart, STANDARD_GRAVITY_M_S2 as G, Samples, Severity, Slip, StatedCause,
+    Analysis, Axis, CaskFile, Channel, ChannelFinding, ChannelSpec, DECISIVE_CHI_SQUARE, DropFinding,
+    DropResult, Effect, End, Events, Finding, FindingKind, FlightFit, IssueCode, Mistake, OpenedInput,
+    Recording, RecordingFormat, Remedy, ResultPart, STANDARD_GRAVITY_M_S2 as G, Samples, Severity,
+    StatedCause,
 };
 use crate::numerics::robust;
 use crate::{events, judge};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-/// k of a cure: no crushed end rebounds otherwise, and two slips of which one is put right often come to
-/// another.
+/// Range of k with a correction: no crushed end rebounds otherwise, and if only one of two mistakes is
+/// corrected, k is often outside.
 const LIKELY_K: RangeInclusive<f64> = 0.02..=0.98;
-/// 95 % half-widths that a cure has at the most, of k and of the speed as a share: sound drops have 0.067 and
-/// all but one 0.05 (docs/validation.md), two slips of which one is put right up to 0.3 and more.
+/// Largest 95 % half-widths with a correction, of k and of the speed as a share: sound drops have 0.067 and
+/// all but one 0.05 (docs/validation.md); if only one of two mistakes is corrected they reach 0.3 and more.
 const MOST_U95_K: f64 = 0.08;
 const MOST_U95_SPEED: f64 = 0.06;
-/// Units of length that a number in metres may be in.
-const LENGTHS_M: [(&str, f64); 3] = [("in cm", 0.01), ("in mm", 1e-3), ("in ft", 0.3048)];
-/// The least drop height and length of a cask that a unit of length is tried for, m.
+/// Units that a number in metres may really have.
+const LENGTH_UNITS_M: [(&str, f64); 3] = [("in cm", 0.01), ("in mm", 1e-3), ("in ft", 0.3048)];
+/// Smallest drop height and length of a cask for which a unit of length is tried, m.
 const LEAST_M: f64 = 0.1;
-/// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
-/// the unit is wrong.
-const MOST_LOST: f64 = 3.0;
-/// Clocks that are farther apart are no number that is a little off, s.
+/// Largest velocity lost to clipping, in v0: a cask cannot lose more in its impacts, so that the unit is
+/// wrong.
+const MOST_LOST_V0: f64 = 3.0;
+/// Clocks at most this far apart may be explained by another number just as well, s.
 const NEAR_S: f64 = 8e-3;
-/// Clocks are apart where they seem so by more, s: within it an analysis comes to the same. A soft impact has
-/// an end seem to answer by so much later than it does; clocks nearer to one another are one.
+/// Clocks count as different if they seem more than [`APART_S`] apart, s: less does not change an analysis.
+/// In a soft impact an end seems to answer later than it does, by one of [`SOFT_DELAYS_S`]. Differences
+/// closer than [`SAME_CLOCK_S`] are one.
 const APART_S: f64 = 2e-3;
-const SEEM_LATER_S: [f64; 3] = [0.0, 2e-3, 4e-3];
+const SOFT_DELAYS_S: [f64; 3] = [0.0, 2e-3, 4e-3];
 const SAME_CLOCK_S: f64 = 1.5e-3;
 /// Places that differ by less are one, m.
 const SAME_M: f64 = 0.01;
-/// Openings that are tried: no more than so many, of a χ² up to this many times the least and three times
-/// [`DECISIVE_CHI_SQUARE`] more; and how often: a place 0.7 m off is found by the second time.
-const MOST_OPENED: usize = 5;
-const NEARLY: f64 = 2.0;
+/// Largest number of opened inputs that are tried, those with a χ² up to this factor times the least plus
+/// three times [`DECISIVE_CHI_SQUARE`]; and the rounds of each: a place 0.7 m off is found in the second one.
+const MOST_TRIED: usize = 5;
+const CHI_SQUARE_FACTOR: f64 = 2.0;
 const ROUNDS: usize = 2;
-/// More causes that do as well are listed, and none is named.
+/// Largest number of equally good causes that are named; more are only listed.
 const MOST_NAMED: usize = 2;
-/// A scale or a clock is wrong by no more than this factor where it is no unit.
+/// Likely factors of a scale or a clock that do not come from a unit.
 const LIKELY_FACTOR: RangeInclusive<f64> = 0.1..=10.0;
 
-/// Adds what explains the analysis where something speaks against it: the usual slips with which everything
-/// closes, or else the stated numbers of which another one does it.
+/// Adds the explanations if something contradicts the analysis: the usual mistakes whose correction makes
+/// everything consistent, else the stated numbers of which another one does.
 pub(super) fn name_causes(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
     let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
-    let taken = is_motion_taken(&found.result.quality).then_some(Severity::Warning);
-    let Some(severity) = doubt.or(taken).filter(|_| !is_too_large(recording)) else { return };
-    let stated = Contradicted { recording, file };
-    // Where all closes without one channel, nothing else is wrong.
+    let removed = warnings_remove_motion(&found.result.quality).then_some(Severity::Warning);
+    let Some(severity) = doubt.or(removed).filter(|_| !is_too_large(recording)) else { return };
+    let search = CauseSearch { recording, file };
+    // If everything is consistent without one channel, nothing else is wrong.
     let left_out = found.result.quality.iter().find(|f| is_left_out(f)).and_then(|f| f.channel.as_ref());
-    let is_of_it = |slips: &[Slip]| left_out.is_none_or(|name| slips.iter().any(|s| s.names.contains(name)));
-    let steps = of_steps(recording, &found.result);
-    let may_cure = |slips: &Vec<Slip>| steps.as_ref().is_none_or(|steps| is_rigid(slips, steps, file));
-    let usual = hypotheses(recording, file).into_par_iter().filter(may_cure);
-    let by_usual = usual.filter(|slips| is_of_it(slips)).filter_map(|slips| stated.cured_by_slips(slips));
-    // A small shift is one number more, which other numbers may do as well as.
-    let clocks = stated.clocks_behind_s(found).into_iter().map(|behind_s| stated.earlier(behind_s));
-    let own_clocks = clocks.filter(|slip| is_of_it(std::slice::from_ref(slip)));
-    let (far, near): (Vec<Slip>, Vec<Slip>) = own_clocks.partition(|slip| slip.from.abs() > NEAR_S);
-    // One clock is sought from several sides.
-    let by_clock = |slips: Vec<Slip>| {
-        slips.into_par_iter().filter_map(|slip| stated.cured_by_clock(slip)).min_by(less_doubted)
+    let may_be = |m: &Mistake| left_out.is_none_or(|name| m.names.contains(name));
+    let steps = step_samples(recording, &found.result);
+    let may_help = |all: &Vec<Mistake>| steps.as_ref().is_none_or(|steps| is_rigid(all, steps, file));
+    let usual = usual_mistakes(recording, file).into_par_iter().filter(may_help);
+    let by_usual = usual.filter(|all| all.iter().any(may_be)).filter_map(|all| search.try_mistakes(all));
+    // A small shift is one more free number; other numbers may explain as much.
+    let clocks = search.clocks_behind_s(found).into_iter().map(|behind_s| search.clock_mistake(behind_s));
+    let (far, near): (Vec<_>, Vec<_>) = clocks.filter(may_be).partition(|m| m.offset.abs() > NEAR_S);
+    // The same clock may be found from several estimates.
+    let by_clock = |clocks: Vec<Mistake>| {
+        clocks.into_par_iter().filter_map(|m| search.try_clock(m)).min_by(compare_remedies)
     };
-    let by_slips = best(by_usual.chain(by_clock(far)).collect());
-    let is_usual = !by_slips.is_empty();
+    let by_mistakes = keep_best(by_usual.chain(by_clock(far)).collect());
+    let is_usual = !by_mistakes.is_empty();
     let by_number = || {
-        let numbers = stated.numbers_to_try(found).into_par_iter();
-        let own = numbers.filter(|(slip, _)| is_of_it(std::slice::from_ref(slip)));
-        best(own.filter_map(|number| stated.cured_by_number(number)).chain(by_clock(near)).collect())
+        let numbers = search.numbers_to_try(found).into_par_iter().filter(|(mistake, _)| may_be(mistake));
+        keep_best(numbers.filter_map(|number| search.try_number(number)).chain(by_clock(near)).collect())
     };
-    // A number that is a little off contradicts something; without that it only has a finding go away.
-    let cures = if is_usual || doubt.is_none() { by_slips } else { by_number() };
-    if cures.len() <= MOST_NAMED {
-        found.result.causes = cures.iter().flat_map(|cure| cure.causes.clone()).collect();
+    // Another number explains a contradiction; without one it would only remove a finding.
+    let remedies = if is_usual || doubt.is_none() { by_mistakes } else { by_number() };
+    if remedies.len() <= MOST_NAMED {
+        found.result.causes = remedies.iter().flat_map(|remedy| remedy.causes.clone()).collect();
     }
-    let cause = match (cures.len(), is_usual) {
+    let cause = match (remedies.len(), is_usual) {
         (0, _) => return,
-        (..=MOST_NAMED, true) => DropFinding::UsualSlip { cures, severity },
-        (..=MOST_NAMED, false) => DropFinding::OneNumber { cures, severity },
-        _ => DropFinding::SeveralCauses { cures, severity },
+        (..=MOST_NAMED, true) => DropFinding::UsualMistake { remedies, severity },
+        (..=MOST_NAMED, false) => DropFinding::OneNumber { remedies, severity },
+        _ => DropFinding::SeveralCauses { remedies, severity },
     };
     found.result.quality.push(cause.into());
 }
 
-/// What an analysis was made of that contradicts itself.
-struct Contradicted<'a> {
+/// Recording and cask file of an analysis that contradicts itself.
+struct CauseSearch<'a> {
     recording: &'a Recording,
     file: &'a CaskFile,
 }
 
-impl Contradicted<'_> {
-    /// The analysis with slips put right.
-    fn with(&self, slips: &[Slip], patience: Patience) -> Analysis {
+impl CauseSearch<'_> {
+    /// Repeats the analysis with mistakes corrected.
+    fn analyze_corrected(&self, mistakes: &[Mistake], effort: SearchEffort) -> Analysis {
         let (mut recording, mut file) = (self.recording.clone(), self.file.clone());
-        for slip in slips {
-            put_right(slip, &mut recording, &mut file);
+        for mistake in mistakes {
+            apply_correction(mistake, &mut recording, &mut file);
         }
-        analyse_once(&recording, &file, patience)
+        analyse_once(&recording, &file, effort)
     }
 
-    fn cured_by_slips(&self, slips: Vec<Slip>) -> Option<(Doubt, Cure)> {
-        let analysis = self.with(&slips, Patience::OneBeginning);
-        is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.cure(slips, &analysis))
+    fn try_mistakes(&self, mistakes: Vec<Mistake>) -> Option<(Inconsistency, Remedy)> {
+        let analysis = self.analyze_corrected(&mistakes, SearchEffort::FirstStart);
+        is_remedied(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.remedy(mistakes, &analysis))
     }
 
-    /// How far the clock of the second end's channels may be behind, s: as they answer the first impact, and
-    /// roughly as both ends show the drop.
+    /// Delays by which the clock of the second end's channels may be behind, s: from their answers to the
+    /// first impact, and roughly from the drop as both ends show it.
     fn clocks_behind_s(&self, found: &Analysis) -> Vec<f64> {
         let roughly =
             events::Changes::new(&self.recording.channels).delays_s(self.file.drop.impact_velocity_m_s);
         let apart = roughly.into_iter().filter(|behind_s| behind_s.abs() > APART_S);
-        let sooner_s = apart.flat_map(|behind_s| SEEM_LATER_S.map(|later_s| behind_s - later_s));
-        let mut all_s: Vec<f64> = late_s(found, &self.far_names()).into_iter().chain(sooner_s).collect();
+        let sooner_s = apart.flat_map(|behind_s| SOFT_DELAYS_S.map(|later_s| behind_s - later_s));
+        let late_s = median_delay_s(found, &self.far_names());
+        let mut all_s: Vec<f64> = late_s.into_iter().chain(sooner_s).collect();
         all_s.sort_by(f64::total_cmp);
         all_s.dedup_by(|a, b| (*a - *b).abs() < SAME_CLOCK_S);
         all_s
@@ -132,122 +133,122 @@ impl Contradicted<'_> {
         far.map(|c| c.name.clone()).collect()
     }
 
-    /// The clock of the second end's channels, set so much earlier.
-    fn earlier(&self, by_s: f64) -> Slip {
+    /// Sets the clock of the second end's channels earlier.
+    fn clock_mistake(&self, by_s: f64) -> Mistake {
         let way = if by_s > 0.0 { "earlier" } else { "later" };
-        let right = format!("{:.2} ms {way}", 1e3 * by_s.abs());
-        Slip { right: right.into(), ..slip("time", self.far_names(), "", [-by_s, 1.0]) }
+        let correction = format!("{:.2} ms {way}", 1e3 * by_s.abs());
+        mistake("time", self.far_names(), correction, [-by_s, 1.0])
     }
 
-    /// By a clock, which is set again as the channels then answer the first impact.
-    fn cured_by_clock(&self, mut slip: Slip) -> Option<(Doubt, Cure)> {
+    /// Tries a clock, and sets it again from the answers that the channels then give to the first impact.
+    fn try_clock(&self, mut mistake: Mistake) -> Option<(Inconsistency, Remedy)> {
         for _ in 0..ROUNDS {
-            let analysis = self.with(std::slice::from_ref(&slip), Patience::OneBeginning);
-            if is_cured(&analysis, [MOST_U95_K, MOST_U95_SPEED]) {
-                return Some(self.cure(vec![slip], &analysis));
+            let analysis = self.analyze_corrected(std::slice::from_ref(&mistake), SearchEffort::FirstStart);
+            if is_remedied(&analysis, [MOST_U95_K, MOST_U95_SPEED]) {
+                return Some(self.remedy(vec![mistake], &analysis));
             }
-            slip = self.earlier(late_s(&analysis, &slip.names)? - slip.from);
+            mistake = self.clock_mistake(median_delay_s(&analysis, &mistake.names)? - mistake.offset);
         }
         None
     }
 
-    /// By another number, which is opened again where a large mistake leaves it open, as patiently.
-    fn cured_by_number(&self, (mut slip, patience): (Slip, Patience)) -> Option<(Doubt, Cure)> {
+    /// Tries another number, and again the number that the new analysis suggests, with the same effort.
+    fn try_number(&self, (mut mistake, effort): (Mistake, SearchEffort)) -> Option<(Inconsistency, Remedy)> {
         for _ in 0..ROUNDS {
-            let analysis = self.with(std::slice::from_ref(&slip), patience);
-            // All closures and steps are met: only intervals that say nothing are too wide.
-            if is_cured(&analysis, [judge::MOST_U95_K, judge::MOST_U95_SPEED]) {
-                return Some(self.cure(vec![slip], &analysis));
+            let analysis = self.analyze_corrected(std::slice::from_ref(&mistake), effort);
+            // All checks and steps are met: only intervals that say nothing are too wide.
+            if is_remedied(&analysis, [judge::MOST_U95_K, judge::MOST_U95_SPEED]) {
+                return Some(self.remedy(vec![mistake], &analysis));
             }
-            let is_own =
-                |o: &&Opening| o.key == slip.key && o.channel.as_ref().is_none_or(|n| slip.names.contains(n));
-            slip = self.opened(&slip, analysis.openings.iter().find(is_own)?);
-            if !is_possible(&slip, self.file) {
+            let names = &mistake.names;
+            let is_same =
+                |o: &&OpenedInput| o.key == mistake.key && o.channel.iter().all(|n| names.contains(n));
+            mistake = self.with_number(&mistake, analysis.opened_inputs.iter().find(is_same)?);
+            if !is_possible(&mistake, self.file) {
                 return None;
             }
         }
         None
     }
 
-    fn cure(&self, slips: Vec<Slip>, analysis: &Analysis) -> (Doubt, Cure) {
+    fn remedy(&self, mistakes: Vec<Mistake>, analysis: &Analysis) -> (Inconsistency, Remedy) {
         let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
-        let cause = |slip: &Slip| {
-            let [stated, explains] = self.numbers(slip).map_or([None; 2], |both| both.map(Some));
-            StatedCause { key: slip.key, names: slip.names.clone(), stated, explains, speed, k }
+        let cause = |mistake: &Mistake| {
+            let [stated, explains] = self.numbers(mistake).map_or([None; 2], |numbers| numbers.map(Some));
+            StatedCause { key: mistake.key, names: mistake.names.clone(), stated, explains, speed, k }
         };
-        let causes = slips.iter().map(cause).collect();
-        (Doubt::of(analysis), Cure { slips, causes })
+        let causes = mistakes.iter().map(cause).collect();
+        (Inconsistency::measure(analysis), Remedy { mistakes, causes })
     }
 
-    /// Other numbers of a drop that come near to explaining it, and offsets to the other side, which move
+    /// Lists other numbers that come near to explaining the drop, and offsets to the other side, which change
     /// little.
-    fn numbers_to_try(&self, found: &Analysis) -> Vec<(Slip, Patience)> {
-        let first = |opening: &Opening| {
-            let names = match opening.key {
+    fn numbers_to_try(&self, found: &Analysis) -> Vec<(Mistake, SearchEffort)> {
+        let first = |input: &OpenedInput| {
+            let names = match input.key {
                 "sample_rate_hz" => self.recording.channels.iter().map(|c| c.name.clone()).collect(),
-                _ => opening.channel.iter().cloned().collect(),
+                _ => input.channel.iter().cloned().collect(),
             };
-            let as_stated = Slip { key: opening.key, names, right: "".into(), from: 0.0, by: 1.0 };
-            (opening.chi_square, self.opened(&as_stated, opening))
+            (input.chi_square, self.with_number(&mistake(input.key, names, "", [0.0, 1.0]), input))
         };
-        let possible = found.openings.iter().map(first).filter(|(_, slip)| is_possible(slip, self.file));
+        let possible = found.opened_inputs.iter().map(first).filter(|(_, m)| is_possible(m, self.file));
         let mut most = f64::INFINITY;
         let near = possible.take_while(|(chi_square, _)| {
-            most = most.min(NEARLY * chi_square + 3.0 * DECISIVE_CHI_SQUARE);
+            most = most.min(CHI_SQUARE_FACTOR * chi_square + 3.0 * DECISIVE_CHI_SQUARE);
             *chi_square < most
         });
         let channels = &self.recording.channels;
         let off_axis = channels.iter().filter(|c| c.offset_m != 0.0);
-        let reversed = off_axis.map(|c| slip("offset_m", vec![c.name.clone()], "reversed", [0.0, -1.0]));
+        let reversed = off_axis.map(|c| mistake("offset_m", vec![c.name.clone()], "reversed", [0.0, -1.0]));
         let on_axis =
             channels.iter().filter(|c| c.offset_m == 0.0 && is_doubted_place(&found.result, &c.name));
         let as_others = on_axis.flat_map(|c| self.places_of_others(c));
-        let offsets = of_skin(channels, self.file.cask.height_m).into_iter().chain(reversed).chain(as_others);
-        let opened = near.take(MOST_OPENED).map(|(_, slip)| (slip, Patience::EachBeginning));
-        opened.chain(offsets.map(|slip| (slip, Patience::OneBeginning))).collect()
+        let offsets = skin_mistakes(channels, self.file.cask.height_m).into_iter();
+        let offsets = offsets.chain(reversed).chain(as_others).map(|m| (m, SearchEffort::FirstStart));
+        near.take(MOST_TRIED).map(|(_, m)| (m, SearchEffort::EveryStart)).chain(offsets).collect()
     }
 
-    /// A sensor that is stated on the axis as far off it as the others, or on the skin.
-    fn places_of_others(&self, channel: &Channel) -> Vec<Slip> {
+    /// Places off the axis for a sensor that is stated on it: those of the other sensors, or the skin.
+    fn places_of_others(&self, channel: &Channel) -> Vec<Mistake> {
         let others_m = self.recording.channels.iter().map(|c| c.offset_m.abs());
         let mut all_m: Vec<f64> =
             others_m.chain([self.file.cask.height_m / 2.0]).filter(|m| *m > 0.0).collect();
         all_m.sort_by(f64::total_cmp);
         all_m.dedup_by(|a, b| (*a - *b).abs() < SAME_M);
-        let slip = |offset_m: f64| {
-            let right = format!("{} in place of 0", digits(offset_m, 4));
-            Slip { right: right.into(), ..slip("offset_m", vec![channel.name.clone()], "", [offset_m, 0.0]) }
+        let place = |offset_m: f64| {
+            let correction = format!("{} in place of 0", digits(offset_m, 4));
+            mistake("offset_m", vec![channel.name.clone()], correction, [offset_m, 0.0])
         };
-        all_m.into_iter().flat_map(|offset_m| [slip(offset_m), slip(-offset_m)]).collect()
+        all_m.into_iter().flat_map(|offset_m| [place(offset_m), place(-offset_m)]).collect()
     }
 
-    /// The slip with the number that an opening has, found where it was put right as `slip` has it.
-    fn opened(&self, slip: &Slip, opening: &Opening) -> Slip {
-        let factor = opening.explains / opening.stated;
-        let [from, by] = match slip.key {
-            "scale" | "cask.inertia_kg_m2" | "drop.impact_velocity_m_s" => [0.0, slip.by * factor],
-            // A longer second puts fewer samples into it.
-            "sample_rate_hz" => [0.0, slip.by / factor],
-            // v0 is that of the root of the height.
-            "drop.height_m" => [0.0, slip.by * factor * factor],
-            _ => [opening.explains, 0.0],
+    /// Sets a mistake to the number of an opened input, which was found with `mistake` corrected.
+    fn with_number(&self, mistake: &Mistake, input: &OpenedInput) -> Mistake {
+        let ratio = input.explains / input.stated;
+        let [offset, factor] = match mistake.key {
+            "scale" | "cask.inertia_kg_m2" | "drop.impact_velocity_m_s" => [0.0, mistake.factor * ratio],
+            // A longer second contains fewer samples.
+            "sample_rate_hz" => [0.0, mistake.factor / ratio],
+            // v0 is proportional to the root of the height.
+            "drop.height_m" => [0.0, mistake.factor * ratio * ratio],
+            _ => [input.explains, 0.0],
         };
-        let slip = Slip { from, by, ..slip.clone() };
+        let mistake = Mistake { offset, factor, ..mistake.clone() };
         let words = |[stated, explains]: [f64; 2]| {
             format!("{} in place of {}", digits(explains, 4), digits(stated, 4))
         };
-        let right = self.numbers(&slip).map_or_else(String::new, words).into();
-        Slip { right, ..slip }
+        let correction = self.numbers(&mistake).map_or_else(String::new, words).into();
+        Mistake { correction, ..mistake }
     }
 
-    /// The number that a slip's key states and the one that is right, in the key's unit; of a polarity or
-    /// scale the factor. `None` where it is no number, or one for each of several channels.
-    fn numbers(&self, slip: &Slip) -> Option<[f64; 2]> {
+    /// Returns the number that the key of a mistake states and the corrected one, in the key's unit; for a
+    /// polarity or scale the factor. `None` for anything else than one number.
+    fn numbers(&self, mistake: &Mistake) -> Option<[f64; 2]> {
         let CaskFile { cask, drop, .. } = self.file;
-        let channel = self.recording.channels.iter().find(|c| slip.names.first() == Some(&c.name));
-        let alone = channel.filter(|_| slip.names.len() == 1);
+        let channel = self.recording.channels.iter().find(|c| mistake.names.first() == Some(&c.name));
+        let alone = channel.filter(|_| mistake.names.len() == 1);
         let degree = 1_f64.to_degrees();
-        let (stated, unit) = match slip.key {
+        let (stated, unit) = match mistake.key {
             "drop.angle_deg" => (drop.angle_rad, degree),
             "drop.angular_velocity_deg_s" => (drop.angular_velocity_rad_s, degree),
             "drop.height_m" => (drop.height_m, 1.0),
@@ -260,19 +261,19 @@ impl Contradicted<'_> {
             "position_m" => (alone?.position_m, 1.0),
             "offset_m" => (alone?.offset_m, 1.0),
             "scale" => {
-                let spec = self.file.channels.iter().find(|spec| slip.names.first() == Some(&spec.name))?;
-                (spec.scale.unwrap_or(1.0), 1.0)
+                let is_own = |spec: &&ChannelSpec| mistake.names.first() == Some(&spec.name);
+                (self.file.channels.iter().find(is_own)?.scale.unwrap_or(1.0), 1.0)
             }
             "polarity" => (1.0, 1.0),
             _ => return None,
         };
-        Some([stated * unit, (slip.from + slip.by * stated) * unit])
+        Some([stated * unit, (mistake.offset + mistake.factor * stated) * unit])
     }
 }
 
-/// How late these channels answer the first impact beside the struck one, s: the median of those that a
+/// Median delay of these channels' answers to the first impact behind the struck one, s, of those that a
 /// finding names.
-fn late_s(analysis: &Analysis, names: &[String]) -> Option<f64> {
+fn median_delay_s(analysis: &Analysis, names: &[String]) -> Option<f64> {
     let delay_s = |f: &Finding| match f.what {
         FindingKind::Channel(
             ChannelFinding::AnswersEarly { delay_s, .. }
@@ -281,47 +282,47 @@ fn late_s(analysis: &Analysis, names: &[String]) -> Option<f64> {
         ) if f.channel.as_ref().is_some_and(|name| names.contains(name)) => Some(delay_s),
         _ => None,
     };
-    let mut late_s: Vec<f64> = analysis.result.quality.iter().filter_map(delay_s).collect();
-    (!late_s.is_empty()).then(|| robust::median(&mut late_s))
+    let mut delays_s: Vec<f64> = analysis.result.quality.iter().filter_map(delay_s).collect();
+    (!delays_s.is_empty()).then(|| robust::median(&mut delays_s))
 }
 
-/// Whether a finding says that a channel may sit elsewhere.
+/// True if a finding says that a channel may sit elsewhere.
 fn is_doubted_place(result: &DropResult, name: &str) -> bool {
     let doubts = |f: &Finding| f.effect == Effect::DoubtfulPlace && f.severity > Severity::Note;
     result.quality.iter().any(|f| doubts(f) && f.channel.as_deref() == Some(name))
 }
 
-fn less_doubted((a, _): &(Doubt, Cure), (b, _): &(Doubt, Cure)) -> Ordering {
+fn compare_remedies((a, _): &(Inconsistency, Remedy), (b, _): &(Inconsistency, Remedy)) -> Ordering {
     a.partial_cmp(b).unwrap_or(Ordering::Equal)
 }
 
-/// Those that do as well as the best, in their order.
-fn best(mut tried: Vec<(Doubt, Cure)>) -> Vec<Cure> {
-    tried.sort_by(less_doubted);
-    let clearly = |doubt: &Doubt| Doubt { chi_square: doubt.chi_square + DECISIVE_CHI_SQUARE, ..*doubt };
-    let least = tried.first().map(|(doubt, _)| clearly(doubt));
-    tried.retain(|(doubt, _)| least.is_some_and(|least| *doubt < least));
-    tried.into_iter().map(|(_, cure)| cure).collect()
+/// Keeps the remedies that are as good as the best, in order.
+fn keep_best(mut tried: Vec<(Inconsistency, Remedy)>) -> Vec<Remedy> {
+    tried.sort_by(compare_remedies);
+    let Some(&(least, _)) = tried.first() else { return Vec::new() };
+    let most = Inconsistency { chi_square: least.chi_square + DECISIVE_CHI_SQUARE, ..least };
+    tried.retain(|(inconsistency, _)| *inconsistency < most);
+    tried.into_iter().map(|(_, remedy)| remedy).collect()
 }
 
-/// Whether a drop can have the number that a slip is put right to.
-fn is_possible(slip: &Slip, file: &CaskFile) -> bool {
-    let (length_m, is_factor) = (file.cask.length_m, slip.by != 0.0);
-    match slip.key {
-        // Times that a recording has bear its rate out.
+/// True if a drop can have the number to which a mistake is corrected.
+fn is_possible(mistake: &Mistake, file: &CaskFile) -> bool {
+    let (length_m, is_factor) = (file.cask.length_m, mistake.factor != 0.0);
+    match mistake.key {
+        // A recorded time base confirms its rate.
         "sample_rate_hz" if file.channels.iter().any(|c| c.sample_rate_hz.is_none()) => false,
-        _ if is_factor => LIKELY_FACTOR.contains(&slip.by),
-        "position_m" | "cask.cog_m" => (0.0..=length_m).contains(&slip.from),
-        "offset_m" => slip.from.abs() <= file.cask.height_m,
-        "drop.angle_deg" => (0.0..FRAC_PI_2).contains(&slip.from),
-        "cask.length_m" | "cask.height_m" => slip.from > LEAST_M,
+        _ if is_factor => LIKELY_FACTOR.contains(&mistake.factor),
+        "position_m" | "cask.cog_m" => (0.0..=length_m).contains(&mistake.offset),
+        "offset_m" => mistake.offset.abs() <= file.cask.height_m,
+        "drop.angle_deg" => (0.0..FRAC_PI_2).contains(&mistake.offset),
+        "cask.length_m" | "cask.height_m" => mistake.offset > LEAST_M,
         _ => true,
     }
 }
 
-/// Whether all closes, at a k and with intervals that a sound drop has, and nothing is left that speaks of
-/// more than this slip.
-fn is_cured(analysis: &Analysis, [most_u95_k, most_u95_speed]: [f64; 2]) -> bool {
+/// True if everything is consistent, k and its intervals are those of a sound drop, and no finding remains
+/// that suggests another mistake.
+fn is_remedied(analysis: &Analysis, [most_u95_k, most_u95_speed]: [f64; 2]) -> bool {
     let result = &analysis.result;
     let (Some(k), Some(speed)) = (result.k, result.slap_down.speed) else { return false };
     let is_doubted = |f: &Finding| {
@@ -329,23 +330,23 @@ fn is_cured(analysis: &Analysis, [most_u95_k, most_u95_speed]: [f64; 2]) -> bool
     };
     let mut left = result.quality.iter().filter(|f| f.severity > Severity::Note);
     let is_usual = k.u95 < most_u95_k && speed.u95 < most_u95_speed * speed.value;
-    is_usual && LIKELY_K.contains(&k.value) && closes(analysis) && !left.any(is_doubted)
+    is_usual && LIKELY_K.contains(&k.value) && is_consistent(analysis) && !left.any(is_doubted)
 }
 
 fn is_left_out(finding: &Finding) -> bool {
     matches!(finding.what, FindingKind::Channel(ChannelFinding::LeftOut { .. }))
 }
 
-/// How severe the findings are that a mistake may explain: errors of which none takes a channel, or a warning
-/// on what the cask file says of the channels.
+/// Severity of the findings that a mistake may explain: errors that remove no channel, or a warning on the
+/// cask file's statements about channels.
 fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
-    // The end that a channel was left out of may lack one now.
+    // A channel was left out, and its end may have none now.
     if findings.iter().any(is_left_out) {
         return Some(Severity::Warning);
     }
-    // No slip gives back what a clipped or dead channel lost.
+    // No correction restores the samples of a clipped or dead channel.
     let is_lost = |f: &Finding| match f.what {
-        FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST * v0_m_s,
+        FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) => lost_m_s <= MOST_LOST_V0 * v0_m_s,
         _ => f.removes(ResultPart::Channel),
     };
     let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
@@ -356,134 +357,142 @@ fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     findings.iter().any(warns).then_some(Severity::Warning)
 }
 
-/// Whether warnings take the motion and no channel, as where ends on two clocks seem to ring as no cask does.
-fn is_motion_taken(findings: &[Finding]) -> bool {
+/// True if warnings remove the motion but no channel: ends on two clocks seem to ring as no cask does.
+fn warnings_remove_motion(findings: &[Finding]) -> bool {
     let warns = |part| findings.iter().any(move |f| f.severity > Severity::Note && f.removes(part));
     warns(ResultPart::Motion) && !warns(ResultPart::Channel)
 }
 
-/// What is usually confused, as far as it may be by what is stated.
-fn hypotheses(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
+/// Lists the usual mistakes that the statements do not exclude.
+fn usual_mistakes(recording: &Recording, file: &CaskFile) -> Vec<Vec<Mistake>> {
     let channels = &recording.channels;
     let across: Vec<&Channel> = channels.iter().filter(|c| c.axis == Axis::Transverse).collect();
     let names_of = |channels: &[&Channel]| channels.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
     let all_of = (across.len() > 1).then_some(&across[..]);
-    let reversed = |group: &[&Channel]| slip("polarity", names_of(group), "reversed", [0.0, -1.0]);
-    let mut all = of_numbers(recording, file);
+    let reversed = |group: &[&Channel]| mistake("polarity", names_of(group), "reversed", [0.0, -1.0]);
+    let mut all = number_mistakes(recording, file);
     for (i, one) in channels.iter().enumerate() {
-        // The two ends of the cask, or the two axes of an end.
+        // Channels of the two ends, or of the two axes of an end, may be exchanged.
         let may_be = |c: &&Channel| (c.axis == one.axis) != (c.end == one.end);
         for other in channels[i + 1..].iter().filter(may_be) {
-            let exchanged = slip("source", names_of(&[one, other]), "exchanged", [0.0, 1.0]);
+            let exchanged = mistake("source", names_of(&[one, other]), "exchanged", [0.0, 1.0]);
             let pairs: [&[&Channel]; 3] = [&[one], &[other], &[one, other]];
-            let with = |group: &&[&Channel]| vec![exchanged.clone(), reversed(group)];
-            all.extend(pairs.iter().filter(|_| one.axis == other.axis).map(with));
+            let analyze_corrected = |group: &&[&Channel]| vec![exchanged.clone(), reversed(group)];
+            all.extend(pairs.iter().filter(|_| one.axis == other.axis).map(analyze_corrected));
             all.push(vec![exchanged]);
         }
     }
     let along = channels.iter().filter(|c| c.axis == Axis::Axial);
     all.extend(along.map(|axial| vec![reversed(&[axial])]));
     for group in across.chunks(1).chain(all_of) {
-        // Message types imply m/s², which fewer samples are in than carry it.
+        // Message types imply m/s², which not all samples in them have.
         let may_be_implied = |c: &Channel| c.unit != "g" && recording.format == RecordingFormat::Mcap;
         let is_said = |c: &&Channel| c.is_unit_recorded && !may_be_implied(c);
-        let as_unit = |by, right| vec![slip("unit", names_of(group), right, [0.0, by])];
+        let as_unit = |factor, correction| vec![mistake("unit", names_of(group), correction, [0.0, factor])];
         let units = [("g", as_unit(G, "taken as g")), ("m/s^2", as_unit(1.0 / G, "taken as m/s²"))];
         let is_open = |unit| group.iter().all(|c| c.unit != unit) && !group.iter().any(is_said);
-        all.extend(units.into_iter().filter(|(unit, _)| is_open(*unit)).map(|(_, slips)| slips));
-        let right = "counted from the other end";
-        let from_end = slip("position_m", names_of(group), right, [file.cask.length_m, -1.0]);
+        all.extend(units.into_iter().filter(|(unit, _)| is_open(*unit)).map(|(_, mistakes)| mistakes));
+        let correction = "counted from the other end";
+        let from_end = mistake("position_m", names_of(group), correction, [file.cask.length_m, -1.0]);
         all.extend([vec![reversed(group)], vec![from_end]]);
     }
     all
 }
 
-/// Sensors on the skin, above or below, that are stated on the axis: the axial ones tell.
-fn of_skin(channels: &[Channel], section_m: f64) -> Vec<Slip> {
+/// Sensors on the upper or lower skin that are stated on the axis; the axial channels show it.
+fn skin_mistakes(channels: &[Channel], section_m: f64) -> Vec<Mistake> {
     let is_stated = channels.iter().any(|c| c.offset_m != 0.0);
     if is_stated || section_m <= 0.0 || channels.iter().all(|c| c.axis == Axis::Transverse) {
         return Vec::new();
     }
     let names: Vec<String> = channels.iter().map(|c| c.name.clone()).collect();
-    let on_skin = |right, offset_m| slip("offset_m", names.clone(), right, [offset_m, 0.0]);
+    let on_skin = |correction, offset_m| mistake("offset_m", names.clone(), correction, [offset_m, 0.0]);
     let half_m = section_m / 2.0;
     let above = on_skin("as half the section (upper skin)", half_m);
     vec![above, on_skin("as minus half the section (lower skin)", -half_m)]
 }
 
-fn slip(key: &'static str, names: Vec<String>, right: &'static str, [from, by]: [f64; 2]) -> Slip {
-    Slip { key, names, right: right.into(), from, by }
+/// States a mistake in a key.
+fn mistake<C: Into<Cow<'static, str>>>(
+    key: &'static str,
+    names: Vec<String>,
+    correction: C,
+    [offset, factor]: [f64; 2],
+) -> Mistake {
+    Mistake { key, names, correction: correction.into(), offset, factor }
 }
 
-/// An angle, heights, lengths and rates that may be in another unit, or counted otherwise.
-fn of_numbers(recording: &Recording, file: &CaskFile) -> Vec<Vec<Slip>> {
-    let angle = |right, change| vec![slip("drop.angle_deg", Vec::new(), right, change)];
+/// Lists the angle, heights, lengths and rates that may have another unit or origin.
+fn number_mistakes(recording: &Recording, file: &CaskFile) -> Vec<Vec<Mistake>> {
+    let angle = |correction, change| vec![mistake("drop.angle_deg", Vec::new(), correction, change)];
     let mut all = vec![angle("counted from the horizontal", [FRAC_PI_2, -1.0])];
     let degrees = 1_f64.to_degrees();
     all.extend((file.drop.angle_rad * degrees < FRAC_PI_2).then(|| angle("in rad", [0.0, degrees])));
     let names: Vec<String> = recording.channels.iter().map(|c| c.name.clone()).collect();
-    // Times that the file names, or that every message has, bear a rate out unless they contradict it.
+    // Times that the cask file names, or that every message has, confirm a rate unless they contradict it.
     let is_contradicted = |f: &Finding| f.code == IssueCode::Clock && f.severity == Severity::Warning;
     let mut named = file.channels.iter().map(|c| &c.time).chain([&file.time]);
     let is_timed = recording.format == RecordingFormat::Mcap || named.any(Option::is_some);
     let is_stated = file.channels.iter().all(|c| c.sample_rate_hz.is_some());
     if is_stated && (!is_timed || recording.issues.iter().any(is_contradicted)) {
-        let rate = |right, by| vec![slip("sample_rate_hz", names.clone(), right, [0.0, by])];
+        let rate = |words, factor| vec![mistake("sample_rate_hz", names.clone(), words, [0.0, factor])];
         all.extend([rate("halved", 0.5), rate("doubled", 2.0)]);
     }
-    for (right, by) in LENGTHS_M {
-        if !file.drop.impact_velocity_given && by * file.drop.height_m > LEAST_M {
-            all.push(vec![slip("drop.height_m", Vec::new(), right, [0.0, by])]);
+    for (correction, factor) in LENGTH_UNITS_M {
+        if !file.drop.impact_velocity_given && factor * file.drop.height_m > LEAST_M {
+            all.push(vec![mistake("drop.height_m", Vec::new(), correction, [0.0, factor])]);
         }
-        let length_m = by * file.cask.length_m;
-        // A place off the cask is refused: places beyond the shorter cask are in that unit too.
+        let length_m = factor * file.cask.length_m;
+        // A place off the cask is refused: if places lie beyond the shorter cask, they have the same unit.
         let is_off = recording.channels.iter().any(|c| c.position_m > length_m);
         let lengths = [("[cask]", Vec::new()), ("position_m", names.clone())];
         let off = lengths.into_iter().take(1 + usize::from(is_off));
-        let slips = off.map(|(key, names)| slip(key, names, right, [0.0, by])).collect();
-        all.extend((length_m > LEAST_M).then_some(slips));
+        let mistakes = off.map(|(key, names)| mistake(key, names, correction, [0.0, factor])).collect();
+        all.extend((length_m > LEAST_M).then_some(mistakes));
     }
     all
 }
 
-/// Puts a slip right.
-fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
-    let Slip { key, names, from, by, .. } = slip;
-    let mend = |x: &mut f64| *x = from + by * *x;
+/// Corrects a mistake.
+fn apply_correction(mistake: &Mistake, recording: &mut Recording, file: &mut CaskFile) {
+    let Mistake { key, names, offset, factor, .. } = mistake;
+    let correct = |x: &mut f64| *x = offset + factor * *x;
     let (cask, drop, channels) = (&mut file.cask, &mut file.drop, &mut recording.channels);
     let own = channels.iter_mut().filter(|c| names.contains(&c.name));
     match *key {
-        "drop.angle_deg" => mend(&mut drop.angle_rad),
+        "drop.angle_deg" => correct(&mut drop.angle_rad),
         "drop.height_m" => {
-            drop.height_m *= by;
-            drop.impact_velocity_m_s *= by.sqrt();
+            drop.height_m *= factor;
+            drop.impact_velocity_m_s *= factor.sqrt();
         }
         "[cask]" => {
-            [&mut cask.length_m, &mut cask.height_m, &mut cask.cog_m].into_iter().for_each(mend);
+            [&mut cask.length_m, &mut cask.height_m, &mut cask.cog_m].into_iter().for_each(correct);
             let is_default = file.defaults.iter().any(|key| key == "cask.inertia_kg_m2");
-            cask.inertia_kg_m2 *= if is_default { by * by } else { 1.0 };
+            cask.inertia_kg_m2 *= if is_default { factor * factor } else { 1.0 };
         }
         "source" => exchange(own),
-        "cask.length_m" => mend(&mut cask.length_m),
-        "cask.height_m" => mend(&mut cask.height_m),
-        "cask.cog_m" => mend(&mut cask.cog_m),
-        "cask.inertia_kg_m2" => mend(&mut cask.inertia_kg_m2),
-        "drop.impact_velocity_m_s" => mend(&mut drop.impact_velocity_m_s),
-        "drop.angular_velocity_deg_s" => *drop = drop.add_rotation(cask, from - drop.angular_velocity_rad_s),
-        "offset_m" => own.for_each(|c| mend(&mut c.offset_m)),
-        "position_m" => own.for_each(|c| mend(&mut c.position_m)),
-        "scale" => own.for_each(|c| mend(&mut c.scale_m_s2)),
-        "sample_rate_hz" => own.for_each(|c| mend(&mut c.sample_rate_hz)),
-        "time" => own.for_each(|c| mend(&mut c.start_s)),
-        // The limit that a sensor has is stated in the right unit or in the wrong one: the larger counts.
+        "cask.length_m" => correct(&mut cask.length_m),
+        "cask.height_m" => correct(&mut cask.height_m),
+        "cask.cog_m" => correct(&mut cask.cog_m),
+        "cask.inertia_kg_m2" => correct(&mut cask.inertia_kg_m2),
+        "drop.impact_velocity_m_s" => correct(&mut drop.impact_velocity_m_s),
+        "drop.angular_velocity_deg_s" => {
+            *drop = drop.add_rotation(cask, offset - drop.angular_velocity_rad_s)
+        }
+        "offset_m" => own.for_each(|c| correct(&mut c.offset_m)),
+        "position_m" => own.for_each(|c| correct(&mut c.position_m)),
+        "scale" => own.for_each(|c| correct(&mut c.scale_m_s2)),
+        "sample_rate_hz" => own.for_each(|c| correct(&mut c.sample_rate_hz)),
+        "time" => own.for_each(|c| correct(&mut c.start_s)),
+        // The sensor's limit may be stated in the right or in the wrong unit: the larger value counts.
         _ => own.for_each(|c| {
-            mend(&mut c.scale_m_s2);
-            c.full_scale = c.full_scale.map(|full_scale| full_scale / by.abs().min(1.0));
+            correct(&mut c.scale_m_s2);
+            c.full_scale = c.full_scale.map(|full_scale| full_scale / factor.abs().min(1.0));
         }),
     }
 }
 
-/// The velocity steps of a flight, as samples, and its events.
+/// Velocity steps of a flight as samples, with the flight and its events.
 #[derive(Clone)]
 struct StepSamples {
     recording: Recording,
@@ -491,11 +500,12 @@ struct StepSamples {
     events: Events,
 }
 
-/// The velocity steps of the flight, as a recording of two samples a channel, the step and its standard
-/// uncertainty: what a slip put right makes of them is told without a whole analysis.
+/// Stores the velocity steps of the flight as a recording of two samples per channel, the step and its
+/// standard uncertainty: a correction changes them without a new analysis.
 ///
-/// One body has them in any stretch of time that all channels share; what the fit leaves counts as uncertain.
-fn of_steps(recording: &Recording, result: &DropResult) -> Option<StepSamples> {
+/// A rigid body has such steps in any interval that all channels share; the residual of the fit counts as
+/// uncertainty.
+fn step_samples(recording: &Recording, result: &DropResult) -> Option<StepSamples> {
     let (flight, events) = (result.flight.clone()?, result.events);
     let mut steps = recording.clone();
     for channel in &mut steps.channels {
@@ -506,12 +516,12 @@ fn of_steps(recording: &Recording, result: &DropResult) -> Option<StepSamples> {
     Some(StepSamples { recording: steps, flight, events })
 }
 
-/// Whether these steps may be those of one rigid body with these slips put right.
-fn is_rigid(slips: &[Slip], of_steps: &StepSamples, file: &CaskFile) -> bool {
-    let StepSamples { recording: mut steps, mut flight, events } = of_steps.clone();
+/// True if these steps, with the mistakes corrected, may be those of one rigid body.
+fn is_rigid(mistakes: &[Mistake], step_samples: &StepSamples, file: &CaskFile) -> bool {
+    let StepSamples { recording: mut steps, mut flight, events } = step_samples.clone();
     let mut stated = file.clone();
-    for slip in slips {
-        put_right(slip, &mut steps, &mut stated);
+    for mistake in mistakes {
+        apply_correction(mistake, &mut steps, &mut stated);
     }
     for channel in &steps.channels {
         let own = flight.plateaus.iter_mut().find(|p| p.channel == channel.name);
@@ -525,10 +535,10 @@ fn is_rigid(slips: &[Slip], of_steps: &StepSamples, file: &CaskFile) -> bool {
     judge::judge_rigid(places, &flight, &stated.tolerances, &stated.drop, &events).is_none()
 }
 
-/// The samples of two channels change places, and what the cask file says of each channel stays, its polarity
+/// Exchanges the samples of two channels; the cask file's statements on each channel remain, its polarity
 /// too.
-fn exchange<'a>(mut both: impl Iterator<Item = &'a mut Channel>) {
-    let (Some(one), Some(other)) = (both.next(), both.next()) else { return };
+fn exchange<'a>(mut channels: impl Iterator<Item = &'a mut Channel>) {
+    let (Some(one), Some(other)) = (channels.next(), channels.next()) else { return };
     std::mem::swap(one, other);
     std::mem::swap(&mut one.name, &mut other.name);
     std::mem::swap(&mut one.end, &mut other.end);

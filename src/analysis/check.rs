@@ -1,4 +1,4 @@
-//! A recording at rest before the drop and the cask file to whether the set-up is ready.
+//! Checks with a recording at rest before the drop, and the cask file, if the set-up is ready.
 
 use super::plan;
 use super::rest::rate_weight;
@@ -12,16 +12,16 @@ use crate::ingest::{IngestError, error};
 use crate::{condition, events, judge};
 use std::cmp::Reverse;
 
-/// A shorter recording does not tell the rest, s.
+/// Shortest recording that shows the cask at rest, s.
 const LEAST_S: f64 = 0.99;
-/// The quiet ends so long before the first blow, s.
+/// The quiet part ends this long before the first blow, s.
 const BEFORE_BLOW_S: f64 = 0.02;
 
-/// Holds a recording at rest against the cask file; with `has_blows` one on each end too, the first end
+/// Compares a recording at rest with the cask file; if `has_blows`, also one blow on each end, the first end
 /// first.
 ///
 /// # Errors
-/// [`IngestError`] where a channel is too short to tell.
+/// [`IngestError`] if a channel is too short.
 pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check, IngestError> {
     for channel in &rest.channels {
         let length_s = channel.time_s(channel.samples.len()) - channel.start_s;
@@ -32,40 +32,40 @@ pub fn check(rest: &Recording, file: &CaskFile, has_blows: bool) -> Result<Check
         }
     }
     let across = rest.channels.iter().filter(|channel| has_blows && channel.axis == Axis::Transverse);
-    let felt: Vec<_> = across.map(|channel| (channel, events::tap_answers(channel))).collect();
-    let first_blow_s = felt.iter().flat_map(|(_, blows)| blows).map(|blow| blow.at_s - BEFORE_BLOW_S);
+    let blows: Vec<_> = across.map(|channel| (channel, events::tap_answers(channel))).collect();
+    let first_blow_s = blows.iter().flat_map(|(_, answers)| answers).map(|blow| blow.at_s - BEFORE_BLOW_S);
     let quiet_to_s = first_blow_s.fold(rest.end_s(), f64::min);
-    let (signals, mut found) = quiet(rest, file, quiet_to_s);
-    // What a copy reads is not its own.
-    found.extend(judge::judge_copies(&rest.channels));
+    let (signals, mut findings) = condition_quiet(rest, file, quiet_to_s);
+    // A copy does not show its own sensor.
+    findings.extend(judge::judge_copies(&rest.channels));
     let level = |channel| Some((channel, events::at_rest(channel, file.drop.gravity_m_s2)?));
     let levels: Vec<(&Channel, AtRest)> = rest.channels.iter().filter_map(level).collect();
-    found.extend(judge::judge_levels(&levels, &file.drop));
-    found.extend(rest.others.channels.iter().filter_map(|channel| {
+    findings.extend(judge::judge_levels(&levels, &file.drop));
+    findings.extend(rest.others.channels.iter().filter_map(|channel| {
         let level = events::at_rest(channel, rate_weight(channel, file)?)?;
         Some(judge::judge_rate_level(channel, level, rate_unit_rad_s(&channel.unit)?))
     }));
-    found.extend(of_drop(rest, file, &signals));
-    found.extend(judge::judge_places(&signals, file));
-    found.extend(rest.issues.iter().cloned());
+    findings.extend(judge_against_drop(rest, file, &signals));
+    findings.extend(judge::judge_places(&signals, file));
+    findings.extend(rest.issues.iter().cloned());
     if has_blows {
         // A blow from below need not reach an axial channel.
-        let across = felt.iter().map(|(channel, _)| *channel);
-        found.extend(judge::judge_silent(&across.collect::<Vec<_>>()));
-        found.extend(judge::judge_taps(&felt));
+        let across = blows.iter().map(|(channel, _)| *channel);
+        findings.extend(judge::judge_silent(&across.collect::<Vec<_>>()));
+        findings.extend(judge::judge_taps(&blows));
     }
-    Ok(gathered(&file.drop, &signals, &levels, found))
+    Ok(gather_findings(&file.drop, &signals, &levels, findings))
 }
 
-/// The quiet before a time as an analysis would have the free fall, and what it would say of it; hum is
-/// judged as if it were left in.
-fn quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Finding>) {
+/// Conditions the quiet part before a time as an analysis would condition the free fall; hum is judged as if
+/// it remained.
+fn condition_quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Finding>) {
     let mut as_dc = rest.clone();
-    // A droop put back grows through a rest that knows no beginning.
+    // A restored droop would grow through a recording whose beginning is unknown.
     for channel in &mut as_dc.channels {
         channel.coupling = Coupling::Dc;
     }
-    let reach = condition::Reach { after_s: 0.0, ..condition::Reach::of(&file.cask, &file.drop) };
+    let reach = condition::Reach { after_s: 0.0, ..condition::Reach::for_drop(&file.cask, &file.drop) };
     let event = CoarseEvent { near_s: to_s, spread_s: 0.0, velocity_step_m_s: file.drop.impact_velocity_m_s };
     let corrections = Corrections { offset: true, hum: false, ..file.corrections };
     let (signals, mut found) = condition::condition(&as_dc, &event, &reach, corrections);
@@ -75,8 +75,8 @@ fn quiet(rest: &Recording, file: &CaskFile, to_s: f64) -> (Vec<Signal>, Vec<Find
     (signals, found)
 }
 
-/// Noise, range, rate and record against the drop that is predicted.
-fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding> {
+/// Compares noise, range, rate and length of the record with the predicted drop.
+fn judge_against_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding> {
     let needs = plan::needs(file);
     let mut found = Vec::new();
     for (channel, signal) in rest.channels.iter().zip(signals) {
@@ -84,15 +84,15 @@ fn of_drop(rest: &Recording, file: &CaskFile, signals: &[Signal]) -> Vec<Finding
         let (first_contact, slap_down) = (Some(At::exact(end_s)), Some(At::exact(end_s + needs.flight_s)));
         let events = Events { first_contact, slap_down, ..Events::default() };
         found.extend(judge::judge_noise(signal, &events, None, file.drop.impact_velocity_m_s));
-        let own = needs.channels.iter().find(|needs| needs.name == channel.name);
-        found.extend(own.into_iter().flat_map(|own| judge::judge_chain(channel, signal, &own.peaks)));
+        let channel_needs = needs.channels.iter().find(|needs| needs.name == channel.name);
+        found.extend(channel_needs.into_iter().flat_map(|n| judge::judge_chain(channel, signal, &n.peaks)));
     }
     found.extend(judge::judge_record(rest.before_trigger_s, rest.end_s(), needs.after_s));
     found
 }
 
-/// The findings by their channels, and whether any of them speaks against the drop.
-fn gathered(
+/// Sorts the findings by channel, and decides if any of them contradicts the drop.
+fn gather_findings(
     drop: &Drop,
     signals: &[Signal],
     levels: &[(&Channel, AtRest)],
@@ -112,7 +112,7 @@ fn gathered(
             expected_g: is_dc.then(|| drop.weight_m_s2(channel.axis) / G),
             noise_g: signal.noise_m_s2 / G,
             findings,
-            open: judge::open_causes(channel, *level, drop),
+            open: judge::hidden_causes(channel, *level, drop),
         }
     };
     let channels = levels.iter().zip(signals).map(channel).collect();

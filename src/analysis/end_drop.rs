@@ -1,5 +1,5 @@
-//! A first impact on an end face to what the axial channels show of it: rebound and k of the cask along its
-//! axis.
+//! Determines rebound and k of a cask that strikes with its end face, along its axis, from the axial
+//! channels.
 
 use super::impact::Impact;
 use crate::data::planar::first_arm_m;
@@ -12,13 +12,13 @@ use crate::numerics::quadrature::running_integral;
 use crate::numerics::{as_f64, robust};
 use crate::{events, judge};
 
-/// The velocity after the contact is its mean over so long, s, or over as long as the contact: five periods
-/// of the first axial mode of a cask of 5 m.
+/// Time over which the velocity after the contact is averaged, s, or as long as the contact if that is
+/// longer: five periods of the first axial mode of a cask of 5 m.
 const FLIGHT_S: f64 = 0.01;
-/// The integral begins so long before first contact, s: what it holds of the free fall is noise.
+/// Start of the integral before first contact, s: the free fall in it adds only noise.
 const CLEAR_S: f64 = 1e-3;
-/// From this share of the contact behind its end on nothing of it is left.
-const BEHIND: f64 = 0.25;
+/// Share of the contact's length after which its force has faded.
+const FADING_SHARE: f64 = 0.25;
 
 /// Impact and rebound of the cask along its axis.
 pub(super) struct EndImpact {
@@ -26,7 +26,8 @@ pub(super) struct EndImpact {
     pub k: Estimate,
 }
 
-/// The events, and what the axial channels show of the impact; what prevents it goes to the findings.
+/// Returns the events and the impact as the axial channels show it; adds findings on anything that prevents
+/// it.
 pub(super) fn end_impact(
     impact: &Impact,
     file: &CaskFile,
@@ -34,45 +35,45 @@ pub(super) fn end_impact(
 ) -> (Events, Option<EndImpact>) {
     let axial = || impact.signals.iter().filter(|signal| signal.axis == Axis::Axial);
     let nearest = axial().min_by(|a, b| a.position_m.total_cmp(&b.position_m));
-    let separation = nearest.and_then(|signal| separation(signal, impact.contact.time_s));
+    let separation = nearest.and_then(|signal| find_separation(signal, impact.contact.time_s));
     let events = Events { separation, ..impact.events() };
-    let after_s = impact.sought_to_s - separation.map_or(impact.contact.time_s, |at| at.time_s);
+    let after_s = impact.search_end_s - separation.map_or(impact.contact.time_s, |at| at.time_s);
     findings.push(judge::judge_no_slap_down(&file.cask, &file.drop, after_s, impact.is_record_end));
     findings.extend(nearest.is_none().then(|| DropFinding::NoAxial.into()));
-    let found = rebound(impact, file, &events);
-    if let Some(refused) = found.as_ref().filter(|found| !judge::is_restitution(found.k)) {
-        findings.push(DropFinding::Restitution { k: refused.k }.into());
+    let rebound = find_rebound(impact, file, &events);
+    if let Some(wrong) = rebound.as_ref().filter(|rebound| !judge::is_restitution(rebound.k)) {
+        findings.push(DropFinding::Restitution { k: wrong.k }.into());
         return (events, None);
     }
-    (events, found)
+    (events, rebound)
 }
 
-/// When the end leaves the target on an axial channel.
-fn separation(signal: &Signal, contact_s: f64) -> Option<At> {
+/// Time at which the end leaves the target, from an axial channel.
+fn find_separation(signal: &Signal, contact_s: f64) -> Option<At> {
     let left_s = events::first_separation(signal, contact_s, signal.end_s())?;
     let by_force = At { time_s: left_s, u_s: 1.0 / signal.sample_rate_hz };
-    let flight_s = left_s + BEHIND * (left_s - contact_s)..signal.end_s();
+    let flight_s = left_s + FADING_SHARE * (left_s - contact_s)..signal.end_s();
     Some(events::refine_end(signal, contact_s, by_force, &flight_s))
 }
 
-/// By the mean of the axial channels that show the impact whole   (57)
-fn rebound(impact: &Impact, file: &CaskFile, events: &Events) -> Option<EndImpact> {
+/// Averages the axial channels that show the impact completely   (57)
+fn find_rebound(impact: &Impact, file: &CaskFile, events: &Events) -> Option<EndImpact> {
     let (contact, left) = events.first_contact.zip(events.separation)?;
     let axial = impact.signals.iter().filter(|signal| signal.axis == Axis::Axial);
     let gain = |signal: &Signal| gain(signal, events, file);
     let gains: Vec<Estimate> = axial.clone().filter_map(gain).collect();
     let values: Vec<f64> = gains.iter().map(|gain| gain.value).collect();
     let count = as_f64(gains.len());
-    let (mean_m_s, apart_m_s) = robust::mean_and_rms(&values);
-    // Calibrations may share an error: no mean makes it smaller.
+    let (mean_m_s, spread_m_s) = robust::mean_and_rms(&values);
+    // Calibrations may have an error in common, which no mean reduces.
     let u95_own_m_s = gains.iter().map(|gain| gain.u95).sum::<f64>() / count;
-    let u95_apart_m_s = COVERAGE * apart_m_s / (count - 1.0).max(1.0).sqrt();
-    // So much otherwise than the axis the struck corner may move, or a sensor off the axis.
+    let u95_spread_m_s = COVERAGE * spread_m_s / (count - 1.0).max(1.0).sqrt();
+    // The struck corner, or a sensor off the axis, may move differently from the axis by this much.
     let corner_m = first_arm_m(file.cask.cog_m, file.cask.height_m, file.drop.angle_rad);
     let arm_m = axial.map(|signal| signal.offset_m.abs()).fold(corner_m.abs(), f64::max);
-    let turned_m_s = turned_rad_s(&impact.signals, gain).unwrap_or(0.0) * arm_m;
-    let u95_turned_m_s = COVERAGE * turned_m_s.abs() / 3.0_f64.sqrt();
-    let u95_m_s = u95_own_m_s.hypot(u95_apart_m_s).hypot(u95_turned_m_s);
+    let rotation_m_s = rotation_rad_s(&impact.signals, gain).unwrap_or(0.0) * arm_m;
+    let u95_rotation_m_s = COVERAGE * rotation_m_s.abs() / 3.0_f64.sqrt();
+    let u95_m_s = u95_own_m_s.hypot(u95_spread_m_s).hypot(u95_rotation_m_s);
     let Drop { impact_velocity_m_s: v0_m_s, gravity_m_s2, angle_rad, .. } = file.drop;
     let (lasts_s, v0_u95_m_s) = (left.time_s - contact.time_s, file.tolerances.impact_velocity * v0_m_s);
     let gained_m_s = mean_m_s / angle_rad.sin() - gravity_m_s2 * lasts_s;
@@ -87,15 +88,16 @@ fn rebound(impact: &Impact, file: &CaskFile, events: &Events) -> Option<EndImpac
     (!gains.is_empty()).then(|| EndImpact { first, k: Estimate::new(share - 1.0, k_u95, "1") })
 }
 
-/// What a channel gains from first contact to the flight, m/s; `None` where samples are clipped or lost.
+/// Velocity that a channel gains from first contact to the flight, m/s; `None` if samples are clipped or
+/// missing.
 fn gain(signal: &Signal, events: &Events, file: &CaskFile) -> Option<Estimate> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let from_s = contact_s - CLEAR_S;
     let until_s = left_s + FLIGHT_S.max(left_s - contact_s);
-    let is_cut = [&signal.clipped, &signal.gaps].iter().any(|spans| signal.overlaps(spans, from_s, until_s));
+    let is_lost = [&signal.clipped, &signal.gaps].iter().any(|spans| signal.overlaps(spans, from_s, until_s));
     let [from, left, to] = [from_s, left_s, until_s].map(|time_s| signal.index_from(time_s));
     let velocity_m_s = running_integral(signal.force_m_s2.get(from..to)?, 1.0 / signal.sample_rate_hz);
-    let after_m_s = velocity_m_s.get(left.checked_sub(from)?..).filter(|after| !is_cut && after.len() > 1)?;
+    let after_m_s = velocity_m_s.get(left.checked_sub(from)?..).filter(|m_s| !is_lost && m_s.len() > 1)?;
     let (value_m_s, u_ringing_m_s) = robust::mean_and_u(after_m_s);
     let length_s = f64::midpoint(left_s, until_s) - from_s;
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
@@ -106,8 +108,8 @@ fn gain(signal: &Signal, events: &Events, file: &CaskFile) -> Option<Estimate> {
     Some(Estimate::new(value_m_s, COVERAGE * u_m_s, "m/s"))
 }
 
-/// How fast the cask turns as the transverse channels of both ends show it, rad/s; `None` without these.
-fn turned_rad_s(signals: &[Signal], gain: impl Fn(&Signal) -> Option<Estimate>) -> Option<f64> {
+/// Angular velocity of the cask from the transverse channels of both ends, rad/s; `None` without these.
+fn rotation_rad_s(signals: &[Signal], gain: impl Fn(&Signal) -> Option<Estimate>) -> Option<f64> {
     let (first, second) = transverse(signals, End::First).zip(transverse(signals, End::Second))?;
     Some((gain(first)?.value - gain(second)?.value) / (second.position_m - first.position_m))
 }

@@ -1,5 +1,5 @@
-//! A channel of which no cask file says anything to its extremes, level and noise, and to what in it looks
-//! like a fall and an impact.
+//! Describes a channel without a cask file: its extremes, level and noise, and what looks like a fall and an
+//! impact.
 
 use crate::data::{Channel, ChannelLook, Drop, Extreme, ListedChannel, is_number};
 use crate::events;
@@ -7,21 +7,22 @@ use crate::ingest::{self, Limits, Progress, RecordingFile};
 use crate::numerics::{as_f64, reduce, robust};
 use std::ops::Range;
 
-/// Level and noise are those of this share of the record at most, and of so many seconds.
+/// Level and noise are determined from at most this share of the record, and this many seconds.
 const FIRST_SHARE: f64 = 0.05;
 const FIRST_S: f64 = 0.25;
 
-/// What changes the velocity by less within 25 ms does not look like an impact, m/s: a fall from 5 cm.
+/// Smallest change of velocity within 25 ms that looks like an impact, m/s: a fall from 5 cm.
 const LEAST_STEP_M_S: f64 = 1.0;
 
-/// An impact begins where this share of its peak is reached.
-const FOOT: f64 = 0.1;
+/// An impact begins at this share of its peak.
+const ONSET_SHARE: f64 = 0.1;
 
-/// A fall is sought that the drop of IAEA regulations makes, m: three times as long, and down to a tenth.
+/// Drop height that the search for a fall expects, m, as in the IAEA regulations: falls of up to three times
+/// and down to a tenth of its time are found.
 const USUAL_HEIGHT_M: f64 = 9.0;
 
-/// Hands over these sources of a recording one after the other, by their places among them, each looked at;
-/// or why one cannot be read.
+/// Looks at these sources of a recording one after the other, and hands over each with its index, or the
+/// reason why it cannot be read.
 pub fn look_at_each<'a>(
     recording: impl Into<RecordingFile<'a>>,
     listed: &[&ListedChannel],
@@ -30,25 +31,25 @@ pub fn look_at_each<'a>(
     mut take: impl FnMut(usize, Result<(Channel, ChannelLook), String>),
 ) {
     ingest::read_listed(recording, listed, limits, progress, |number, read| {
-        let looked = read.map(|mut channel| {
+        let look = read.map(|mut channel| {
             let look = first_look(&mut channel);
             (channel, look)
         });
-        take(number, looked.map_err(|refused| refused.to_string()));
+        take(number, look.map_err(|error| error.to_string()));
     });
 }
 
-/// Looks at every sample; the channel is as before when it returns.
+/// Looks at every sample; leaves the channel unchanged.
 fn first_look(channel: &mut Channel) -> ChannelLook {
-    let impact_s = impact_s(channel).filter(|_| channel.scale_m_s2.is_finite());
-    let fall_s = impact_s.and_then(|impact_s| fall_s(channel, impact_s));
+    let impact_s = find_impact_s(channel).filter(|_| channel.scale_m_s2.is_finite());
+    let fall_s = impact_s.and_then(|impact_s| find_fall_s(channel, impact_s));
     let (level, noise) = first_level(channel, impact_s);
     let none = Extreme { value: f64::NAN, time_s: channel.start_s };
     let [smallest, largest] = channel.extremes().unwrap_or([none; 2]);
     ChannelLook { smallest, largest, level, noise, fall_s, impact_s }
 }
 
-/// Median and spread of the first samples, all of them before the impact.
+/// Median and spread of the first samples, all before the impact.
 fn first_level(channel: &Channel, impact_s: Option<f64>) -> (f64, f64) {
     let duration_s = as_f64(channel.samples.len()) / channel.sample_rate_hz;
     let first = channel.index_at(channel.start_s + (FIRST_SHARE * duration_s).min(FIRST_S));
@@ -57,9 +58,9 @@ fn first_level(channel: &Channel, impact_s: Option<f64>) -> (f64, f64) {
     robust::centre_and_spread(&first.filter(|sample| is_number(*sample)).collect::<Vec<_>>())
 }
 
-/// When the first large change of velocity begins, s.
-pub(super) fn impact_s(channel: &Channel) -> Option<f64> {
-    // A share of the largest change, however small one an impact would make.
+/// Time at which the first large change of velocity begins, s.
+pub(super) fn find_impact_s(channel: &Channel) -> Option<f64> {
+    // The limit is a share of the largest change, however small.
     let event =
         events::Changes::along_axis(std::slice::from_ref(channel), channel.axis).locate(f64::INFINITY)?;
     let [from, near, to] = [-1.0, 0.0, 2.0].map(|n| channel.index_at(event.near_s + n * event.spread_s));
@@ -67,21 +68,21 @@ pub(super) fn impact_s(channel: &Channel) -> Option<f64> {
     let before = force_m_s2[..near - from].iter().copied().filter(|f| f.is_finite());
     let level_m_s2 = Some(robust::median(&mut before.collect::<Vec<_>>())).filter(|level| level.is_finite());
     let off_m_s2: Vec<f64> = force_m_s2.iter().map(|f| (f - level_m_s2.unwrap_or_default()).abs()).collect();
-    let least_m_s2 = FOOT * reduce::peak(&off_m_s2);
+    let least_m_s2 = ONSET_SHARE * reduce::peak(&off_m_s2);
     let begins = off_m_s2.iter().position(|off| *off >= least_m_s2)?;
     (event.velocity_step_m_s.abs() >= LEAST_STEP_M_S).then(|| channel.time_s(from + begins))
 }
 
-/// A fall with rest before it, whichever way the sensor is mounted, s.
-fn fall_s(channel: &mut Channel, impact_s: f64) -> Option<Range<f64>> {
+/// Finds a fall with rest before it, for either direction of the sensor, s.
+fn find_fall_s(channel: &mut Channel, impact_s: f64) -> Option<Range<f64>> {
     let usual = Drop::from_height(USUAL_HEIGHT_M, 0.0);
-    let mut turned = || {
+    let mut try_and_turn = || {
         let fall = events::free_fall(channel, &usual, impact_s);
         channel.scale_m_s2 = -channel.scale_m_s2;
         fall
     };
-    let both_ways = [turned(), turned()];
-    both_ways.into_iter().flatten().next().map(|fall| fall.release_s..fall.end_s)
+    let falls = [try_and_turn(), try_and_turn()];
+    falls.into_iter().flatten().next().map(|fall| fall.release_s..fall.end_s)
 }
 
 #[cfg(test)]

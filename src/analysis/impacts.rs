@@ -1,4 +1,4 @@
-//! The motion over both contacts to what test reports tabulate of them, each number with its interval.
+//! Tabulates the numbers of both impacts for test reports, each with its interval.
 
 use super::flight_search;
 use super::second_impact::{Course, SecondImpact};
@@ -11,44 +11,44 @@ use crate::fit::{COVERAGE, Inputs, SelectedMethod};
 use crate::motion::{self, ContactCourse, FirstTouch, ForceCourse, Integrated, largest};
 use std::f64::consts::TAU;
 
-/// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses
-/// make of them, and of themselves for ringing as large as the velocity gained. With it the intervals of 200
-/// simulated drops hold what docs/uncertainty.md says.
-const OTHER_COURSES: [(ForceCourse, f64); 2] =
+/// Standard uncertainty of the numbers that depend on the course of the force: these shares of their changes
+/// with other courses, and of themselves for ringing as large as the velocity gained. The intervals of 200
+/// simulated drops then hold what docs/uncertainty.md states.
+const U_OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
-const RINGING_SHARE: f64 = 0.07;
-/// Standard uncertainty of the crush from the corner that bends with the cask, as a share of how far it
-/// swings behind the contact, and at most as a share of itself: so the crush of both ends is held in nine of
-/// ten simulated drops of elastic bodies, and without it in four of five.
-const BENDS_SHARE: f64 = 0.7;
-const MOST_BENDS: f64 = 0.1;
-/// The force that stops R bends the cask while it lasts, by about the deceleration of R over the square of
-/// its first angular frequency: standard uncertainty of the second crush as a share of this. The rotation's
-/// course exceeds the crush of 94 drawn elastic bodies by 0.2 to 0.6 of it in the mean.
-const STANDS_BENT: f64 = 0.4;
+const U_RINGING_SHARE: f64 = 0.07;
+/// Standard uncertainty of the crush from the corner that bends with the cask, as a share of its swing after
+/// the contact, and its limit as a share of the crush: the crush of both ends is then held in nine of ten
+/// simulated drops of elastic bodies, and without it in four of five.
+const U_BENDING_SHARE: f64 = 0.7;
+const MOST_U_BENDING: f64 = 0.1;
+/// Standard uncertainty of the second crush from the bending of the cask under the force that stops R, as a
+/// share of the deceleration of R over the square of the first angular frequency: the crush of 94 drawn elastic
+/// bodies exceeds the true one by 0.2 to 0.6 of it in the mean.
+const U_BENT_SHARE: f64 = 0.4;
 
-/// No end is thrown back faster than it came, nor drawn in.
+/// Possible range of the restitution: no end rebounds faster than it struck, nor is drawn in.
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
-/// A corner that stands still as recorded sinks at most so fast with the inputs that the fit takes: 4 % of its
-/// energy is left.
-const STANDING_RANGE: std::ops::RangeInclusive<f64> = -0.2..=1.1;
-/// Points of the curve of force over crush.
+/// The same range for a corner that stands still as recorded: with the inputs that the fit takes it may still
+/// sink with 4 % of its energy.
+const STANDSTILL_RANGE: std::ops::RangeInclusive<f64> = -0.2..=1.1;
+/// Number of points of the curve of force over crush.
 const CURVE_POINTS: usize = 40;
 
-/// What is tabulated of the motion.
-pub(super) struct Tabulated {
-    /// First, second where it is told; times and channels not yet.
+/// Tables of both impacts, as far as the motion determines them.
+pub(super) struct ImpactTables {
+    /// First impact, and second if it is determined; times and channels are added later.
     tables: [Option<ImpactTable>; 2],
-    /// When R leaves, s.
+    /// Time at which R leaves, s.
     left_s: Option<f64>,
-    /// What the first contact begins with, where it may be two touches.
+    /// First touch of the first contact, if that may be two touches.
     touch: Option<FirstTouch>,
 }
 
-impl Tabulated {
-    /// Without what follows the course of the force: with the channels of one end alone, nothing tells how
-    /// the cask bends while the contact lasts. Of the fixture ANF-18 without its A2 the crush would be off by
-    /// 1.5 half-widths.
+impl ImpactTables {
+    /// Removes the numbers that depend on the course of the force: with the channels of one end alone,
+    /// nothing shows how the cask bends while the contact lasts. In the fixture ANF-18 without its A2 the
+    /// crush would be off by 1.5 half-widths.
     pub fn without_course(mut self) -> Self {
         for table in self.tables.iter_mut().flatten() {
             let deceleration = &mut table.rigid_body_deceleration;
@@ -63,19 +63,20 @@ impl Tabulated {
         self
     }
 
-    /// True if the second impact is stated, in all or up to its greatest crush.
+    /// True if the second impact is determined, as a whole or up to its greatest crush.
     pub fn has_second(&self) -> bool {
         self.tables[1].is_some()
     }
 
-    /// The finding where the force of the first contact falls between two maxima as if L touched twice.
-    pub fn two_maxima(&self) -> Option<Finding> {
+    /// Reports a force of the first contact that falls between two maxima as if L touched twice.
+    pub fn judge_two_maxima(&self) -> Option<Finding> {
         let FirstTouch { dip, k, .. } = *self.touch.as_ref()?;
         Some(DropFinding::TwoMaxima { dip, k }.into())
     }
 
-    /// Lets the intervals of what the contact's end defines reach back to the end of its first touch.
-    pub fn doubt_end(&self, quantities: &mut Quantities) {
+    /// Widens the intervals of the numbers that the contact's end defines, to include the end of its first
+    /// touch.
+    pub fn widen_end(&self, quantities: &mut Quantities) {
         let Some(FirstTouch { earlier_s, k_moves, .. }) = self.touch else { return };
         let Quantities { duration, flight_time, k, .. } = quantities;
         for time in [Some(duration), flight_time.as_mut()].into_iter().flatten() {
@@ -84,9 +85,8 @@ impl Tabulated {
         k.u95 = k.u95.hypot(k_moves);
     }
 
-    /// The finding where the motion does not determine what the second impact gives in all, though there is
-    /// one.
-    pub fn untold(&self, recorded: &[Signal], events: &Events) -> Option<Finding> {
+    /// Reports a second impact whose whole effect the motion does not determine.
+    pub fn judge_undetermined(&self, recorded: &[Signal], events: &Events) -> Option<Finding> {
         let second = self.tables[1].as_ref();
         let is_whole = second.is_some_and(|table| table.numbers.restitution.is_some());
         let struck_s = events.slap_down_s().filter(|_| !is_whole)?;
@@ -96,34 +96,34 @@ impl Tabulated {
     }
 }
 
-/// Both impacts, with what each channel reads of them; the motion's part where it may be stated, beside the
-/// quantities stated already.
-pub(super) fn of_result(
+/// Completes the tables of both impacts with the pulse of each channel; numbers of the motion are included if
+/// they may be stated.
+pub(super) fn complete_tables(
     file: &CaskFile,
     recorded: &[Signal],
     result: &DropResult,
-    measured: Option<&Tabulated>,
+    measured: Option<&ImpactTables>,
 ) -> [ImpactTable; 2] {
     let (first, second) = (&result.first_impact, &result.slap_down);
-    let told = |i: usize| measured.and_then(|m| m.tables[i].clone());
+    let table = |i: usize| measured.and_then(|m| m.tables[i].clone());
     let stretches_s = stretches_s(&result.events, measured.and_then(|m| m.left_s), file.cask.length_m);
-    let with = |table: Option<ImpactTable>, end: End, start: Option<Estimate>, stretch: Option<[f64; 2]>| {
+    let fill = |table: Option<ImpactTable>, end: End, start: Option<Estimate>, stretch: Option<[f64; 2]>| {
         let table = table.unwrap_or_else(|| ImpactTable::empty(end));
         let channels = stretch.map_or_else(Vec::new, |s| channel_peaks(file, recorded, s, &table));
         ImpactTable { start, channels, ..table }
     };
-    let [of_first, of_second] = stretches_s;
-    let table = with(told(0), End::First, first.time, of_first);
+    let [first_stretch, second_stretch] = stretches_s;
+    let first_table = fill(table(0), End::First, first.time, first_stretch);
     [
         ImpactTable {
-            numbers: ImpactNumbers { restitution: result.k, duration: first.duration, ..table.numbers },
-            ..table
+            numbers: ImpactNumbers { restitution: result.k, duration: first.duration, ..first_table.numbers },
+            ..first_table
         },
-        with(told(1), End::Second, second.time, of_second),
+        fill(table(1), End::Second, second.time, second_stretch),
     ]
 }
 
-/// Slap-down speed over impact velocity.
+/// Ratio of slap-down speed to impact velocity.
 pub(super) fn amplification(result: &DropResult) -> Option<Estimate> {
     let (speed, impact) = result.slap_down.speed.zip(result.first_impact.impact_velocity)?;
     let value = speed.value / impact.value;
@@ -131,13 +131,13 @@ pub(super) fn amplification(result: &DropResult) -> Option<Estimate> {
     Some(Estimate::new(value, value * share, "1"))
 }
 
-/// The low-pass of the peaks: as stated, or the same for every drop of this mass.
+/// Returns the low-pass of the peaks: as stated, or the same for every drop of this mass.
 fn low_pass(file: &CaskFile) -> (String, f64) {
     let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     (motion::filter_name(file.filter), cutoff_hz)
 }
 
-/// Both contacts as a function of the inputs.
+/// Both contacts as functions of the inputs.
 struct BothImpacts<'a> {
     file: &'a CaskFile,
     integrated: &'a Integrated<'a>,
@@ -145,44 +145,44 @@ struct BothImpacts<'a> {
     cutoff_hz: f64,
 }
 
-/// Both impacts, as far as the motion tells them.
-pub(super) fn tabulated(
+/// Tabulates both impacts, as far as the motion determines them.
+pub(super) fn tabulate(
     file: &CaskFile,
     integrated: &Integrated,
-    taken: &SelectedMethod,
+    method: &SelectedMethod,
     second: Option<&SecondImpact>,
     u_late_s: [f64; 2],
-) -> Option<Tabulated> {
-    let both = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
-    let mut known = both.known(taken)?;
-    let (first, after) = both.courses(&taken.taken, ForceCourse::Rotation)?;
+) -> Option<ImpactTables> {
+    let impacts = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
+    let mut known = impacts.with_uncertainties(method)?;
+    let (first, after) = impacts.courses(&method.taken, ForceCourse::Rotation)?;
     for ((own, course), u_s) in known.iter_mut().zip([Some(&first), after.as_ref()]).zip(u_late_s) {
         let struck_m_s = course.map_or(0.0, |course| course.contact.struck_m_s);
         own.crush.1 = own.crush.1.hypot(struck_m_s * u_s);
         own.duration.1 = own.duration.1.hypot(u_s);
     }
-    // What turned the cask was one contact at R that a passive end can give.
-    let mut turning = taken.choice.closures.iter().filter(|c| c.kind == CheckKind::SecondTurning);
+    // The rotation came from one contact at R that a passive end can produce.
+    let mut turning = method.choice.closures.iter().filter(|c| c.kind == CheckKind::SecondTurning);
     let is_one = turning.all(|closure| closure.miss_in_u.abs() <= MISSED_U);
     let is_open = second.is_some_and(|second| second.is_open);
-    let range = if is_open { STANDING_RANGE } else { RESTITUTION_RANGE };
+    let range = if is_open { STANDSTILL_RANGE } else { RESTITUTION_RANGE };
     let is_passive = |numbers: &&ImpactNumbers<(f64, f64)>| {
         range.contains(&numbers.restitution.0) && numbers.duration.0 > 0.0
     };
-    let of_second = known.get(1).filter(|_| is_one).filter(is_passive);
-    let of_second = after.zip(of_second).map(|(course, numbers)| {
-        let table = both.table(End::Second, &course, numbers);
-        if is_open { up_to_crush(table) } else { table }
+    let second_numbers = known.get(1).filter(|_| is_one).filter(is_passive);
+    let second_table = after.zip(second_numbers).map(|(course, numbers)| {
+        let table = impacts.table(End::Second, &course, numbers);
+        if is_open { keep_until_crush(table) } else { table }
     });
-    Some(Tabulated {
+    Some(ImpactTables {
         left_s: second.map(|s| s.left.time_s),
-        touch: first.contact.first_touch(taken.quantities.k.value, both.cutoff_hz, integrated),
-        tables: [Some(both.table(End::First, &first, known.first()?)), of_second],
+        touch: first.contact.first_touch(method.quantities.k.value, impacts.cutoff_hz, integrated),
+        tables: [Some(impacts.table(End::First, &first, known.first()?)), second_table],
     })
 }
 
-/// Without what the contact gives in all, where no flight after it tells that.
-fn up_to_crush(mut table: ImpactTable) -> ImpactTable {
+/// Removes the numbers of the whole contact, if no flight after it determines them.
+fn keep_until_crush(mut table: ImpactTable) -> ImpactTable {
     table.numbers = ImpactNumbers {
         duration: None,
         velocity_change: None,
@@ -197,7 +197,7 @@ fn up_to_crush(mut table: ImpactTable) -> ImpactTable {
 }
 
 impl BothImpacts<'_> {
-    /// The first contact and the second.
+    /// Follows the first contact and the second.
     fn courses(&self, inputs: &Inputs, by: ForceCourse) -> Option<(Course, Option<Course>)> {
         let (motion, states) =
             motion::with_states(self.integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
@@ -209,14 +209,14 @@ impl BothImpacts<'_> {
         Some((Course { motion, contact }, after))
     }
 
-    /// The numbers of the first contact, then those of the second.
+    /// Numbers of the first contact, then those of the second.
     fn numbers(&self, inputs: &Inputs, by: ForceCourse) -> Option<Vec<ImpactNumbers<f64>>> {
         let cask = &self.file.cask;
         let inertia_m2 = inputs.inertia_m2.unwrap_or(cask.inertia_kg_m2 / cask.mass_kg);
         let (first, second) = self.courses(inputs, by)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
         let numbers = |course: &Course| {
-            let read = read_off(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
+            let read = read_numbers(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
             ImpactNumbers {
                 energy_ratio: read.energy_before / before_m2_s2,
                 absorbed_ratio: read.energy_absorbed / before_m2_s2,
@@ -233,14 +233,13 @@ impl BothImpacts<'_> {
         Some(all)
     }
 
-    /// These with their standard uncertainties: what else could have told the course of the force says how
-    /// well that is known.
-    fn known(&self, taken: &SelectedMethod) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
+    /// Numbers with their standard uncertainties, including other possible courses of the force.
+    fn with_uncertainties(&self, method: &SelectedMethod) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
         let flat = |inputs: &Inputs| {
             let numbers = self.numbers(inputs, ForceCourse::Rotation)?;
             Some(numbers.into_iter().flat_map(ImpactNumbers::into_array).collect())
         };
-        let spread = taken.propagate_numbers(&flat)?;
+        let spread = method.propagate_numbers(&flat)?;
         let by_name = |contact: &[(f64, f64)]| ImpactNumbers::from_fn(|i| contact[i]);
         let mut known: Vec<_> = spread.chunks_exact(ImpactNumbers::COUNT).map(by_name).collect();
         let left_ringing = |flight: &FlightFit, own: &ImpactNumbers<(f64, f64)>| {
@@ -248,24 +247,24 @@ impl BothImpacts<'_> {
                 |size: fn(&Mode) -> f64| flight.modes.iter().map(size).sum::<f64>() / own.velocity_change.0;
             (share(|m| m.amplitude_m_s), share(|m| m.amplitude_m_s / (TAU * m.frequency_hz)))
         };
-        let by_first = left_ringing(&taken.taken.flight, known.first()?);
+        let first_ringing = left_ringing(&method.taken.flight, known.first()?);
         for (i, own) in known.iter_mut().enumerate() {
-            // Where no flight follows R's impact, that leaves of its own what the first one does.
-            let told = self.second.filter(|second| i == 1 && !second.is_open);
-            let (share, bends_s) = told.map_or(by_first, |second| left_ringing(&second.flight, own));
+            // If no flight follows R's impact, its ringing is assumed to be like that of the first.
+            let second = self.second.filter(|second| i == 1 && !second.is_open);
+            let (share, bends_s) = second.map_or(first_ringing, |second| left_ringing(&second.flight, own));
             for (value, u) in own.course_numbers() {
-                *u = u.hypot(RINGING_SHARE * share * *value);
+                *u = u.hypot(U_RINGING_SHARE * share * *value);
             }
-            let bends_m = BENDS_SHARE * bends_s * own.velocity_change.0;
-            own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_BENDS * own.crush.0));
-            let slowest = taken.taken.flight.modes.iter().map(|m| TAU * m.frequency_hz).reduce(f64::min);
+            let bends_m = U_BENDING_SHARE * bends_s * own.velocity_change.0;
+            own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_U_BENDING * own.crush.0));
+            let slowest = method.taken.flight.modes.iter().map(|m| TAU * m.frequency_hz).reduce(f64::min);
             if let Some(slowest_rad_s) = slowest.filter(|_| i == 1) {
-                let stands_bent_m = own.at_struck_end.0 / slowest_rad_s.powi(2);
-                own.crush.1 = own.crush.1.hypot(STANDS_BENT * stands_bent_m);
+                let bent_m = own.at_struck_end.0 / slowest_rad_s.powi(2);
+                own.crush.1 = own.crush.1.hypot(U_BENT_SHARE * bent_m);
             }
         }
-        for (by, share) in OTHER_COURSES {
-            let others = self.numbers(&taken.taken, by)?;
+        for (by, share) in U_OTHER_COURSES {
+            let others = self.numbers(&method.taken, by)?;
             for (own, mut other) in known.iter_mut().zip(others) {
                 for ((value, u), other) in own.course_numbers().into_iter().zip(other.course_numbers()) {
                     *u = u.hypot(share * (*other - *value));
@@ -281,7 +280,7 @@ impl BothImpacts<'_> {
             let factor = if matches!(unit, "N s" | "J" | "N") { mass_kg } else { 1.0 };
             Some(Estimate::new(factor * value, COVERAGE * factor * u, unit))
         });
-        // The mirror turns round what runs along the target.
+        // The mirror reverses components along the target.
         for along in [&mut numbers.impulse_x, &mut numbers.friction].into_iter().flatten() {
             along.value *= if end == End::First { 1.0 } else { -1.0 };
         }
@@ -294,9 +293,9 @@ impl BothImpacts<'_> {
     }
 }
 
-/// The numbers of one contact, all over the mass where it belongs to them; the ratios need the first contact
-/// too, and are 0 here.
-fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> ImpactNumbers<f64> {
+/// Numbers of one contact, divided by the mass if they are proportional to it; the ratios also need the first
+/// contact, and are 0 here.
+fn read_numbers(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> ImpactNumbers<f64> {
     let Course { motion, contact } = course;
     let [impulse_x, impulse_z] = contact.impulse_m_s;
     let [energy_before, energy_after] = contact.kinetic_m2_s2(inertia_m2);
@@ -323,8 +322,8 @@ fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64)
     }
 }
 
-/// The decelerations through the low-pass of this cask, each with its u, and beside them through the usual
-/// others, known as well.
+/// Decelerations after this cask's low-pass, each with its u, and after the other usual ones, with the same
+/// relative uncertainty.
 fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> RigidBodyDeceleration {
     let contact = &course.contact;
     let through = |(filter, cutoff_hz): (String, f64)| {
@@ -346,9 +345,9 @@ fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> Ri
     RigidBodyDeceleration { others, ..through(low_pass(file)) }
 }
 
-/// What the usual low-passes, and none, make of the first end's first impact; empty where its transverse
+/// Effect of the usual low-passes, and of none, on the first end's first impact; empty if its transverse
 /// channel or its first contact is missing.
-pub(super) fn filters(file: &CaskFile, recorded: &[Signal], result: &DropResult) -> Vec<FilteredPeak> {
+pub(super) fn filter_table(file: &CaskFile, recorded: &[Signal], result: &DropResult) -> Vec<FilteredPeak> {
     let [stretch_s, _] = stretches_s(&result.events, None, file.cask.length_m);
     let Some((between_s, struck)) = stretch_s.zip(transverse(recorded, End::First)) else {
         return Vec::new();
@@ -381,7 +380,7 @@ fn force_over_crush(contact: &ContactCourse, mass_kg: f64, cutoff_hz: f64) -> Fo
     }
 }
 
-/// The pulse of each channel between two times, s, through the low-pass of this cask; `table` has the rest of
+/// Pulse of each channel between two times, s, after this cask's low-pass; `table` holds the other numbers of
 /// that impact.
 fn channel_peaks(
     file: &CaskFile,
@@ -396,8 +395,8 @@ fn channel_peaks(
         of_axis.filter_map(|(_, pulse)| Some((*pulse)?.raw.abs())).fold(0.0, f64::max)
     };
     let [transverse_m_s2, read_m_s2] = [Axis::Transverse, Axis::Axial].map(largest_m_s2);
-    // Along the axis: what is read there, else that of S by the force and the friction, else at most the same
-    // times tan φ0 and a friction of 1.
+    // The axial acceleration is the measured one, else that of S from force and friction, else at most the
+    // transverse one times tan φ0 plus a friction of 1.
     let (sin, cos) = file.drop.angle_rad.sin_cos();
     let by_force = table.numbers.force_peak.zip(table.numbers.friction).map(|(force, friction)| {
         force.value / file.cask.mass_kg * (sin + (friction.value.abs() + friction.u95).min(1.0) * cos)
@@ -414,7 +413,7 @@ fn channel_peaks(
             Axis::Axial => transverse_m_s2,
         };
         let crossed_m_s2 = file.tolerances.cross_axis * aside_m_s2;
-        // A low-pass leaves of white noise what its share of the band is.
+        // A low-pass passes white noise in proportion to its share of the band.
         let left = (2.0 * cutoff_hz / signal.sample_rate_hz).min(1.0).sqrt();
         let noise = |left: f64| COVERAGE * left * signal.noise_m_s2.hypot(signal.u_offset_m_s2);
         let peak = |value: f64, left: f64| {
@@ -440,8 +439,8 @@ fn channel_peaks(
     recorded.iter().zip(&pulses).map(channel_peak).collect()
 }
 
-/// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other
-/// end.
+/// Interval of each impact in which its pulses are searched, s; it includes the way of a bending wave to the
+/// other end.
 pub(super) fn stretches_s(
     events: &Events,
     second_left_s: Option<f64>,
@@ -458,8 +457,8 @@ pub(super) fn stretches_s(
     ]
 }
 
-/// Beyond this inclination nothing is said of the axial force by a transverse one: cos φ0.
+/// Smallest cos φ0 with which a transverse force determines the axial one.
 const GRAZING_COS: f64 = 0.1;
 
-/// Where nothing tells when an end leaves, its pulse is sought for so long, s.
+/// Longest search for a pulse if nothing shows when the end leaves, s.
 const LONGEST_S: f64 = 0.025;

@@ -1,4 +1,4 @@
-//! A cask file before its drop to the plan of the measurement: range, rate and record that it needs, and what
+//! Plans the measurement of a drop from its cask file: range, rate and record that it needs, and sensors that
 //! would narrow its intervals.
 
 use super::flight;
@@ -11,35 +11,35 @@ use crate::motion::{self, Integrated};
 use crate::{fit, judge, predict};
 use std::f64::consts::PI;
 
-/// The largest coefficient of restitution that range and record must do for.
+/// Largest coefficient of restitution for which range and record suffice.
 const LARGEST_K: f64 = 1.0;
-/// First contact of the expected recording, s, and its samples over the contact.
+/// Time of first contact in the expected recording, s, and number of samples in the contact.
 const CONTACT_S: f64 = 0.1;
 const SAMPLES: f64 = 200.0;
-/// Rounds of the search for the slap-down: each leaves a hundredth of the height at most.
+/// Rounds of the search for the slap-down: each leaves at most a hundredth of the height.
 const ROUNDS: usize = 4;
 
-/// All that a study of the drop angle holds, and the plan of the measurement at its angle.
+/// Studies the drop angle, and plans the measurement at the request's angle.
 #[must_use]
 pub fn study(file: &CaskFile, request: &StudyRequest) -> Study {
     let angle_rad = request.angle_deg.to_radians();
     let at_angle = CaskFile { drop: Drop { angle_rad, ..file.drop }, ..file.clone() };
     let ks = request.ks.iter().copied();
     let k = f64::midpoint(ks.clone().fold(f64::INFINITY, f64::min), ks.fold(0.0, f64::max));
-    Study { plan: Some(plan(&at_angle, k)), ..predict::study(file, request) }
+    Study { plan: Some(make_plan(&at_angle, k)), ..predict::study(file, request) }
 }
 
-fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
+fn make_plan(file: &CaskFile, k: f64) -> MeasuringPlan {
     let mut plan = MeasuringPlan { needs: needs(file), k, intervals: Vec::new(), why_no_intervals: None };
     let shows = |end| file.channels.iter().any(|spec| spec.end == end && spec.axis == Axis::Transverse);
     if !shows(End::First) || !shows(End::Second) {
         plan.why_no_intervals = Some("the cask file has no transverse channel on each end");
         return plan;
     }
-    // By the budget of the fit of the predicted impact, a half sine in each channel, without noise and
-    // ringing   (48)
+    // The intervals follow from the budget of the fit to the predicted impact, a half sine in each channel,
+    // without noise and ringing   (48)
     let expected = |(with, specs): (&'static str, Vec<ChannelSpec>)| {
-        let quantities = ExpectedDrop::of(file, &specs, k)?.quantities(file, &specs)?;
+        let quantities = ExpectedDrop::new(file, &specs, k)?.quantities(file, &specs)?;
         let slap_down_speed_u95_m_s = quantities.speed?.u95;
         Some(ExpectedIntervals { with, slap_down_speed_u95_m_s, k_u95: quantities.k.u95 })
     };
@@ -50,8 +50,8 @@ fn plan(file: &CaskFile, k: f64) -> MeasuringPlan {
     plan
 }
 
-/// Ranges, rate and record that the predicted drop needs; of a cask file without channels for sensors at both
-/// ends.
+/// Ranges, rate and record that the predicted drop needs; without channels in the cask file for sensors at
+/// both ends.
 pub(super) fn needs(file: &CaskFile) -> RecordingNeeds {
     let predicted = predict::predict(&predict::richest_body(file), &file.drop, file.contact, LARGEST_K);
     let ends = [("first end", End::First, 0.0), ("second end", End::Second, file.cask.length_m)];
@@ -75,8 +75,8 @@ pub(super) fn needs(file: &CaskFile) -> RecordingNeeds {
     }
 }
 
-/// By how much the first impact changes the velocity that a channel reads, m/s: all of the vertical
-/// velocity of the first end, turned round, less what the rotation takes   (47)
+/// Largest change of velocity that a channel reads in the first impact, m/s: the reversed vertical velocity
+/// of the first end, less the effect of the rotation   (47)
 fn largest_step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction) -> f64 {
     let (sin, cos) = file.drop.angle_rad.sin_cos();
     let turned_m_s = (1.0 + LARGEST_K) * file.drop.impact_velocity_m_s;
@@ -86,12 +86,12 @@ fn largest_step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction)
     }
 }
 
-/// The channels as they are, and with one thing more each.
+/// Lists the channels as they are, and with one addition each.
 fn candidates(file: &CaskFile) -> [(&'static str, Vec<ChannelSpec>); 3] {
-    let like = |end: End, axis: Axis| {
-        let of_end = |spec: &&ChannelSpec| spec.end == end && spec.axis == Axis::Transverse;
+    let copy_spec = |end: End, axis: Axis| {
+        let is_at_end = |spec: &&ChannelSpec| spec.end == end && spec.axis == Axis::Transverse;
         let name = format!("another at the {end:?} end, {axis:?}");
-        file.channels.iter().find(of_end).map(|spec| ChannelSpec {
+        file.channels.iter().find(is_at_end).map(|spec| ChannelSpec {
             axis,
             name,
             calibration: None,
@@ -99,18 +99,18 @@ fn candidates(file: &CaskFile) -> [(&'static str, Vec<ChannelSpec>); 3] {
             ..spec.clone()
         })
     };
-    let and_each = |axis| {
-        let added = [End::First, End::Second].into_iter().filter_map(|end| like(end, axis));
+    let with_added = |axis| {
+        let added = [End::First, End::Second].into_iter().filter_map(|end| copy_spec(end, axis));
         file.channels.iter().cloned().chain(added).collect()
     };
     [
         ("", file.channels.clone()),
-        ("an axial channel on each end", and_each(Axis::Axial)),
-        ("another transverse channel on each end", and_each(Axis::Transverse)),
+        ("an axial channel on each end", with_added(Axis::Axial)),
+        ("another transverse channel on each end", with_added(Axis::Transverse)),
     ]
 }
 
-/// The predicted impact as an analysis would have it.
+/// Predicted impact in the form of a measured one.
 struct ExpectedDrop {
     integrated: Integrated<'static>,
     flight: FlightFit,
@@ -118,7 +118,7 @@ struct ExpectedDrop {
 }
 
 impl ExpectedDrop {
-    fn of(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
+    fn new(file: &CaskFile, specs: &[ChannelSpec], k: f64) -> Option<Self> {
         let at_once = Drop { contact_duration_s: 0.0, ..file.drop };
         let predicted = predict::predict(&predict::richest_body(file), &at_once, file.contact, k);
         let flies = predicted.first_end_impacts == 1 && predicted.regime == FlightRegime::Free;
@@ -138,8 +138,8 @@ impl ExpectedDrop {
         };
         let mut specs: Vec<&ChannelSpec> = specs.iter().collect();
         specs.sort_by_key(|spec| spec.axis == Axis::Axial);
-        let read = |spec: &&ChannelSpec| half_sine(spec, step_m_s(spec, file, &predicted), lasts_s, flight_s);
-        let (signals, plateaus): (Vec<_>, Vec<_>) = specs.iter().map(read).unzip();
+        let make = |spec: &&ChannelSpec| half_sine(spec, step_m_s(spec, file, &predicted), lasts_s, flight_s);
+        let (signals, plateaus): (Vec<_>, Vec<_>) = specs.iter().map(make).unzip();
         let flight = FlightFit { from_s: left_s, to_s: struck_s, plateaus, ..FlightFit::default() };
         let integrated = Integrated::new(&signals, CONTACT_S).into_owned();
         Some(Self { integrated, flight, events })
@@ -147,16 +147,16 @@ impl ExpectedDrop {
 
     fn quantities(mut self, file: &CaskFile, specs: &[ChannelSpec]) -> Option<Quantities> {
         let (setup, friction) = flight::contact(file, &self.integrated, &self.flight, &self.events);
-        let moved = |flight: &FlightFit, events: &Events, setup: &_| {
+        let reconstruct = |flight: &FlightFit, events: &Events, setup: &_| {
             motion::outcome(&self.integrated, flight, events, setup)
         };
-        let mut motion = moved(&self.flight, &self.events, &setup)?;
+        let mut motion = reconstruct(&self.flight, &self.events, &setup)?;
         for _ in 0..ROUNDS {
             let by_s = motion.second_end_height_m? / motion.second_end_m_s?.1;
             self.events.slap_down.as_mut()?.time_s -= by_s;
-            motion = moved(&self.flight, &self.events, &setup)?;
+            motion = reconstruct(&self.flight, &self.events, &setup)?;
         }
-        let turned_rad_s = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
+        let rotation_rad_s = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
         let measured = fit::FitData {
             signals: &self.integrated.signals,
             flight: &self.flight,
@@ -165,34 +165,35 @@ impl ExpectedDrop {
             friction,
             specs,
             tolerances: file.tolerances,
-            // That of the half sine, by which its closure is met: the stated one but for what turning adds.
-            inertia_m2: file.cask.is_body.then_some(motion.angular_impulse_m2_s / turned_rad_s),
+            // Inertia with which the half sine is consistent: the stated one but for the effect of the
+            // rotation.
+            inertia_m2: file.cask.is_body.then_some(motion.angular_impulse_m2_s / rotation_rad_s),
             rests: &[],
             fall_s: None,
             rotations: &[],
             stood_in: None,
             second: None,
         };
-        Some(fit::run_methods(&measured, &moved)?.quantities)
+        Some(fit::run_methods(&measured, &reconstruct)?.quantities)
     }
 }
 
-/// What the predicted impact changes the velocity of a channel by, m/s: the impulse that gives the rotation,
-/// I (a − b r) = Θ ω with r = I_x / I_z, on the body axes   (48)
+/// Change of a channel's velocity in the predicted impact, m/s, from the impulse that gives the rotation, I
+/// (a − b r) = Θ ω with r = I_x / I_z, on the body axes   (48)
 fn step_m_s(spec: &ChannelSpec, file: &CaskFile, predicted: &Prediction) -> f64 {
     let (cask, drop) = (&file.cask, &file.drop);
     let (sin, cos) = drop.angle_rad.sin_cos();
     let (a_m, b_m) = planar::arms_m((sin, cos), cask.cog_m, cask.height_m);
-    let turned_rad_s = predicted.angular_velocity_rad_s - drop.angular_velocity_rad_s;
+    let rotation_rad_s = predicted.angular_velocity_rad_s - drop.angular_velocity_rad_s;
     let ratio = predicted.impulse_ratio;
-    let up_m_s = cask.inertia_kg_m2 / cask.mass_kg * turned_rad_s / (a_m - b_m * ratio);
+    let up_m_s = cask.inertia_kg_m2 / cask.mass_kg * rotation_rad_s / (a_m - b_m * ratio);
     match spec.axis {
-        Axis::Transverse => up_m_s * (cos - ratio * sin) - turned_rad_s * (spec.position_m - cask.cog_m),
+        Axis::Transverse => up_m_s * (cos - ratio * sin) - rotation_rad_s * (spec.position_m - cask.cog_m),
         Axis::Axial => up_m_s * (sin + ratio * cos),
     }
 }
 
-/// A channel that reads a half sine of this area, and its plateau.
+/// Simulates a channel that reads a half sine of this area, and its plateau.
 fn half_sine(spec: &ChannelSpec, step_m_s: f64, lasts_s: f64, flight_s: f64) -> (Signal, Plateau) {
     let sample_rate_hz = SAMPLES / lasts_s;
     let force = |since_s: f64| {

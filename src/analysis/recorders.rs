@@ -1,6 +1,7 @@
-//! The recordings of a drop to one, on the clock of the first: all show the first contact at one time.
+//! Joins the recordings of a drop into one, on the clock of the first: all show the first contact at one
+//! time.
 
-use super::impact::{OwnContact, own_contact};
+use super::impact::{RecorderContact, recorder_contact};
 use super::{rest, simulation};
 use crate::data::{
     BENDING_WAVE_M_S, CaskFile, DropFinding, End, JoinedRecording, Onset, Recording, transverse,
@@ -12,20 +13,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content,
-/// and from the files beside it that the cask file names: other recorders, the rest before the drop, the
+/// Reads the channels that `cask_file` names from the recording at `path`, whose format is recognised by its
+/// content, and from the files that the cask file names: other recorders, the rest before the drop, the
 /// calculation.
 ///
 /// # Errors
-/// [`IngestError`] where a file, a source or its content is at fault.
+/// [`IngestError`] if a file, a source or its content is at fault.
 pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
     read_within(path, cask_file, Limits::default(), progress)
 }
 
-/// As [`read`], within other limits than the usual ones.
+/// Like [`read`], within other limits than the usual ones.
 ///
 /// # Errors
-/// As [`read`]; also where a file would pass a limit.
+/// Those of [`read`]; also if a file would pass a limit.
 pub fn read_within<'a>(
     recording: impl Into<RecordingFile<'a>>,
     cask_file: &CaskFile,
@@ -37,48 +38,49 @@ pub fn read_within<'a>(
     Ok(recording)
 }
 
-/// Adds what the cask file names beside the recording: the channels of other recorders, what all read at rest
-/// in a file of its own, and the calculation.
+/// Adds the other files that the cask file names: the channels of other recorders, the levels at rest in a
+/// separate file, and the calculation.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn complete(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
-    join(recording, file, limits)?;
-    rest::take_rest(recording, file, limits)?;
-    recording.calculation = simulation::calculation(file, limits)?;
+    join_recorders(recording, file, limits)?;
+    rest::read_rest_file(recording, file, limits)?;
+    recording.calculation = simulation::read_curves(file, limits)?;
     Ok(())
 }
 
-/// Adds the channels that the cask file has of other recordings, their clocks joined at the first contact.
-fn join(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
+/// Adds the channels of other recorders that the cask file names, with their clocks joined at the first
+/// contact.
+fn join_recorders(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<(), IngestError> {
     let all = file.channels.iter().chain(file.others.iter().map(|other| &other.read));
     let mut names: Vec<&str> = all.filter_map(|spec| spec.file.as_deref()).collect();
     names.sort_unstable();
     names.dedup();
-    // Each against the recording as it was read: none hangs on another one's shift.
-    let main = if names.is_empty() { None } else { own_contact(recording, &file.for_recorder(None)) };
+    // Each is joined to the recording as it was read, so that no shift depends on another.
+    let main = if names.is_empty() { None } else { recorder_contact(recording, &file.for_recorder(None)) };
     for name in names {
         let path = file.path.parent().unwrap_or(Path::new("")).join(name);
         let refuse = |problem: &str, mend: &str| Err(error::of_file(&path, Refusal::new(problem, mend)));
-        let of_file = file.for_recorder(Some(name));
-        if of_file.channels.is_empty() {
+        let recorder_file = file.for_recorder(Some(name));
+        if recorder_file.channels.is_empty() {
             let mend = "add one accelerometer of this recorder with end = \"first\" or \"second\"";
             return refuse("no accelerometer of this recording joins its clock to the other one", mend);
         }
-        let mut second = ingest::read_within(&path, &of_file, limits, &|_| ())?;
+        let mut second = ingest::read_within(&path, &recorder_file, limits, &|_| ())?;
         if second.sha256 == recording.sha256 {
             let mend = "delete `file`: without it the channel is in the recording that is analysed";
             return refuse("this is the recording that is analysed, under another name", mend);
         }
-        let own = own_contact(&second, &of_file);
+        let own = recorder_contact(&second, &recorder_file);
         let (Some(main), Some(own)) = (&main, own) else {
             let mend = "check `source`, `unit` and `end` of its channels: each recorder needs one that shows \
                         the first impact, by which the clocks are joined";
             return refuse("no first impact is seen in it, or in the recording that is analysed", mend);
         };
-        let mut joined = joined(name, main, own, file.cask.length_m);
-        shift(&mut second, joined.shift_s);
-        // By the times that stand in both files.
+        let mut joined = join_clocks(main, own, file.cask.length_m);
+        shift_times(&mut second, joined.shift_s);
+        // The absolute times in both files are included.
         joined.shift_s += match (recording.start_unix_ns, second.start_unix_ns) {
             (Some(first_ns), Some(second_ns)) => {
                 let apart_s = Duration::from_nanos(first_ns.abs_diff(second_ns)).as_secs_f64();
@@ -93,14 +95,14 @@ fn join(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<()
             all.channels.append(&mut others.channels);
             all.issues.append(&mut others.issues);
         }
-        let said = DropFinding::Joined { file: name.into(), shift_s: joined.shift_s, u_s: joined.u_s };
-        recording.issues.push(said.into());
-        recording.joined.push(JoinedRecording { sha256: second.sha256, ..joined });
+        let note = DropFinding::Joined { file: name.into(), shift_s: joined.shift_s, u_s: joined.u_s };
+        recording.issues.push(note.into());
+        recording.joined.push(JoinedRecording { file: name.into(), sha256: second.sha256, ..joined });
     }
     // Times count from the earliest first sample.
     let first_s = recording.channels.iter().map(|channel| channel.start_s).fold(0.0, f64::min);
     if first_s < 0.0 {
-        shift(recording, -first_s);
+        shift_times(recording, -first_s);
         recording.start_unix_ns =
             recording.start_unix_ns.map(|ns| ns.saturating_add(crate::numerics::nanoseconds(first_s)));
         recording.before_trigger_s = recording.before_trigger_s.map(|before_s| before_s - first_s);
@@ -108,8 +110,8 @@ fn join(recording: &mut Recording, file: &CaskFile, limits: Limits) -> Result<()
     Ok(())
 }
 
-/// What is added to the times of the second recorder, by the channel whose answer tells it best.
-fn joined(name: &str, main: &OwnContact, mut second: OwnContact, length_m: f64) -> JoinedRecording {
+/// Determines the shift of the second recorder's times from the channel whose answer shows it best.
+fn join_clocks(main: &RecorderContact, mut second: RecorderContact, length_m: f64) -> JoinedRecording {
     let rough_s = main.at.time_s - second.at.time_s;
     for signal in &mut second.signals {
         signal.start_s += rough_s;
@@ -119,20 +121,20 @@ fn joined(name: &str, main: &OwnContact, mut second: OwnContact, length_m: f64) 
     let channels: Vec<String> = second.signals.iter().map(|signal| signal.name.clone()).collect();
     let all = [main.signals.clone(), second.signals].concat();
     let is_own = |name: &String| channels.contains(name);
-    let struck_in_own = transverse(&all, End::First).is_some_and(|struck| is_own(&struck.name));
+    let struck_in_second = transverse(&all, End::First).is_some_and(|struck| is_own(&struck.name));
     let answers = events::answers(&all, main.at.time_s);
-    let of_other = answers.iter().filter(|onset| is_own(&onset.channel) != struck_in_own);
-    let best = of_other.min_by(|a, b| a.u_s.total_cmp(&b.u_s));
+    let from_other = answers.iter().filter(|onset| is_own(&onset.channel) != struck_in_second);
+    let best = from_other.min_by(|a, b| a.u_s.total_cmp(&b.u_s));
     let (more_s, u_s) = match best {
-        Some(Onset { delay_s, u_s, .. }) if struck_in_own => (*delay_s, *u_s),
+        Some(Onset { delay_s, u_s, .. }) if struck_in_second => (*delay_s, *u_s),
         Some(Onset { delay_s, u_s, .. }) => (-delay_s, *u_s),
         None => (0.0, main.at.u_s.hypot(second.at.u_s)),
     };
-    // Between the ends it is not told from the way of a bending wave.
+    // Between the ends it cannot be separated from the delay of a bending wave.
     let shares_an_end = (0..2).any(|end| ends[0][end] && ends[1][end]);
     let u_way_s = if shares_an_end { 0.0 } else { length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt() };
     JoinedRecording {
-        file: name.to_owned(),
+        file: String::new(),
         sha256: String::new(),
         shift_s: rough_s + more_s,
         u_s: u_s.hypot(u_way_s),
@@ -140,11 +142,11 @@ fn joined(name: &str, main: &OwnContact, mut second: OwnContact, length_m: f64) 
     }
 }
 
-/// Adds to all times of a recording.
-fn shift(recording: &mut Recording, by_s: f64) {
-    let of_others = Arc::get_mut(&mut recording.others);
-    let (others, their_issues) = of_others
-        .map_or((&mut [][..], &mut [][..]), |others| (&mut others.channels[..], &mut others.issues[..]));
+/// Shifts all times of a recording.
+fn shift_times(recording: &mut Recording, by_s: f64) {
+    let owned = Arc::get_mut(&mut recording.others);
+    let (others, their_issues) =
+        owned.map_or((&mut [][..], &mut [][..]), |others| (&mut others.channels[..], &mut others.issues[..]));
     for channel in recording.channels.iter_mut().chain(others) {
         channel.start_s += by_s;
     }

@@ -1,5 +1,4 @@
-//! A recording and the file with the rest before the drop to the recording whose channels know what they
-//! read at rest.
+//! Adds the levels at rest to a recording's channels, from the file with the rest before the drop.
 
 use crate::data::shown;
 use crate::data::{
@@ -12,14 +11,13 @@ use crate::ingest::{self, IngestError, Limits, error};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rates that recordings of one recorder tell of themselves differ by less than this share.
+/// Recordings of one recorder state rates that differ by less than this share.
 const SAME_RATE: f64 = 0.01;
 
-/// Gives the channels what they read at rest in the file that the cask file names, if it names one.
+/// Reads the levels of the channels at rest from the file that the cask file names, if it names one.
 ///
-/// # Errors
-/// [`IngestError`] where that file cannot be read, or is none of the same sensors at rest.
-pub(super) fn take_rest(
+/// [`IngestError`] if that file cannot be read, or does not hold the same sensors at rest.
+pub(super) fn read_rest_file(
     recording: &mut Recording,
     file: &CaskFile,
     limits: Limits,
@@ -31,9 +29,9 @@ pub(super) fn take_rest(
         return Err(error::of_file(path, Refusal::new("this is the recording of the drop", mend)));
     }
     let found: Vec<Finding> =
-        rest.issues.iter().filter_map(|found| of_rest(found, path, recording)).collect();
+        rest.issues.iter().filter_map(|found| rest_file_finding(found, path, recording)).collect();
     recording.issues.extend(found);
-    let refused = |channel: &Channel, (problem, mend): (String, &str)| {
+    let refuse = |channel: &Channel, (problem, mend): (String, &str)| {
         error::of_channel(path, &channel.name, Refusal::new(problem, mend))
     };
     for channel in &mut recording.channels {
@@ -41,36 +39,36 @@ pub(super) fn take_rest(
             continue;
         };
         let weight = events::feels_gravity(channel, &file.drop).then_some(file.drop.gravity_m_s2);
-        channel.rest = reading(channel, at_rest, weight).map_err(|why| refused(channel, why))?;
+        channel.rest = rest_reading(channel, at_rest, weight).map_err(|why| refuse(channel, why))?;
     }
-    // Nobody else has the recording yet.
+    // No other owner has the recording yet.
     let others = Arc::get_mut(&mut recording.others).map_or(&mut [][..], |others| &mut others.channels);
     for (channel, at_rest) in others.iter_mut().zip(&rest.others.channels) {
         let Some(weight) = rate_weight(channel, file) else { continue };
-        channel.rest = reading(channel, at_rest, Some(weight)).map_err(|why| refused(channel, why))?;
+        channel.rest = rest_reading(channel, at_rest, Some(weight)).map_err(|why| refuse(channel, why))?;
     }
     recording.rest = Some(RestFile { path: path.clone(), sha256: rest.sha256 });
     Ok(())
 }
 
-/// What was found in the file of the rest, as a note on the drop; `None` of what its own recording has too.
-fn of_rest(found: &Finding, path: &Path, recording: &Recording) -> Option<Finding> {
-    let is_own = recording.issues.iter().any(|own| own.message == found.message);
+/// Turns a finding on the file of the rest into a note on the drop; `None` if the recording has it too.
+fn rest_file_finding(found: &Finding, path: &Path, recording: &Recording) -> Option<Finding> {
+    let is_known = recording.issues.iter().any(|known| known.message == found.message);
     let [file, message] = [path.display().to_string(), found.message.clone()];
-    let of_rest = RestFinding::InRestFile { file, found: message, what: found.code };
-    (!is_own).then(|| Finding { channel: found.channel.clone(), ..of_rest.into() })
+    let in_file = RestFinding::InRestFile { file, found: message, what: found.code };
+    (!is_known).then(|| Finding { channel: found.channel.clone(), ..in_file.into() })
 }
 
-/// What stands for gravity in the level at rest of an angular-rate sensor, in its unit: it rests within 2 %
-/// of it, 1°/s. `None` of another channel.
+/// Replacement of gravity for the level at rest of an angular-rate sensor, in its unit: it is at rest within
+/// 2 % of it, 1°/s. `None` for another channel.
 pub(super) fn rate_weight(channel: &Channel, file: &CaskFile) -> Option<f64> {
     let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
     spec.rate.and_then(|_| Some(50.0_f64.to_radians() / rate_unit_rad_s(&channel.unit)?))
 }
 
-/// What the channel of a drop reads in the file with its rest; `None` where it feels no `weight`. Else what
-/// is wrong with that file, and what mends it.
-fn reading(
+/// Reads the level of a drop's channel in the file with its rest; `None` if it does not respond to a
+/// `weight`. The error is the fault of that file and its correction.
+fn rest_reading(
     channel: &Channel,
     at_rest: &Channel,
     weight: Option<f64>,
@@ -98,7 +96,7 @@ fn reading(
     if rest.is_still { Ok(Some(RestReading { level, u })) } else { Err((moves.into(), mend)) }
 }
 
-/// What the channels read at rest by the file of its own, less what they read in the free fall.
+/// Returns the levels at rest from a separate file, less those in the free fall.
 pub(super) fn levels(
     recording: &Recording,
     signals: &[Signal],
@@ -109,13 +107,13 @@ pub(super) fn levels(
         let rest = channel.rest?;
         let signal = signals.iter().find(|signal| signal.name == channel.name)?;
         let is_known = file.corrections.offset && signal.free_fall_s > 0.0;
-        let by_offset = || RestLevel {
+        let from_offset = || RestLevel {
             channel: channel.name.clone(),
             axis: channel.axis,
             rest_m_s2: channel.scale_m_s2 * rest.level - signal.removed_offset_m_s2,
             u_m_s2: (channel.scale_m_s2 * rest.u).hypot(signal.u_offset_m_s2),
         };
-        let level = || events::rest_level(channel, rest, &file.drop, contact_s).unwrap_or_else(by_offset);
+        let level = || events::rest_level(channel, rest, &file.drop, contact_s).unwrap_or_else(from_offset);
         is_known.then(level)
     };
     recording.channels.iter().filter_map(level).collect()

@@ -1,6 +1,6 @@
-//! What the stages found to one [`Analysis`].
+//! Assembles the results of the stages into one [`Analysis`].
 
-use super::comparison::Measured;
+use super::comparison::JudgedFlight;
 use super::end_drop::EndImpact;
 use super::flight::FlightResult;
 use super::setup::sticking;
@@ -14,44 +14,46 @@ use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
 use std::sync::Arc;
 
-/// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to
-/// 0.25 of the rate, 2.0 for one of eighth order at 0.4 (Butterworth, at low frequency).
-const CHAIN_DELAY_SAMPLES: f64 = 2.0;
+/// Delay of a recorder's anti-alias filter, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to 0.25 of
+/// the rate, 2.0 for one of eighth order at 0.4 (Butterworth, at low frequency).
+const FILTER_DELAY_SAMPLES: f64 = 2.0;
 
-/// The result where no impact was found.
+/// Result without an impact.
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
     let result = result(recording, file, findings, Events::default(), None);
     analysis(recording, file, result, Curves::default)
 }
 
-/// The result from the first impact on, as far as the analysis came; `measured`: what is to be stated.
-pub(super) fn of(
+/// Result of a recording with a first impact, as far as the analysis came; `measured` holds what may be
+/// stated.
+pub(super) fn after_impact(
     recording: &Recording,
     file: &CaskFile,
     findings: Vec<Finding>,
-    AfterImpact { impact, mut events, mut flown, on_end }: AfterImpact,
+    AfterImpact { impact, mut events, mut solution, on_end }: AfterImpact,
     shown: ShownSignals,
-    measured: Option<Measured>,
+    measured: Option<JudgedFlight>,
 ) -> Analysis {
-    // Checks and comparison go by the contact as a whole; what is stated is open to both its touches.
-    if let Some(flown) = &mut flown
-        && let Some(tabulated) = &flown.tabulated
+    // Checks and comparison used the contact as a whole; the intervals that are stated also include its two
+    // possible touches.
+    if let Some(solution) = &mut solution
+        && let Some(tables) = &solution.tables
     {
-        tabulated.doubt_end(&mut flown.quantities);
+        tables.widen_end(&mut solution.method.quantities);
     }
-    if let Some(flown) = &mut flown {
-        doubt_unfollowed(flown, &findings);
-        doubt_times(flown, &mut events);
+    if let Some(solution) = &mut solution {
+        widen_for_touches(solution, &findings);
+        widen_times(solution, &mut events);
     }
-    let stated = flown.as_ref().filter(|_| measured.is_some());
-    let quantities = stated.map(|flown| &flown.quantities);
-    let effect = stated.and_then(|flown| filter_effect(&shown.smooth, &events, flown));
+    let stated = solution.as_ref().filter(|_| measured.is_some());
+    let quantities = stated.map(|solution| &solution.method.quantities);
+    let effect = stated.and_then(|solution| filter_effect(&shown.smooth, &events, solution));
     let signals = impact.recorded();
     let recorded = signals.len();
     let mut result = result(recording, file, findings, events, quantities);
     for (signal, smooth) in signals.iter().zip(&shown.smooth) {
         let Some(summary) = result.channels.iter_mut().find(|c| c.name == signal.name) else { continue };
-        let peak = |of: &Signal| peak(&of.force_m_s2[motion::visible(of, &events)]);
+        let peak = |s: &Signal| peak(&s.force_m_s2[motion::visible(s, &events)]);
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);
         summary.peak_raw_m_s2 = Some(peak(signal));
@@ -59,39 +61,41 @@ pub(super) fn of(
         summary.clipped.clone_from(&signal.clipped);
     }
     let mut motion = None;
-    let openings = flown.as_ref().map_or_else(Vec::new, |flown| flown.openings.clone());
-    let tabulated = stated.and_then(|flown| flown.tabulated.as_ref());
-    result.impacts = impacts::of_result(file, signals, &result, tabulated);
+    let opened_inputs =
+        solution.as_ref().map_or_else(Vec::new, |solution| solution.method.opened_inputs.clone());
+    let tables = stated.and_then(|solution| solution.tables.as_ref());
+    result.impacts = impacts::complete_tables(file, signals, &result, tables);
     if let Some(EndImpact { first, k }) = on_end {
         let numbers = &mut result.impacts[0].numbers;
         (numbers.duration, numbers.restitution) = (first.duration, Some(k));
         result.first_impact = FirstImpact { time: result.first_impact.time, ..first };
         result.k = Some(k);
     }
-    result.filters = impacts::filters(file, signals, &result);
+    result.filters = impacts::filter_table(file, signals, &result);
     result.amplification = impacts::amplification(&result);
-    result.settings.splice(0..0, of_curves(file, effect));
-    match flown.map(|flown| (flown, measured)) {
+    result.settings.splice(0..0, curve_settings(file, effect));
+    match solution.map(|solution| (solution, measured)) {
         None => {}
-        Some((flown, None)) => {
-            result.flight = Some(flown.flight);
-            // A warning took the numbers away: what the motion misses is the reason.
+        Some((solution, None)) => {
+            result.flight = Some(solution.flight);
+            // A warning removed the numbers: the failed checks of the motion are the reason.
             if result.quality.iter().all(|f| f.severity < Severity::Error) {
-                result.reconstruction = Some(flown.reconstruction.without_numbers());
+                result.reconstruction = Some(solution.method.choice.without_numbers());
             }
         }
-        Some((flown, Some(measured))) => {
-            result.reconstruction = Some(flown.reconstruction);
-            result.predictions = predictions(file, Some((&flown.quantities, measured.model.as_ref())));
+        Some((solution, Some(measured))) => {
+            result.reconstruction = Some(solution.method.choice);
+            result.predictions =
+                predictions(file, Some((&solution.method.quantities, measured.model.as_ref())));
             result.model = measured.model;
             result.comparison = measured.comparison;
-            result.budget = flown.budget;
-            result.slap_down.local_speed = flown.local_speed;
-            result.untested = flown.untested;
-            let effect = |input: &Untested| input.moves.in_half_widths(&flown.quantities);
+            result.budget = solution.method.budget;
+            result.slap_down.local_speed = solution.local_speed;
+            result.untested = solution.untested;
+            let effect = |input: &Untested| input.moves.in_half_widths(&solution.method.quantities);
             result.untested.sort_by(|a, b| effect(b).total_cmp(&effect(a)));
-            result.flight = Some(flown.flight);
-            motion = Some(flown.motion.curve);
+            result.flight = Some(solution.flight);
+            motion = Some(solution.motion.curve);
         }
     }
     let ShownSignals { mut signals, .. } = shown;
@@ -99,38 +103,38 @@ pub(super) fn of(
     let (setup, (cutoff_hz, _)) = (sticking(file), motion::cutoff_hz(file.filter, file.cask.mass_kg));
     let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
     let curves = move || Curves { channels: channels(), motion, ..Curves::default() };
-    Analysis { openings, ..analysis(recording, file, result, curves) }
+    Analysis { opened_inputs, ..analysis(recording, file, result, curves) }
 }
 
-/// Lets the intervals reach as far as what is not followed: a landing of L that may come before R strikes, a
-/// step in the flight.
-fn doubt_unfollowed(flown: &mut FlightResult, findings: &[Finding]) {
-    let v0_m_s = flown.quantities.impact_velocity.value;
+/// Widens the intervals by events that the motion does not follow: a possible landing of L before R strikes,
+/// a step in the flight.
+fn widen_for_touches(solution: &mut FlightResult, findings: &[Finding]) {
+    let v0_m_s = solution.method.quantities.impact_velocity.value;
     for finding in findings {
-        let (effect_m_s, of_k) = match finding.what {
+        let (effect_m_s, k_effect) = match finding.what {
             FindingKind::Drop(DropFinding::MayLand { effect_m_s, .. }) => (effect_m_s, 0.0),
             FindingKind::Drop(DropFinding::SmallBlow { step_m_s, .. }) => (step_m_s, step_m_s / v0_m_s),
             _ => continue,
         };
-        let Quantities { speed, vertical_velocity, k, .. } = &mut flown.quantities;
-        k.u95 += of_k;
-        for speed in [speed, vertical_velocity, &mut flown.local_speed].into_iter().flatten() {
+        let Quantities { speed, vertical_velocity, k, .. } = &mut solution.method.quantities;
+        k.u95 += k_effect;
+        for speed in [speed, vertical_velocity, &mut solution.local_speed].into_iter().flatten() {
             speed.u95 += effect_m_s;
         }
     }
 }
 
-/// Lets the intervals of times and lengths reach as far as the way from the corner to the sensor takes; what
-/// they make of the closures, too little in a rigid body, is not theirs.
-fn doubt_times(flown: &mut FlightResult, events: &mut Events) {
-    let [first_s, second_s] = flown.u_late_s;
-    let of_events = [&mut events.first_contact, &mut events.separation, &mut events.slap_down];
-    for (at, u_s) in of_events.into_iter().zip([first_s, first_s, second_s]) {
+/// Widens the intervals of times and lengths by the delay between corner and sensor; its effect on the
+/// checks, too small in a rigid body, is not included there.
+fn widen_times(solution: &mut FlightResult, events: &mut Events) {
+    let [first_s, second_s] = solution.u_late_s;
+    let times = [&mut events.first_contact, &mut events.separation, &mut events.slap_down];
+    for (at, u_s) in times.into_iter().zip([first_s, first_s, second_s]) {
         if let Some(at) = at {
             at.u_s = at.u_s.hypot(u_s);
         }
     }
-    let Quantities { duration, flight_time, .. } = &mut flown.quantities;
+    let Quantities { duration, flight_time, .. } = &mut solution.method.quantities;
     duration.u95 = duration.u95.hypot(fit::COVERAGE * first_s);
     if let Some(flight_time) = flight_time {
         flight_time.u95 = flight_time.u95.hypot(fit::COVERAGE * first_s.hypot(second_s));
@@ -145,13 +149,13 @@ fn analysis(
 ) -> Analysis {
     let (others, events) = (Arc::clone(&recording.others), result.events);
     let curve = move |other: &Channel| motion::other_curve(other, &events);
-    let of_others = move || others.channels.iter().filter_map(curve).collect();
-    let curves = LazyCurves::new(Box::new(move || Curves { others: of_others(), ..curves() }));
+    let other_curves = move || others.channels.iter().filter_map(curve).collect();
+    let curves = LazyCurves::new(Box::new(move || Curves { others: other_curves(), ..curves() }));
     let start_unix_ns = recording.start_unix_ns;
-    Analysis { result, cask_file: file.clone(), curves, start_unix_ns, openings: Vec::new() }
+    Analysis { result, cask_file: file.clone(), curves, start_unix_ns, opened_inputs: Vec::new() }
 }
 
-/// The result with the times of the events and, where they are measured, the quantities.
+/// Fills the result with the times of the events and the quantities, if they were measured.
 fn result(
     recording: &Recording,
     file: &CaskFile,
@@ -162,8 +166,8 @@ fn result(
     let verdict = judge::verdict(&mut findings);
     let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
     let rates_hz = channels.iter().filter(|c| c.axis == Axis::Transverse).map(|c| c.sample_rate_hz);
-    // What the recorder's filters delay all channels by is part of the interval of a time, and of no other.
-    let delay_s = CHAIN_DELAY_SAMPLES / rates_hz.fold(f64::INFINITY, f64::min);
+    // The delay of all channels by the recorder's filters is part of the interval of a time, and of no other.
+    let delay_s = FILTER_DELAY_SAMPLES / rates_hz.fold(f64::INFINITY, f64::min);
     let time = |at: At| Estimate::new(at.time_s, (fit::COVERAGE * at.u_s).hypot(delay_s), "s");
     DropResult {
         schema: "dropcheck.result/1",
@@ -189,25 +193,25 @@ fn result(
         verdict,
         events,
         channels,
-        settings: of_cask_file(file, &events)
+        settings: cask_file_settings(file, &events)
             .into_iter()
-            .chain(of_rest(recording, &events))
-            .chain(of_recorders(recording))
+            .chain(rest_setting(recording, &events))
+            .chain(recorder_settings(recording))
             .collect(),
         cask_text: file.text.clone(),
         ..DropResult::default()
     }
 }
 
-/// Rod and body: the four borderline cases, and the contact law and k of the test, with the length of its
-/// contact where that is the model taken.
+/// Predicts rod and body: the four borderline cases, and the contact law and k of the test, with the duration
+/// of its contact if the selected model includes it.
 fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoice>)>) -> Vec<Prediction> {
     let mut all = Vec::new();
     for body in predict::bodies(&file.cask) {
         all.extend(predict::borderline_cases(&body, &file.drop));
-        all.extend(measured.map(|(measured, taken)| {
+        all.extend(measured.map(|(measured, model)| {
             let contact = compare::contact_as_measured(file, measured);
-            let is_timed = taken.is_some_and(|m| m.rung == Rung::FinitePulse && m.name == body.model);
+            let is_timed = model.is_some_and(|m| m.rung == Rung::FinitePulse && m.name == body.model);
             let contact_duration_s = if is_timed { measured.duration.value.max(0.0) } else { 0.0 };
             let drop = Drop { contact_duration_s, ..file.drop };
             predict::predict(&body, &drop, contact, measured.k.value.clamp(0.0, 1.0))
@@ -216,33 +220,34 @@ fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoi
     all
 }
 
-/// The signals over what the curves show.
+/// Signals over the interval that the curves show.
 pub(super) struct ShownSignals {
     signals: Vec<Signal>,
-    /// As the curves' low-pass leaves them.
+    /// Signals after the curves' low-pass.
     smooth: Vec<Signal>,
 }
 
 impl ShownSignals {
-    pub fn of(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
+    pub fn new(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
         let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
         let signals = motion::cut_shown(signals, events, cutoff_hz);
         Self { smooth: motion::filter(&signals, cutoff_hz), signals }
     }
 }
 
-/// What the curves' low-pass would have changed had it been used for the numbers, in words.
+/// Change of the numbers if the curves' low-pass had been used for them, in words.
 fn filter_effect(
     smooth: &[Signal],
     events: &Events,
-    FlightResult { setup, quantities, flight, .. }: &FlightResult,
+    FlightResult { setup, method, flight, .. }: &FlightResult,
 ) -> Option<String> {
+    let quantities = &method.quantities;
     let speed = quantities.speed?;
     let integrated = motion::Integrated::new(smooth, events.first_contact?.time_s);
     let flight = motion::with_modes(&integrated, flight, quantities.angular_velocity.value, setup.cog_m)?;
     let motion = motion::outcome(&integrated, &flight, events, setup)?;
     let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
-    // No sign before nothing: −0 and 0 are 0.
+    // Adding 0 turns −0 into 0, which has no sign.
     let rounded = |value: f64, parts: f64| (value * parts).round() / parts + 0.0;
     Some(format!(
         "slap-down speed {:+.2} m/s, k {:+.3}",
@@ -255,8 +260,8 @@ fn setting(name: &str, value: impl Into<String>, origin: &str) -> Setting {
     Setting { name: name.into(), value: value.into(), origin: origin.into() }
 }
 
-/// What the curves are made with, and what that would have changed.
-fn of_curves(file: &CaskFile, effect: Option<String>) -> Vec<Setting> {
+/// Lists the settings of the curves, and the effect of their low-pass.
+fn curve_settings(file: &CaskFile, effect: Option<String>) -> Vec<Setting> {
     let (cutoff_hz, origin) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     let effect = effect.map(|effect| {
         setting("effect of that low-pass, had it been applied before integrating", effect, "from the data")
@@ -267,8 +272,8 @@ fn of_curves(file: &CaskFile, effect: Option<String>) -> Vec<Setting> {
     [low_pass].into_iter().chain(effect).chain([integrated]).collect()
 }
 
-/// What the analysis went by, and the free fall where it is seen.
-fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
+/// Lists the inputs of the analysis, and the free fall if it was recorded.
+fn cask_file_settings(file: &CaskFile, events: &Events) -> Vec<Setting> {
     let origin = |key: &str| if file.defaults.iter().any(|d| d == key) { "default" } else { "cask file" };
     let (cask, drop) = (&file.cask, &file.drop);
     let is_given = drop.impact_velocity_given;
@@ -303,8 +308,8 @@ fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
     settings
 }
 
-/// The recordings of other recorders, and how their clocks were joined.
-fn of_recorders(recording: &Recording) -> impl Iterator<Item = Setting> {
+/// Lists the recordings of other recorders, and the shifts of their clocks.
+fn recorder_settings(recording: &Recording) -> impl Iterator<Item = Setting> {
     recording.joined.iter().map(|joined| {
         let JoinedRecording { file, sha256, shift_s, u_s, .. } = joined;
         let by_ms = format!("{:+.3} ± {:.3} ms", 1e3 * shift_s, 2e3 * u_s);
@@ -313,8 +318,8 @@ fn of_recorders(recording: &Recording) -> impl Iterator<Item = Setting> {
     })
 }
 
-/// Where the rest before the drop is from, where it is a file of its own.
-fn of_rest(recording: &Recording, events: &Events) -> Option<Setting> {
+/// Source of the rest before the drop, if it is a separate file.
+fn rest_setting(recording: &Recording, events: &Events) -> Option<Setting> {
     let file = recording.rest.as_ref()?.path.display();
     let value = match events.release_s {
         Some(_) => format!("that of the recording itself; {file} is not used"),

@@ -1,4 +1,5 @@
-//! Angular-rate sensors beside the accelerometers to the rotation that the motion is held against.
+//! Measures the rotation by angular-rate sensors beside the accelerometers, which the motion is compared
+//! with.
 
 use super::impact::Impact;
 use crate::data::{
@@ -6,8 +7,8 @@ use crate::data::{
 };
 use crate::{condition, judge, motion};
 
-/// What the sensors read, without those that cannot be right.
-pub(super) fn measured(
+/// Measures the rotation by each sensor, without those that cannot be right.
+pub(super) fn measure_rotations(
     impact: &Impact,
     file: &CaskFile,
     flight: &FlightFit,
@@ -18,15 +19,15 @@ pub(super) fn measured(
     read.filter(|rotation| judge::judge_rotation(rotation, gained_rad_s).is_none()).collect()
 }
 
-/// What one channel reads, where it is an angular-rate sensor.
+/// Measures the rotation by one channel, if it is an angular-rate sensor.
 fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit) -> Option<MeasuredRotation> {
     let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
-    let usual_s = condition::Reach::of(&file.cask, &file.drop).before_s;
+    let usual_s = condition::Reach::for_drop(&file.cask, &file.drop).before_s;
     condition::measured_rotation(channel, spec.rate?, usual_s, events, flight)
 }
 
-/// What is wrong with a channel beside the accelerometers, where it is an angular-rate sensor.
-pub(super) fn judged(
+/// Reports a fault of a channel beside the accelerometers, if it is an angular-rate sensor.
+pub(super) fn judge_sensor(
     channel: &Channel,
     recording: &Recording,
     file: &CaskFile,
@@ -35,6 +36,6 @@ pub(super) fn judged(
     let flight = result.flight.as_ref()?;
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let gained_rad_s = motion::rotation_from_names(across.map(|c| (&c.name[..], c.position_m)), flight);
-    let read = read(channel, file, &result.events, flight)?;
-    judge::judge_rotation(&read, gained_rad_s).map(|found| found.tag(&channel.name))
+    let rotation = read(channel, file, &result.events, flight)?;
+    judge::judge_rotation(&rotation, gained_rad_s).map(|found| found.tag(&channel.name))
 }

@@ -1,30 +1,29 @@
-//! An analysis whose result contradicts itself to the repetition, without one of its channels, that is
-//! consistent.
+//! Repeats an analysis that contradicts itself without one of its channels, if the result is then consistent.
 
 use super::analyse_once;
-use super::flight_search::Patience;
+use super::flight_search::SearchEffort;
 use crate::data::{
     Analysis, Axis, CaskFile, ChannelFinding, DECISIVE_CHI_SQUARE, DropFinding, Effect, Finding, FindingKind,
-    IssueCode, MISSED_U, Opening, Recording, Severity,
+    IssueCode, MISSED_U, OpenedInput, Recording, Severity,
 };
 use crate::judge;
 
-/// Recordings with more samples are not gone through again: that takes as much memory once more, and some
-/// twenty times as long.
+/// Largest recording that is analysed again, in samples: that takes as much memory once more, and some twenty
+/// times as long.
 const MOST_SAMPLES: usize = 5_000_000;
-/// Nor are those of more channels: each is left out once, and exchanged with each of the other end.
+/// Largest number of channels for that: each is left out once, and exchanged with each of the other end.
 const MOST_CHANNELS_TRIED: usize = 8;
 
-/// How much speaks against an analysis.
+/// Findings and failed checks that contradict an analysis.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub(super) struct Doubt {
+pub(super) struct Inconsistency {
     pub errors: usize,
     pub warnings: usize,
     pub chi_square: f64,
 }
 
-impl Doubt {
-    pub fn of(analysis: &Analysis) -> Self {
+impl Inconsistency {
+    pub fn measure(analysis: &Analysis) -> Self {
         let result = &analysis.result;
         let count = |severity| result.quality.iter().filter(|f| f.severity == severity).count();
         let closures = result.reconstruction.as_ref().map(|choice| &choice.closures);
@@ -40,9 +39,8 @@ fn lacks_end(finding: &Finding) -> bool {
     finding.code == IssueCode::MissingChannel
 }
 
-/// Whether nothing is left that the motion contradicts; an end without a channel shows no slap-down to
-/// compare.
-pub(super) fn closes(analysis: &Analysis) -> bool {
+/// True if nothing contradicts the motion; with channels at one end only there is no slap-down to compare.
+pub(super) fn is_consistent(analysis: &Analysis) -> bool {
     let result = &analysis.result;
     let is_one_ended = result.quality.iter().any(lacks_end);
     let agrees = is_one_ended || result.comparison.is_some_and(|comparison| comparison.agrees);
@@ -51,17 +49,18 @@ pub(super) fn closes(analysis: &Analysis) -> bool {
     is_sound && agrees && result.reconstruction.as_ref().is_some_and(|choice| meets(&choice.closures))
 }
 
-/// `found`, or what is found without the one transverse channel that the others and the closures speak
-/// against, whatever the order of all.
+/// Returns `found`, or the analysis without the one transverse channel that the others and the checks
+/// contradict, independent of the order of all.
 pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analysis) -> Analysis {
     // A warning that contradicts neither the motion nor the other channels has another reason.
     let result = &found.result;
     let is_off_line = |f: &Finding| f.code == IssueCode::NotRigid && f.severity > Severity::Note;
     let has_numbers = result.slap_down.speed.is_some() && result.k.is_some();
-    let is_doubted = !has_numbers || !closes(&found) || result.quality.iter().any(is_off_line);
+    let is_doubted = !has_numbers || !is_consistent(&found) || result.quality.iter().any(is_off_line);
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let spare: Vec<&str> = across.map(|c| c.name.as_str()).collect();
-    // A flight too short for its modes contradicts nothing; without a channel fewer modes fit it.
+    // A flight too short for its modes contradicts nothing; with one channel less it is fitted by fewer
+    // modes.
     let is_short = |f: &Finding| matches!(f.what, FindingKind::Drop(DropFinding::Unresolved { .. }));
     let is_doubted = is_doubted && !result.quality.iter().any(is_short);
     if !is_doubted || spare.len() < 3 || is_too_large(recording) {
@@ -71,38 +70,38 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         let mut others = recording.clone();
         others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
-        let analysis = analyse_once(&others, file, Patience::OneBeginning);
-        (Doubt::of(&analysis), (*name).to_owned(), analysis)
+        let analysis = analyse_once(&others, file, SearchEffort::FirstStart);
+        (Inconsistency::measure(&analysis), (*name).to_owned(), analysis)
     };
     let mut tried: Vec<_> = spare.iter().map(without).collect();
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
-    let before = Doubt::of(&found);
-    let is_alone = |best: &Doubt, next: &Doubt| {
+    let before = Inconsistency::measure(&found);
+    let is_alone = |best: &Inconsistency, next: &Inconsistency| {
         (next.errors, next.warnings) > (best.errors, best.warnings)
             || next.chi_square > best.chi_square + DECISIVE_CHI_SQUARE
     };
-    let is_told = tried.split_first().is_some_and(|((doubt, _, better), others)| {
-        closes(better)
-            && (doubt.errors, doubt.warnings) < (before.errors, before.warnings)
-            && others.iter().all(|(other, ..)| is_alone(doubt, other))
+    let is_clear = tried.split_first().is_some_and(|((least, _, better), others)| {
+        is_consistent(better)
+            && (least.errors, least.warnings) < (before.errors, before.warnings)
+            && others.iter().all(|(other, ..)| is_alone(least, other))
     });
-    // Where another channel's scale or place explains all by far, that one disagrees.
+    // If the scale or place of another channel explains much more, that channel disagrees.
     let is_other = |name: &str| {
         let least = |is_own: bool| {
-            let counts = |o: &&Opening| o.channel.as_deref().is_some_and(|own| (own == name) == is_own);
-            found.openings.iter().filter(counts).map(|o| o.chi_square).fold(f64::INFINITY, f64::min)
+            let counts = |o: &&OpenedInput| o.channel.as_deref().is_some_and(|n| (n == name) == is_own);
+            found.opened_inputs.iter().filter(counts).map(|o| o.chi_square).fold(f64::INFINITY, f64::min)
         };
         least(false) + DECISIVE_CHI_SQUARE < least(true)
     };
-    let remains = |(_, name, without): &(Doubt, String, Analysis)| {
+    let remains = |(_, name, without): &(Inconsistency, String, Analysis)| {
         *name != tried[0].1 && is_alone_at_its_end(recording, name) && !is_refuted(without)
     };
-    if !is_told || is_other(&tried[0].1) || tried.iter().any(remains) {
+    if !is_clear || is_other(&tried[0].1) || tried.iter().any(remains) {
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
-    better.openings.clone_from(&found.openings);
-    // A limit or a broken cable of the channel that is left out is why it disagrees.
+    better.opened_inputs.clone_from(&found.opened_inputs);
+    // A limit or a broken cable of the omitted channel is the reason why it disagrees.
     let is_cause = |f: &&Finding| {
         matches!(f.effect, Effect::VelocityStep | Effect::Disturbance) || f.code == IssueCode::Electrical
     };
@@ -120,15 +119,15 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
     better
 }
 
-/// Whether no other transverse channel sits on a channel's end.
+/// True if no other transverse channel sits on a channel's end.
 fn is_alone_at_its_end(recording: &Recording, name: &str) -> bool {
     let mut across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let own = across.clone().find(|c| c.name == name);
     own.is_some_and(|own| across.all(|c| c.name == name || c.end != own.end))
 }
 
-/// Whether the other channels contradict one another without the one that is left out: where they do not, or
-/// are too few to say, that one may be at fault as well.
+/// True if the other channels contradict one another without the omitted one: otherwise, or if they are too
+/// few to say, that one may be at fault as well.
 fn is_refuted(without: &Analysis) -> bool {
     let contradicts = |f: &Finding| match f.severity {
         Severity::Error => !lacks_end(f),

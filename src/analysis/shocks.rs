@@ -1,5 +1,5 @@
-//! Every channel around the impacts to the shock that it reads there, whether the motion is determined or
-//! not; and the vectors that mounting blocks of three read.
+//! Determines the shock that every channel reads at the impacts, even without a motion; and the vectors of
+//! mounting blocks with three sensors.
 
 use super::{first_look, skin};
 use crate::condition::{self, Reach};
@@ -12,46 +12,47 @@ use crate::numerics::robust;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Where nothing shows when a shock ends, it is sought for so long, s.
+/// Longest search for a shock whose end nothing shows, s.
 const LONGEST_S: f64 = 0.1;
-/// A low-pass smears the second shock over so many periods of its cut-off before it: 1e-3 of it is beyond.
+/// A low-pass spreads the second shock before it, over this many periods of its cut-off: 1e-3 of it lies
+/// beyond.
 const SMEARED_PERIODS: f64 = 1.6;
-/// An impact that a channel's own course shows is found where a tenth of its peak is reached; it begins less
-/// than this before, s.
+/// An impact found in a channel alone is dated at a tenth of its peak; it begins at most this much earlier,
+/// s.
 const FOOT_S: f64 = 5e-3;
-/// A sensor on the skin within 3° of the plane of the drop reads this share of an acceleration in it.
-const UPRIGHT: f64 = 0.9986;
+/// Share of an acceleration in the plane of the drop that a sensor on the skin reads within 3° of that plane.
+const LEAST_SHARE: f64 = 0.9986;
 
 /// Adds the shock of every channel to the result.
-pub(super) fn add(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
-    let Some(sought) = ShockSearch::new(recording, file, &found.result) else { return };
-    let in_motion = recording.channels.par_iter().map(|channel| sought.of_motion(channel));
-    let others = recording.others.channels.par_iter().zip(&found.result.other_channels);
-    let others = others.map(|(channel, summary)| sought.of_other(channel, summary));
+pub(super) fn add(recording: &Recording, file: &CaskFile, analysis: &mut Analysis) {
+    let Some(search) = ShockSearch::new(recording, file, &analysis.result) else { return };
+    let in_motion = recording.channels.par_iter().map(|channel| search.motion_shocks(channel));
+    let others = recording.others.channels.par_iter().zip(&analysis.result.other_channels);
+    let in_others = others.map(|(channel, summary)| search.other_shocks(channel, summary));
     let blocks = skin::blocks(file);
-    let of_blocks = blocks.par_iter().map(|block| sought.of_block(*block, recording));
-    let all: Vec<Vec<Shock>> = in_motion.chain(others).chain(of_blocks).collect();
-    found.result.shocks = all.into_iter().flatten().collect();
+    let in_blocks = blocks.par_iter().map(|block| search.block_shocks(*block, recording));
+    let all: Vec<Vec<Shock>> = in_motion.chain(in_others).chain(in_blocks).collect();
+    analysis.result.shocks = all.into_iter().flatten().collect();
 }
 
-/// Where shocks are sought that the tables of the impacts do not have.
+/// Search for shocks that the tables of the impacts do not contain.
 struct ShockSearch<'a> {
     file: &'a CaskFile,
     result: &'a DropResult,
     cutoff_hz: f64,
-    /// When the first impact begins, s, by the motion or by the channels themselves.
+    /// Start of the first impact, s, from the motion or from the channels themselves.
     contact_s: f64,
 }
 
 impl<'a> ShockSearch<'a> {
-    /// `None` where no channel shows an impact.
+    /// Prepares the search; `None` if no channel shows an impact.
     fn new(recording: &Recording, file: &'a CaskFile, result: &'a DropResult) -> Option<Self> {
-        let contact_s = result.events.first_contact_s().or_else(|| own_impact_s(recording))?;
+        let contact_s = result.events.first_contact_s().or_else(|| find_impact_s(recording))?;
         let cutoff_hz = motion::cutoff_hz(file.filter, file.cask.mass_kg).0;
         Some(Self { file, result, cutoff_hz, contact_s })
     }
 
-    /// The stretch of each impact, s.
+    /// Interval of each impact, s.
     fn stretches_s(&self) -> Vec<(End, [f64; 2])> {
         let second_s = self.result.events.slap_down_s();
         let latest_s = second_s.map_or(f64::INFINITY, |at_s| at_s - SMEARED_PERIODS / self.cutoff_hz);
@@ -61,13 +62,14 @@ impl<'a> ShockSearch<'a> {
         [Some(first), second].into_iter().flatten().collect()
     }
 
-    /// When the last of them ends, s.
+    /// End of the last interval, s.
     fn end_s(&self) -> f64 {
         self.stretches_s().iter().map(|(_, [_, to_s])| *to_s).fold(self.contact_s, f64::max)
     }
 
-    /// The shocks of a channel of the motion: those of the impacts' tables, else those of the channel alone.
-    fn of_motion(&self, channel: &Channel) -> Vec<Shock> {
+    /// Returns the shocks of a channel of the motion: those of the impacts' tables, else those of the channel
+    /// alone.
+    fn motion_shocks(&self, channel: &Channel) -> Vec<Shock> {
         let tables = self.result.impacts.iter();
         let pulse = |(end, peaks): (End, &[ChannelPeak])| {
             let own = peaks.iter().find(|peak| peak.name == channel.name)?;
@@ -75,14 +77,15 @@ impl<'a> ShockSearch<'a> {
             Some(Shock { known, ..shock(channel, end, own.pulse, true) })
         };
         let shocks: Vec<Shock> = tables.filter_map(|table| pulse((table.end, &table.channels))).collect();
-        // The tables have what a sensor aslant on the skin would read in the plane of the drop.
-        let is_alone = shocks.is_empty() || self.share(channel) < UPRIGHT;
+        // The tables contain the reading in the plane of the drop, which a sensor at an angle on the skin
+        // does not show itself.
+        let is_alone = shocks.is_empty() || self.share(channel) < LEAST_SHARE;
         if is_alone { self.shocks_of(channel, &[self.as_read(channel)], true) } else { shocks }
     }
 
-    /// The shocks of the vector that the three sensors of a mounting block read; none where they are of
-    /// different times.
-    fn of_block(&self, specs: [&ChannelSpec; 3], recording: &Recording) -> Vec<Shock> {
+    /// Returns the shocks of the vector that the three sensors of a mounting block read; none if their
+    /// samples have different times.
+    fn block_shocks(&self, specs: [&ChannelSpec; 3], recording: &Recording) -> Vec<Shock> {
         let [Some(one), Some(other), Some(axial)] = specs.map(|spec| channel_of(spec, recording)) else {
             return Vec::new();
         };
@@ -93,12 +96,12 @@ impl<'a> ShockSearch<'a> {
         let components = specs.map(|spec| spec.name.clone()).to_vec();
         let channel = format!("resultant of {}", components.join(", "));
         let shocks = self.shocks_of(&axial, &signals, true).into_iter();
-        let named = |s| Shock { channel: channel.clone(), components: components.clone(), ..s };
-        shocks.map(named).collect()
+        let rename = |s| Shock { channel: channel.clone(), components: components.clone(), ..s };
+        shocks.map(rename).collect()
     }
 
-    /// The shocks of a channel that takes no part in the motion.
-    fn of_other(&self, channel: &Channel, summary: &OtherSummary) -> Vec<Shock> {
+    /// Returns the shocks of a channel that takes no part in the motion.
+    fn other_shocks(&self, channel: &Channel, summary: &OtherSummary) -> Vec<Shock> {
         if let Some(accelerometer) = accelerometer(channel) {
             return self.shocks_of(channel, &[self.accelerations(&accelerometer)], true);
         }
@@ -117,28 +120,28 @@ impl<'a> ShockSearch<'a> {
         self.shocks_of(channel, &[whole.cut_with(from, changes)], false)
     }
 
-    /// What a sensor reads of the acceleration that its channel holds, as a share.
+    /// Share of its channel's acceleration that a sensor itself reads.
     fn share(&self, channel: &Channel) -> f64 {
         let spec = self.file.channels.iter().find(|spec| spec.name == channel.name);
         spec.map_or(1.0, |spec| spec.axis_share().abs())
     }
 
-    /// A channel over the impacts as its sensor reads.
+    /// Returns a channel over the impacts as its sensor reads.
     fn as_read(&self, channel: &Channel) -> Signal {
         let (share, mut signal) = (self.share(channel), self.accelerations(channel));
         signal.force_m_s2.iter_mut().for_each(|force| *force *= share);
         signal
     }
 
-    /// A channel over the impacts, counted from its level in the free fall.
+    /// Returns a channel over the impacts, less its level in the free fall.
     fn accelerations(&self, channel: &Channel) -> Signal {
-        let usual = Reach::of(&self.file.cask, &self.file.drop);
+        let usual = Reach::for_drop(&self.file.cask, &self.file.drop);
         let reach = Reach { after_s: self.end_s() + LONGEST_S - self.contact_s, ..usual };
         let event = CoarseEvent { near_s: self.contact_s, spread_s: 0.0, velocity_step_m_s: 0.0 };
-        condition::signal(channel, &event, &reach, self.file.corrections).0
+        condition::condition_channel(channel, &event, &reach, self.file.corrections).0
     }
 
-    /// The shocks of a signal, or of the vector of several.
+    /// Returns the shocks of a signal, or of the vector of several.
     fn shocks_of(&self, channel: &Channel, signals: &[Signal], is_acceleration: bool) -> Vec<Shock> {
         let found = |(end, stretch_s): (End, [f64; 2])| {
             let pulse = motion::vector_pulses(signals, signals.len(), stretch_s, self.cutoff_hz).pop();
@@ -148,7 +151,7 @@ impl<'a> ShockSearch<'a> {
     }
 }
 
-/// A pulse in the channel's unit; an acceleration that is recorded as a voltage in m/s².
+/// States a pulse in the channel's unit; an acceleration that is recorded as a voltage in m/s².
 fn shock(channel: &Channel, event: End, pulse: Option<ChannelPulse>, is_acceleration: bool) -> Shock {
     let own_m_s2 = acceleration_unit_m_s2(&channel.unit);
     let unit_m_s2 = is_acceleration.then_some(own_m_s2.unwrap_or(1.0));
@@ -170,7 +173,7 @@ fn shock(channel: &Channel, event: End, pulse: Option<ChannelPulse>, is_accelera
     }
 }
 
-/// The channel of an accelerometer, in m/s².
+/// Finds the channel of an accelerometer, in m/s².
 fn channel_of<'a>(spec: &ChannelSpec, recording: &'a Recording) -> Option<Cow<'a, Channel>> {
     let is_own = |channel: &&Channel| channel.name == spec.name;
     let of_motion = recording.channels.iter().find(is_own).map(Cow::Borrowed);
@@ -178,18 +181,18 @@ fn channel_of<'a>(spec: &ChannelSpec, recording: &'a Recording) -> Option<Cow<'a
     of_motion.or_else(|| other().map(Cow::Owned))
 }
 
-/// An accelerometer that takes no part in the motion as one of the motion, in m/s².
+/// Converts an accelerometer that takes no part in the motion into a channel of the motion, in m/s².
 fn accelerometer(other: &Channel) -> Option<Channel> {
     let unit_m_s2 = acceleration_unit_m_s2(&other.unit)?;
     let scale_m_s2 = other.scale_m_s2 * unit_m_s2;
     Some(Channel { scale_m_s2, axis: Axis::Transverse, ..other.clone() })
 }
 
-/// When the first impact begins by what the channels read themselves, s: the median of those that show one.
-fn own_impact_s(recording: &Recording) -> Option<f64> {
-    let of_motion = recording.channels.iter().filter_map(first_look::impact_s);
+/// Start of the first impact in the channels themselves, s: the median of those that show one.
+fn find_impact_s(recording: &Recording) -> Option<f64> {
+    let of_motion = recording.channels.iter().filter_map(first_look::find_impact_s);
     let others = recording.others.channels.iter().filter_map(accelerometer);
-    let others = others.filter_map(|channel| first_look::impact_s(&channel));
+    let others = others.filter_map(|channel| first_look::find_impact_s(&channel));
     let mut begins_s: Vec<f64> = of_motion.chain(others).collect();
     Some(robust::median(&mut begins_s) - FOOT_S).filter(|at_s| at_s.is_finite())
 }

@@ -1,5 +1,5 @@
-//! A calculation beside the test to its curves laid over the measured ones, their ratings, and numbers of
-//! both.
+//! Compares a calculation with the test: lays its curves over the measured ones, rates them, and lists
+//! numbers of both.
 
 use super::impacts;
 use crate::data::{
@@ -13,71 +13,72 @@ use crate::numerics::quadrature::running_integral;
 use crate::numerics::rating::{self, RATING_STEP_S};
 use crate::numerics::{as_count, as_f64, reduce};
 
-/// Both first contacts are where a filtered curve first reaches this share of its first peak.
-const FOOT: f64 = 0.1;
-/// The level of a calculation is read up to so long before that, s.
+/// Both first contacts are the times at which a filtered curve first reaches this share of its first peak.
+const ONSET_SHARE: f64 = 0.1;
+/// The level of a calculation is determined until this long before that time, s.
 const CLEAR_S: f64 = 1e-3;
-/// So many times 1/f without force stand before a calculation, for its low-pass with −3 dB at f.
-const REACH: f64 = 6.2;
-/// Curves that share less after first contact are not rated, s: the shortest first impact of a limiter.
+/// Length of zeros before a calculation, in periods 1/f of its low-pass with −3 dB at f.
+const LEAD_PERIODS: f64 = 6.2;
+/// Shortest common interval after first contact that is rated, s: the shortest first impact of a limiter.
 const LEAST_SHARED_S: f64 = 5e-3;
 
 /// Reads the curves of the file that `[simulation]` names, if it names one.
 ///
 /// # Errors
-/// [`IngestError`] where the file cannot be read or lacks a column.
-pub(super) fn calculation(file: &CaskFile, limits: Limits) -> Result<Option<Box<Recording>>, IngestError> {
+/// [`IngestError`] if the file cannot be read or lacks a column.
+pub(super) fn read_curves(file: &CaskFile, limits: Limits) -> Result<Option<Box<Recording>>, IngestError> {
     let Some(spec) = &file.simulation else { return Ok(None) };
     let (time, channels) = (spec.time.clone(), spec.channels.clone());
     let columns = CaskFile { path: file.path.clone(), time, channels, ..CaskFile::default() };
     ingest::read_within(&spec.path, &columns, limits, &|_| ()).map(|read| Some(Box::new(read)))
 }
 
-/// Adds to the result how the calculation agrees with the recording, and its curves to the curves.
-pub(super) fn add(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
+/// Adds the agreement of the calculation with the recording to the result, and its curves to the curves.
+pub(super) fn add(recording: &Recording, file: &CaskFile, analysis: &mut Analysis) {
     let Some(calculation) = &recording.calculation else { return };
     let path = calculation.path.display().to_string();
-    let of_file = |issue: &Finding| {
-        let of_calculation = DropFinding::InCalculation { file: path.clone(), found: issue.message.clone() };
-        Finding { channel: issue.channel.clone(), ..of_calculation.into() }
+    let as_finding = |issue: &Finding| {
+        let in_file = DropFinding::InCalculation { file: path.clone(), found: issue.message.clone() };
+        Finding { channel: issue.channel.clone(), ..in_file.into() }
     };
-    let mut findings: Vec<Finding> = calculation.issues.iter().map(of_file).collect();
+    let mut findings: Vec<Finding> = calculation.issues.iter().map(as_finding).collect();
     let (mut rows, mut numbers, mut curves) = (Vec::new(), Vec::new(), Vec::new());
-    match Overlay::of(calculation, file, found) {
+    match Overlay::new(calculation, file, analysis) {
         Err(why) => findings.push(DropFinding::NotRated { why }.into()),
         Ok(overlay) => {
             for pair in &overlay.pairs {
                 rows.extend(overlay.rows(pair));
-                numbers.extend(overlay.numbers(pair, &found.result));
+                numbers.extend(overlay.numbers(pair, &analysis.result));
                 curves.push(overlay.curve(pair));
             }
         }
     }
-    found.curves.calculated = curves;
-    let result = &mut found.result;
+    analysis.curves.calculated = curves;
+    let result = &mut analysis.result;
     (result.simulation, result.calculated) = (rows, numbers);
     result.input.simulation = Some(path);
     result.input.simulation_sha256 = Some(calculation.sha256.clone());
     result.quality.extend(findings);
 }
 
-/// A measured curve and a calculated one of the same channel.
+/// A measured curve and the calculated one of the same channel.
 struct CurvePair<'a> {
     measured: &'a ChannelCurve,
     /// The measured curve, low-passed.
     smooth: Signal,
-    /// The calculated one behind so many samples without force, on its own times.
+    /// The calculated curve after this many samples without force, on its own times.
     calculated: Signal,
     before: usize,
-    /// That, low-passed alike.
+    /// The calculated curve, low-passed likewise.
     calculated_smooth: Signal,
-    /// What was taken off it, its level before its first contact.
+    /// Level before its first contact, which was subtracted.
     level_m_s2: f64,
 }
 
 impl<'a> CurvePair<'a> {
-    /// The pair, or why there is none; the measured first impact lies within `first_s`.
-    fn of(
+    /// Pairs the curves, or returns the reason why it cannot; the measured first impact lies within
+    /// `first_s`.
+    fn new(
         measured: &'a ChannelCurve,
         channel: &Channel,
         first_s: [f64; 2],
@@ -91,11 +92,11 @@ impl<'a> CurvePair<'a> {
             format!("{rate_hz:.0} values a second do not carry the low-pass of {cutoff_hz:.0} Hz; write more")
         })?;
         let smooth = measured_signal(measured).ok_or("the recording has no curve of it")?;
-        let foot_m_s2 = FOOT * peak(&smooth, first_s);
+        let foot_m_s2 = ONSET_SHARE * peak(&smooth, first_s);
         let rises = force_m_s2.iter().position(|f| (f - force_m_s2[0]).abs() >= foot_m_s2);
         let quiet = rises.unwrap_or_default().saturating_sub(as_count(CLEAR_S * rate_hz)).max(1);
         let level_m_s2 = force_m_s2.iter().take(quiet).sum::<f64>() / as_f64(quiet);
-        let before = as_count(REACH / cutoff_hz * rate_hz);
+        let before = as_count(LEAD_PERIODS / cutoff_hz * rate_hz);
         let force_m_s2 = force_m_s2.iter().map(|f| f - level_m_s2);
         let calculated = Signal {
             start_s: channel.start_s - as_f64(before) / rate_hz,
@@ -112,7 +113,7 @@ impl<'a> CurvePair<'a> {
     }
 }
 
-/// The measured curve as a signal; `None` where it has fewer than two points.
+/// Converts the measured curve into a signal; `None` if it has fewer than two points.
 fn measured_signal(curve: &ChannelCurve) -> Option<Signal> {
     let (start_s, last_s) = (*curve.time_s.first()?, *curve.time_s.last()?);
     let sample_rate_hz = as_f64(curve.time_s.len() - 1) / (last_s - start_s);
@@ -120,13 +121,13 @@ fn measured_signal(curve: &ChannelCurve) -> Option<Signal> {
     sample_rate_hz.is_finite().then(|| signal.cut_with(0, curve.filtered_m_s2.clone()))
 }
 
-/// The largest magnitude between two times, s.
+/// Largest magnitude between two times, s.
 fn peak(signal: &Signal, between_s: [f64; 2]) -> f64 {
     let [from, to] = between_s.map(|time_s| signal.index_from(time_s));
     reduce::peak(&signal.force_m_s2[from.min(to)..to])
 }
 
-/// When the magnitude first reaches a level, s, on a line between two samples.
+/// Time at which the magnitude first reaches a level, s, interpolated linearly.
 fn rises_s(signal: &Signal, from_s: f64, level_m_s2: f64) -> Option<f64> {
     let size = |i: usize| signal.force_m_s2[i].abs();
     let first = (signal.index_from(from_s)..signal.force_m_s2.len()).find(|&i| size(i) >= level_m_s2)?;
@@ -135,7 +136,7 @@ fn rises_s(signal: &Signal, from_s: f64, level_m_s2: f64) -> Option<f64> {
     Some(signal.time_s(first) - share / signal.sample_rate_hz)
 }
 
-/// The value at a time, s, on a line between two samples; 0 outside.
+/// Value at a time, s, interpolated linearly; 0 outside.
 fn value_at(signal: &Signal, time_s: f64) -> f64 {
     let place = signal.position_at(time_s);
     let (below, value) = (as_count(place), |i: usize| signal.force_m_s2.get(i).copied().unwrap_or_default());
@@ -143,27 +144,27 @@ fn value_at(signal: &Signal, time_s: f64) -> f64 {
     if place < 0.0 { 0.0 } else { value(below) * (1.0 - share) + value(below + 1) * share }
 }
 
-/// Curves of a calculation over those of a recording, by one shift of time.
+/// Curves of a calculation laid over those of a recording, with one shift of time.
 struct Overlay<'a> {
     pairs: Vec<CurvePair<'a>>,
     cutoff_hz: f64,
-    /// Where the measured pulses of both impacts were sought, s; the first begins with first contact.
+    /// Intervals of the measured pulses of both impacts, s; the first begins with first contact.
     first_s: [f64; 2],
     second_s: Option<[f64; 2]>,
-    /// What is added to the times of the calculation.
+    /// Shift that is added to the calculation's times.
     shift_s: f64,
 }
 
 impl<'a> Overlay<'a> {
-    /// The curves laid over each other, or why they cannot be.
-    fn of(calculation: &Recording, file: &CaskFile, found: &'a Analysis) -> Result<Self, String> {
+    /// Lays the curves over each other, or returns the reason why it cannot.
+    fn new(calculation: &Recording, file: &CaskFile, analysis: &'a Analysis) -> Result<Self, String> {
         let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
-        let [first_s, second_s] = impacts::stretches_s(&found.result.events, None, file.cask.length_m);
+        let [first_s, second_s] = impacts::stretches_s(&analysis.result.events, None, file.cask.length_m);
         let first_s = first_s.ok_or("the recording shows no first contact")?;
         let pair = |channel: &Channel| {
-            let measured = found.curves.channels.iter().find(|curve| curve.channel == channel.name);
+            let measured = analysis.curves.channels.iter().find(|curve| curve.channel == channel.name);
             let measured = measured.ok_or_else(|| "the recording has no curve of it".to_owned());
-            let pair = measured.and_then(|measured| CurvePair::of(measured, channel, first_s, cutoff_hz));
+            let pair = measured.and_then(|measured| CurvePair::new(measured, channel, first_s, cutoff_hz));
             pair.map_err(|why| format!("{}: {why}", channel.name))
         };
         let pairs: Vec<CurvePair> = calculation.channels.iter().map(pair).collect::<Result<_, _>>()?;
@@ -179,12 +180,12 @@ impl<'a> Overlay<'a> {
         Ok(overlay)
     }
 
-    /// The shift by the channel that the first impact shows best.   (55)
+    /// Determines the shift from the channel that shows the first impact best   (55)
     fn aligning_shift_s(&self) -> Result<f64, String> {
         let first_peak = |pair: &CurvePair| peak(&pair.smooth, self.first_s);
         let best = self.pairs.iter().max_by(|a, b| first_peak(a).total_cmp(&first_peak(b)));
         let pair = best.ok_or("it has no channel")?;
-        let (foot_m_s2, [contact_s, left_s]) = (FOOT * first_peak(pair), self.first_s);
+        let (foot_m_s2, [contact_s, left_s]) = (ONSET_SHARE * first_peak(pair), self.first_s);
         let calculated = &pair.calculated_smooth;
         let measured_s = rises_s(&pair.smooth, contact_s - 2.0 / self.cutoff_hz, foot_m_s2);
         let rough_s = rises_s(calculated, calculated.start_s, foot_m_s2);
@@ -194,7 +195,7 @@ impl<'a> Overlay<'a> {
                 pair.name()
             ));
         };
-        let own_foot_m_s2 = FOOT * peak(calculated, [rough_s, rough_s + left_s - contact_s]);
+        let own_foot_m_s2 = ONSET_SHARE * peak(calculated, [rough_s, rough_s + left_s - contact_s]);
         if pair.level_m_s2.abs() >= own_foot_m_s2 {
             let name = pair.name();
             return Err(format!("{name} begins within its first impact; let the file begin before contact"));
@@ -203,7 +204,7 @@ impl<'a> Overlay<'a> {
         Ok(measured_s - calculated_s.unwrap_or(rough_s))
     }
 
-    /// The last time that both curves reach, s.
+    /// Last time that both curves include, s.
     fn end_s(&self, pair: &CurvePair) -> f64 {
         pair.smooth.end_s().min(pair.calculated.end_s() + self.shift_s)
     }
@@ -229,7 +230,7 @@ impl<'a> Overlay<'a> {
         pair.measured.velocity_m_s.get(at).copied().unwrap_or_default()
     }
 
-    /// The ratings of acceleration and velocity.   (54)
+    /// Ratings of acceleration and velocity   (54)
     fn rows(&self, pair: &CurvePair) -> impl Iterator<Item = SimulationRow> {
         let rated = [RatedQuantity::Acceleration, RatedQuantity::Velocity].into_iter();
         rated.zip(self.stretches(pair)).filter_map(|(quantity, [measured, calculated])| {
@@ -248,7 +249,7 @@ impl<'a> Overlay<'a> {
         })
     }
 
-    /// The calculated curve on the recording's times, as far as the measured one reaches.
+    /// Calculated curve on the recording's times, as far as the measured one extends.
     fn curve(&self, pair: &CurvePair) -> ChannelCurve {
         let smooth = &pair.calculated_smooth;
         let gained_m_s = running_integral(&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
@@ -272,7 +273,7 @@ impl<'a> Overlay<'a> {
         let calculated = [Signal { start_s, ..pair.calculated.clone() }];
         let end_s = calculated[0].end_s();
         let [contact_s, left_s] = [self.first_s[0], result.events.separation_s().unwrap_or(f64::NAN)];
-        // The second pulse of the calculation may come earlier or later than the measured one.
+        // The second pulse of the calculation may be earlier or later than the measured one.
         let second_s = self.second_s.filter(|[_, to_s]| left_s.is_finite() && *to_s <= end_s);
         let stretches_s =
             [Some(self.first_s), second_s.map(|[from_s, _]| [f64::midpoint(from_s, left_s), end_s])];

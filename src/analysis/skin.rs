@@ -1,4 +1,4 @@
-//! Sensors of the skin to what each place reads in the plane of the drop, and across it   (53)
+//! Combines sensors on the skin into the reading of each place in the plane of the drop, and across it   (53)
 
 use crate::data::{
     Axis, CaskFile, Channel, ChannelSpec, Events, Finding, RestLevel, Signal, SkinDirection, SkinPlace, Span,
@@ -7,23 +7,24 @@ use crate::data::{
 use crate::judge;
 use crate::numerics::{reduce, robust};
 
-/// A radial and a tangential sensor within this of one another along the axis, m, and around the skin, rad,
-/// are one place: a mounting block.
+/// A radial and a tangential sensor at most this far apart along the axis, m, and around the skin, rad, are
+/// one place: a mounting block.
 const SAME_PLACE_M: f64 = 0.02;
 const SAME_PLACE_RAD: f64 = 0.05;
 
-/// Two directions are square to one another within 3°: the cosine between them.
+/// Two directions are perpendicular to one another within 3°: the cosine between them.
 const SQUARE: f64 = 0.05;
 
 /// Standard uncertainty of the angle at which a sensor is mounted, rad: 1° at 95 %, as a block is set by a
 /// spirit level.
 const U_AROUND_RAD: f64 = 0.0087;
 
-/// Free fall that the offset of a sensor across the plane is taken from, s.
+/// Length of free fall that determines the offset of a sensor across the plane, and its distance from the
+/// contact, s.
 const FREE_FALL_S: f64 = 0.1;
 const CLEAR_S: f64 = 1e-3;
 
-/// The radial and the tangential sensor of each place that has both.
+/// Lists the radial and the tangential sensor of each place that has both.
 fn pairs(specs: &[ChannelSpec]) -> impl Iterator<Item = [&ChannelSpec; 2]> {
     let reads = |spec: &ChannelSpec, way| spec.skin.filter(|skin| skin.direction == way);
     specs.iter().filter_map(move |radial| {
@@ -39,8 +40,8 @@ fn pairs(specs: &[ChannelSpec]) -> impl Iterator<Item = [&ChannelSpec; 2]> {
     })
 }
 
-/// The sensors of each mounting block that has three: two square to one another across the axis, and the one
-/// along it.
+/// Lists the sensors of each mounting block with three: two perpendicular ones across the axis, and the axial
+/// one.
 pub(super) fn blocks(file: &CaskFile) -> Vec<[&ChannelSpec; 3]> {
     let others = file.others.iter().map(|other| &other.read).filter(|spec| spec.skin.is_some());
     let all: Vec<&ChannelSpec> = file.channels.iter().chain(others).collect();
@@ -60,28 +61,28 @@ pub(super) fn blocks(file: &CaskFile) -> Vec<[&ChannelSpec; 3]> {
     block.collect()
 }
 
-/// The weights of a pair in the plane: the squares of their shares, since a signal is what the sensor reads
-/// over its share. Of one angle they add up to 1.
+/// Weights of a pair in the plane: the squares of their shares, since a signal is the sensor's reading over
+/// its share. For one angle their sum is 1.
 fn weights(pair: [&ChannelSpec; 2]) -> [f64; 2] {
     let squares = pair.map(|spec| spec.axis_share().powi(2));
     squares.map(|square| square / (squares[0] + squares[1]))
 }
 
-/// Puts in place of the radial and the tangential signal of a place the one in the plane of the drop, under
-/// the name of the radial one; returns those across it, of the same names. What a sensor alone reads is not
-/// told from a motion across the plane, and its scale is as uncertain as its angle.
+/// Replaces the radial and the tangential signal of a place by the one in the plane of the drop, under the
+/// name of the radial one; returns the signals across it, with the same names. A single sensor cannot
+/// separate a motion across the plane from its own reading, and its scale is as uncertain as its angle.
 pub(super) fn turn_into_plane(signals: &mut Vec<Signal>, specs: &[ChannelSpec]) -> Vec<Signal> {
     let mut across = Vec::new();
     for pair in pairs(specs) {
         let places = pair.map(|spec| signals.iter().position(|signal| signal.name == spec.name));
         let [Some(radial), Some(tangential)] = places else { continue };
-        let both = [&signals[radial], &signals[tangential]];
-        if !are_of_same_times(both) {
+        let pair_signals = [&signals[radial], &signals[tangential]];
+        if !are_of_same_times(pair_signals) {
             continue;
         }
         let [share, other] = pair.map(ChannelSpec::axis_share);
-        across.push(combined(both, [share * other, -share * other]));
-        signals[radial] = combined(both, weights(pair));
+        across.push(combine(pair_signals, [share * other, -share * other]));
+        signals[radial] = combine(pair_signals, weights(pair));
         signals.remove(tangential);
     }
     let is_paired = |signal: &Signal| across.iter().any(|of_pair| of_pair.name == signal.name);
@@ -96,7 +97,7 @@ pub(super) fn turn_into_plane(signals: &mut Vec<Signal>, specs: &[ChannelSpec]) 
     across
 }
 
-/// Puts the levels at rest of a place into the plane of the drop, likewise; without both there is none.
+/// Combines the levels at rest of a place likewise; without both there is none.
 pub(super) fn turn_rests(rests: &mut Vec<RestLevel>, across: &[Signal], specs: &[ChannelSpec]) {
     for pair in pairs(specs).filter(|[radial, _]| across.iter().any(|of_pair| of_pair.name == radial.name)) {
         let is_of_pair = |rest: &mut RestLevel| pair.iter().any(|spec| rest.channel == spec.name);
@@ -113,14 +114,14 @@ pub(super) fn turn_rests(rests: &mut Vec<RestLevel>, across: &[Signal], specs: &
     }
 }
 
-/// True if the samples of both are of the same times, but for a part of a step.
+/// True if the samples of both signals have the same times, within a fraction of a step.
 pub(super) fn are_of_same_times([one, other]: [&Signal; 2]) -> bool {
     let is_shifted = (one.start_s - other.start_s).abs() * one.sample_rate_hz >= 1.0;
     !is_shifted && (one.sample_rate_hz / other.sample_rate_hz - 1.0).abs() < 1e-9
 }
 
-/// The spans of either, each once.
-fn united(one: &[Span], other: &[Span]) -> Vec<Span> {
+/// Merges the spans of both, without overlaps.
+fn merge_spans(one: &[Span], other: &[Span]) -> Vec<Span> {
     let mut all = [one, other].concat();
     all.sort_by_key(|span| span.from);
     all.dedup_by(|next, span| {
@@ -131,8 +132,8 @@ fn united(one: &[Span], other: &[Span]) -> Vec<Span> {
     all
 }
 
-/// The sum of two signals of the same times by their weights.
-fn combined([one, other]: [&Signal; 2], [first, second]: [f64; 2]) -> Signal {
+/// Weighted sum of two signals with the same times.
+fn combine([one, other]: [&Signal; 2], [first, second]: [f64; 2]) -> Signal {
     let sum = |a: f64, b: f64| first * a + second * b;
     let u = |a: f64, b: f64| (first * a).hypot(second * b);
     let bins = one.noise_spectrum.iter().zip(&other.noise_spectrum);
@@ -143,33 +144,33 @@ fn combined([one, other]: [&Signal; 2], [first, second]: [f64; 2]) -> Signal {
         noise_m_s2: u(one.noise_m_s2, other.noise_m_s2),
         noise_spectrum: bins.map(|(a, b)| (a.0, sum(first * a.1, second * b.1))).collect(),
         free_fall_s: one.free_fall_s.min(other.free_fall_s),
-        clipped: united(&one.clipped, &other.clipped),
-        gaps: united(&one.gaps, &other.gaps),
+        clipped: merge_spans(&one.clipped, &other.clipped),
+        gaps: merge_spans(&one.gaps, &other.gaps),
         ..one.clone()
     }
 }
 
-/// What pairs of the skin, and the channels beside the motion, say of a motion across the plane of the drop,
-/// and which of the recorded signals cannot tell.
+/// Judges the motion across the plane of the drop, from pairs on the skin and channels beside the motion;
+/// names recorded signals that cannot show it.
 pub(super) fn judge_across(
     [pairs, recorded]: [&[Signal]; 2],
     channels: &[Channel],
     events: &Events,
     file: &CaskFile,
 ) -> Vec<Finding> {
-    let of_other = |channel: &Channel| {
+    let signal = |channel: &Channel| {
         let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
-        spec.read.skin.and_then(|_| across(channel, events))
+        spec.read.skin.and_then(|_| lateral_signal(channel, events))
     };
-    let others: Vec<Signal> = channels.iter().filter_map(of_other).collect();
+    let others: Vec<Signal> = channels.iter().filter_map(signal).collect();
     let moving = pairs.iter().chain(&others);
     let moving = moving.filter_map(|signal| judge::judge_across(signal, events));
     let alone = recorded.iter().filter_map(judge::judge_alone);
     moving.chain(alone).collect()
 }
 
-/// The signal of a sensor that reads across the plane, from the free fall on.
-fn across(channel: &Channel, events: &Events) -> Option<Signal> {
+/// Signal of a sensor that reads across the plane, from the free fall on.
+fn lateral_signal(channel: &Channel, events: &Events) -> Option<Signal> {
     let contact_s = events.first_contact_s()?;
     let unit_m_s2 = acceleration_unit_m_s2(&channel.unit)?;
     let from_s = events.release_s.map_or(contact_s - FREE_FALL_S, |at_s| at_s.max(contact_s - FREE_FALL_S));

@@ -1,4 +1,4 @@
-//! `analyze`: one recording and one cask file to a table and a report.
+//! `analyze`: analyses one recording with its cask file, prints the table and writes the report.
 
 use super::Ending;
 use super::limits::Bounds;
@@ -11,8 +11,8 @@ use crate::analysis::{complete, read_within};
 use crate::data::keys::CORRECTIONS;
 use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, Setting, Verdict};
 use crate::{ingest, report};
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Args, ValueEnum};
 use miette::{ensure, miette};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -46,8 +46,8 @@ pub struct Arguments {
     #[arg(long, requires = "out")]
     pdf: bool,
     /// Separators of curves.csv and srs.csv: en (comma, decimal point) or de (semicolon, decimal comma)
-    #[arg(long, value_name = "LOCALE", default_value = "en", requires = "out")]
-    csv_locale: CsvLocale,
+    #[arg(long, value_name = "LOCALE", default_value = "en", value_parser = ["en", "de"], requires = "out")]
+    csv_locale: String,
     /// Print all tables below the first screen
     #[arg(long)]
     full: bool,
@@ -56,47 +56,40 @@ pub struct Arguments {
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
-    switched_off: SwitchedOff,
+    disabled: DisabledCorrections,
     #[command(flatten)]
     bounds: Bounds,
 }
 
-/// How a table separates cells and decimals.
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum CsvLocale {
-    En,
-    De,
-}
-
-/// Corrections of the samples that the command line forbids, whatever the cask file says.
+/// Corrections of the samples that the command line disables, whatever the cask file says.
 #[derive(Args)]
-pub struct SwitchedOff {
+pub struct DisabledCorrections {
     /// Leave a correction of the samples out; several with commas, or once more
     #[arg(long, value_name = "CORRECTION", value_delimiter = ',', value_parser = corrections())]
     pub without: Vec<String>,
 }
 
-/// The keys of `[corrections]` in the cask file.
+/// Lists the keys of `[corrections]` in the cask file.
 fn corrections() -> PossibleValuesParser {
     CORRECTIONS.map(|key| PossibleValue::new(key.name).help(key.remark)).into()
 }
 
-impl SwitchedOff {
-    /// Whether the correction of this key is among them.
-    fn names(&self, key: &str) -> bool {
+impl DisabledCorrections {
+    /// True if the correction of this key is disabled.
+    fn contains(&self, key: &str) -> bool {
         self.without.iter().any(|without| without == key)
     }
 
-    /// Switches them off before the analysis.
-    pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
-        for (key, made) in cask_file.corrections.switches() {
-            *made &= !self.names(key);
+    /// Disables them in the cask file, before the analysis.
+    pub fn apply_to(&self, cask_file: &mut CaskFile) {
+        for (key, is_made) in cask_file.corrections.switches() {
+            *is_made &= !self.contains(key);
         }
     }
 
-    /// Says so in the result, for the cask file and its SHA-256 do not.
-    pub fn in_settings(&self, result: &mut DropResult) {
-        for key in CORRECTIONS.iter().filter(|key| self.names(key.name)) {
+    /// Records them in the result, since neither the cask file nor its SHA-256 shows them.
+    pub fn record_in(&self, result: &mut DropResult) {
+        for key in CORRECTIONS.iter().filter(|key| self.contains(key.name)) {
             result.settings.push(Setting {
                 name: format!("correction {}", key.name),
                 value: "switched off".into(),
@@ -106,11 +99,11 @@ impl SwitchedOff {
     }
 }
 
-/// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date
-/// not yet stated.
-pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
+/// Runs the analysis that the arguments ask for, with samples in memory if there are any; writes nothing, and
+/// states neither command nor date.
+pub fn analyze(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
     let mut cask_file = ingest::cask_file(arguments.cask.as_deref().unwrap_or(Path::new("")))?;
-    arguments.switched_off.in_cask_file(&mut cask_file);
+    arguments.disabled.apply_to(&mut cask_file);
     cask_file.rest = arguments.rest.clone().or(cask_file.rest);
     let limits = arguments.bounds.limits();
     let mut recording = match held {
@@ -119,62 +112,62 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
     };
     complete(&mut recording, &cask_file, limits)?;
     let mut analysis = crate::analyze(&recording, &cask_file);
-    arguments.switched_off.in_settings(&mut analysis.result);
+    arguments.disabled.record_in(&mut analysis.result);
     Ok(analysis)
 }
 
 /// Writes the report of an analysis into `folder`, as `--out` does.
 ///
-/// # Errors
-/// As the command: the folder is another program's, holds another recording's report, or cannot be written.
+/// Those of the command: the folder is another program's, holds another recording's report, or cannot be
+/// written.
 pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
     let input = &analysis.result.input;
     let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
-    let folder = Folder::checked(folder, report::FILE_NAMES, &inputs)?;
-    folder.spares_others(&input.recording_sha256)?;
+    let folder = Folder::prepare(folder, report::FILE_NAMES, &inputs)?;
+    folder.refuse_other_recording(&input.recording_sha256)?;
     Ok(folder.write(&report::files(analysis)?)?)
 }
 
-/// Runs the command; `words` are those behind the program's name, for the record.
+/// Runs the command; `words` are those after the program's name, for the record.
 pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> {
-    // While the recording is read: the result names it.
+    // Its hash is computed while the recording is read, since the result states it.
     #[cfg(not(debug_assertions))]
     std::thread::spawn(rerun::program_sha256);
     let Arguments { recording, cask, from, rest, .. } = arguments;
     if cask.is_none() && from.is_none() {
-        return Err(without_cask(recording));
+        return Err(refuse_missing_cask(recording));
     }
     let inputs = [Some(recording), cask.as_ref(), from.as_ref(), rest.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    refuse_names(recording, cask.as_deref())?;
+    refuse_swapped_files(recording, cask.as_deref())?;
     let names = [report::FILE_NAMES, &[pdf::NAME]].concat();
-    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
-    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+    let folder = arguments.out.as_deref().map(|dir| Folder::prepare(dir, &names, &inputs)).transpose()?;
+    let json = JsonTarget::prepare(arguments.json.as_deref(), &inputs)?;
 
     let earlier = arguments.from.as_deref().map(EarlierResult::read).transpose()?;
     let mut cask_file = match (&earlier, &arguments.cask) {
         (Some(earlier), _) => earlier.cask_file()?,
-        // The words ask for one of both.
+        // One of both is given.
         (None, cask) => ingest::cask_file::parse(cask.as_deref().unwrap_or(Path::new("")))?,
     };
     if folder.is_some() {
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
-    let repeated = earlier.as_ref().map(|earlier| SwitchedOff { without: earlier.switched_off() });
-    let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
-    switched_off.in_cask_file(&mut cask_file);
+    let earlier_disabled = earlier.as_ref().map(|e| DisabledCorrections { without: e.disabled() });
+    let disabled = earlier_disabled.as_ref().unwrap_or(&arguments.disabled);
+    disabled.apply_to(&mut cask_file);
     let limits = arguments.bounds.limits();
-    let repeated = earlier.as_ref().and_then(EarlierResult::rest);
-    cask_file.rest = arguments.rest.clone().or(repeated).or(cask_file.rest);
+    let earlier_rest = earlier.as_ref().and_then(EarlierResult::rest);
+    cask_file.rest = arguments.rest.clone().or(earlier_rest).or(cask_file.rest);
     let recording =
         with_progress("reading", |progress| read_within(&arguments.recording, &cask_file, limits, progress))?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.force) {
-        folder.spares_others(&recording.sha256)?;
+        folder.refuse_other_recording(&recording.sha256)?;
     }
     let mut analysis = crate::analyze(&recording, &cask_file);
-    switched_off.in_settings(&mut analysis.result);
+    disabled.record_in(&mut analysis.result);
     rerun::stamp(&mut analysis.result, words)?;
-    let ([same, otherwise], repeated) = match &earlier {
+    let ([summary, differences], repeat_ending) = match &earlier {
         Some(earlier) => earlier.repeat(&mut analysis.result)?,
         None => (Default::default(), Ending::Clear),
     };
@@ -184,16 +177,16 @@ pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> 
     }
     json.write(|| report::pretty_json(&analysis.result))?;
     if json.is_standard_output() {
-        // It holds the JSON alone.
-        let _ = write!(anstream::stderr(), "{same}{otherwise}");
+        // Standard output is reserved for the JSON.
+        let _ = write!(anstream::stderr(), "{summary}{differences}");
     } else {
-        print(&same)?;
+        print(&summary)?;
         let page = folder.as_ref().map(|folder| folder.file("report.html"));
         print(&report::first_screen(&analysis, page.as_deref(), columns()))?;
         if arguments.full {
             print(&report::table(&analysis, columns()))?;
         }
-        print(&otherwise)?;
+        print(&differences)?;
     }
     let not_strict = report::why_not_strict(&analysis).filter(|_| arguments.strict);
     if let Some(why) = &not_strict {
@@ -201,24 +194,23 @@ pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> 
     }
     let result = &analysis.result;
     let is_clear = result.verdict == Verdict::Pass && !result.exceeds_a_limit() && not_strict.is_none();
-    Ok(repeated.max(Ending::of(!is_clear)))
+    Ok(repeat_ending.max(Ending::from_review(!is_clear)))
 }
 
-/// Writes the files of `--out`, with a note where the printed report among them is not of this run.
+/// Writes the files of `--out`, and notes if an older PDF remains among them.
 ///
-/// # Errors
-/// Also where `--pdf` asks for a report that no browser prints; all other files are written.
+/// Also if no browser prints the report that `--pdf` asks for; all other files are written.
 fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> miette::Result<()> {
     let mut files = report::files(analysis)?;
-    if arguments.csv_locale == CsvLocale::De {
+    if arguments.csv_locale == "de" {
         for (_, bytes) in files.iter_mut().filter(|(name, _)| ["curves.csv", "srs.csv"].contains(&&name[..]))
         {
             *bytes = report::in_german(bytes)?;
         }
     }
-    let printed = arguments.pdf.then(|| pdf::printed(&files[0].1)).transpose();
-    let (printed, missing) = printed.map_or_else(|why| (None, Some(why)), |printed| (printed, None));
-    files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes)));
+    let printed = arguments.pdf.then(|| pdf::print_page(&files[0].1)).transpose();
+    let (document, missing) = printed.map_or_else(|why| (None, Some(why)), |document| (document, None));
+    files.extend(document.map(|bytes| (pdf::NAME.to_owned(), bytes)));
     folder.write(&files)?;
     if let Some(why) = missing {
         let mend = "install one, or open report.html and print it; the other files are written";
@@ -231,17 +223,17 @@ fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> 
     Ok(())
 }
 
-/// That no cask file is named, with the command that names the one beside the recording; it is the user's to
-/// say that it is the right one.
-fn without_cask(recording: &Path) -> miette::Report {
+/// Refuses a command without cask file and names the command with the one beside the recording; only the user
+/// knows if it is the right one.
+fn refuse_missing_cask(recording: &Path) -> miette::Report {
     let beside = std::fs::read_dir(parent_of(recording)).into_iter().flatten().flatten();
     let names = beside.map(|file| recording.with_file_name(file.file_name()));
     let is_toml = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
     let casks: Vec<PathBuf> =
         names.filter(|path| is_toml(path) && ingest::cask_file::parse(path).is_ok()).collect();
-    let recording = quoted(recording);
+    let recording = quote(recording);
     let mend = match &casks[..] {
-        [cask] => format!("if it is that beside it: `dropcheck analyze {recording} --cask {}`", quoted(cask)),
+        [cask] => format!("if it is that beside it: `dropcheck analyze {recording} --cask {}`", quote(cask)),
         _ => format!(
             "write `dropcheck analyze {recording} --cask CASK.toml`; `dropcheck init {recording}` writes a \
              cask file to fill in"
@@ -250,20 +242,20 @@ fn without_cask(recording: &Path) -> miette::Report {
     miette!(help = mend, "there is no --cask, the cask file of {recording}")
 }
 
-/// A path as a word for a shell.
-fn quoted(path: &Path) -> String {
+/// Quotes a path for a shell.
+fn quote(path: &Path) -> String {
     let path = report::sanitize(&path.display().to_string());
     if path.contains(' ') { format!("\"{path}\"") } else { path }
 }
 
-/// Refuses a recording that is none to see by its name.
-fn refuse_names(recording: &Path, cask: Option<&Path>) -> miette::Result<()> {
+/// Refuses a recording whose name shows that it is none.
+fn refuse_swapped_files(recording: &Path, cask: Option<&Path>) -> miette::Result<()> {
     let [is_toml, cask_is_toml] = [Some(recording), cask]
         .map(|path| path.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case("toml")));
     let mend = "write it into a file, and name that";
     ensure!(recording != Path::new("-"), help = mend, "- stands for standard input, which is not read");
-    let cask = cask.map_or_else(|| "CASK.toml".to_owned(), quoted);
-    let recording = quoted(recording);
+    let cask = cask.map_or_else(|| "CASK.toml".to_owned(), quote);
+    let recording = quote(recording);
     let mend = format!("write `dropcheck analyze {cask} --cask {recording}`");
     ensure!(!is_toml || cask_is_toml, help = mend, "{recording} is a cask file by its name, and {cask} none");
     Ok(())

@@ -1,5 +1,5 @@
-//! `batch`: a campaign of recordings to a report each, a line each, and one picture of all; one that fails
-//! does not stop the others.
+//! `batch`: analyses a campaign of recordings into a report and a line each, and a summary of all; one that
+//! fails does not stop the others.
 
 mod campaign;
 mod manifest;
@@ -11,9 +11,9 @@ pub use manifest::template;
 pub use plan::SHARD_SCHEMA;
 
 use super::Ending;
-use super::analyze::SwitchedOff;
+use super::analyze::DisabledCorrections;
 use super::limits::Bounds;
-use super::lines::{self, LineOutput, LineRecord, holds_some, part};
+use super::lines::{self, LineOutput, LineRecord, check_shard, parse_shard};
 use super::output::{Folder, columns, print};
 use super::rerun::stamp;
 use crate::analysis::read_within;
@@ -50,7 +50,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE|-")]
     jsonl: Option<PathBuf>,
     /// Only each N-th recording from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = part, default_value = "0/1", hide_default_value = true)]
+    #[arg(long, value_name = "I/N", value_parser = parse_shard, default_value = "0/1", hide_default_value = true)]
     shard: (usize, usize),
     /// Go on with what an earlier run of the same words has left: what is done is not done again
     #[arg(long)]
@@ -62,20 +62,20 @@ pub struct Arguments {
     #[arg(long)]
     exit_zero: bool,
     #[command(flatten)]
-    switched_off: SwitchedOff,
+    disabled: DisabledCorrections,
     #[command(flatten)]
     bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (manifest, cask) = (arguments.manifest.as_deref(), arguments.cask.as_deref());
-    let mut plan = CampaignPlan::of(&arguments.paths, manifest, cask, &arguments.switched_off.without)?;
+    let mut plan = CampaignPlan::new(&arguments.paths, manifest, cask, &arguments.disabled.without)?;
     plan.shard = arguments.shard;
-    holds_some(arguments.shard, plan.tests.len())?;
+    check_shard(arguments.shard, plan.tests.len())?;
     let inputs: Vec<&Path> = arguments.manifest.iter().chain(&arguments.cask).map(PathBuf::as_path).collect();
     if let Some(out) = &arguments.out {
-        Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
-        plan.spares_recordings(out)?;
+        Folder::prepare(out, &plan::SUMMARY[..3], &inputs)?;
+        plan.refuse_overwriting(out)?;
     }
     let record = open_record(arguments, &plan, &inputs)?;
     let mut output = LineOutput::new(record, arguments.jsonl.as_deref());
@@ -85,9 +85,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let mut batch = Batch::new(plan.source.clone());
     let make = |number: usize, earlier: Option<&str>| {
         let is_done = earlier.is_some_and(|line| is_done(line, &plan.tests[number], arguments));
-        Ok((!is_done).then(|| line(&plan, number, arguments)))
+        Ok((!is_done).then(|| make_line(&plan, number, arguments)))
     };
-    output.each(plan.own(), jobs, make, |line| {
+    output.write_lines(plan.numbers(), jobs, make, |line| {
         batch.add(&serde_json::from_str(line).unwrap_or_default());
         Ok(())
     })?;
@@ -97,27 +97,27 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     if !output.is_standard_output {
         print(&batch.table(columns()))?;
-        tell(arguments, &plan)?;
+        print_location(arguments, &plan)?;
     }
-    Ok(campaign::ending(&batch).or_zero(arguments.exit_zero))
+    Ok(campaign::ending(&batch).with_exit_zero(arguments.exit_zero))
 }
 
-/// Where the files are.
-fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
+/// Prints where the files are.
+fn print_location(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
     if plan.is_whole() {
-        return arguments.out.as_deref().map_or(Ok(()), tell_page);
+        return arguments.out.as_deref().map_or(Ok(()), print_page_path);
     }
-    let ((index, count), own, all) = (plan.shard, plan.own().len(), plan.tests.len());
+    let ((index, count), done, all) = (plan.shard, plan.numbers().len(), plan.tests.len());
     let merge = "`dropcheck merge` makes the campaign of all shards";
-    Ok(print(&format!("\nShard {index}/{count}: {own} of {all} recordings; {merge}.\n"))?)
+    Ok(print(&format!("\nShard {index}/{count}: {done} of {all} recordings; {merge}.\n"))?)
 }
 
-fn tell_page(out: &Path) -> miette::Result<()> {
+fn print_page_path(out: &Path) -> miette::Result<()> {
     let page = out.join("campaign.html").display().to_string();
     Ok(print(&format!("\nCampaign: {}\n", report::sanitize(&page)))?)
 }
 
-/// The file that holds the lines: that of `--jsonl`, else one in `--out`.
+/// Opens the file for the lines: that of `--jsonl`, else one in `--out`.
 fn open_record(
     arguments: &Arguments,
     plan: &CampaignPlan,
@@ -137,28 +137,28 @@ fn open_record(
         }
         (None, None) => return Ok(None),
     };
-    let own = plan.own();
+    let numbers = plan.numbers();
     let own_number = |line: &Value| {
-        let number = lines::own_number(line, &own, |number| plan.place(number));
+        let number = lines::line_number(line, &numbers, |number| plan.place(number));
         Ok(number.filter(|_| report::impossible(line).is_none()))
     };
     LineRecord::open(&path, arguments.resume, inputs, own_number).map(Some)
 }
 
-/// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.
+/// True if an earlier line still holds: its inputs are unchanged and its report exists.
 fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
     let Some(cask) = &test.cask else { return false };
     let line: Value = serde_json::from_str(line).unwrap_or_default();
     let input = &line["input"];
-    // The report beside it says the same.
+    // The report states the same values as the line.
     let is_there = || {
         let Some(folder) = arguments.out.as_ref().map(|out| out.join(&test.folder)) else { return true };
         let result = bytes_of(&folder.join("result.json"), 16).unwrap_or_default();
         let result: Value = serde_json::from_slice(&result).unwrap_or_default();
-        let mut said = line.as_object().into_iter().flatten();
+        let mut entries = line.as_object().into_iter().flatten();
         folder.join(report::FILE_NAMES[0]).is_file()
-            && said
-                .all(|(key, said)| ["campaign", "id", "curves"].contains(&&key[..]) || result[key] == *said)
+            && entries
+                .all(|(key, value)| ["campaign", "id", "curves"].contains(&&key[..]) || result[key] == *value)
     };
     let cask_file = || ingest::cask_file::with_columns(cask, &test.stated).ok();
     let sha256 = |path: &Path| ingest::sha256(path).ok();
@@ -172,35 +172,35 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
     line["verdict"].is_string()
         && is_there()
         && cask_file().as_ref().is_some_and(is_same_cask)
-        && sha256(&test.recording).is_some_and(|own| input["recording_sha256"] == own)
+        && sha256(&test.recording).is_some_and(|sha256| input["recording_sha256"] == sha256)
 }
 
-/// The line of one test: its result, or why there is none.
-fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
+/// Makes the line of one test: its result, or the error.
+fn make_line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     let test = &plan.tests[number];
     let head = format!("{{\"campaign\":{},\"id\":{},", plan.place(number), json!(test.id));
-    // A fault of the program costs a row too.
-    let made = catch_unwind(AssertUnwindSafe(|| {
-        let analysis = analysed(plan, test, arguments)?;
+    // A panic of the program also makes a line.
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        let analysis = analyze_test(plan, test, arguments)?;
         let curves = report::to_line(&report::drop_curves(&analysis))?;
         Ok(format!("\"curves\":{curves},{}", &report::to_line(&analysis.result)?[1..]))
     }));
     let fault = |_| Err(miette!("{}: the program has a fault here; please report it", test.shown));
-    let made = made.unwrap_or_else(fault);
-    match made {
+    let outcome = outcome.unwrap_or_else(fault);
+    match outcome {
         Ok(result) => format!("{head}{result}\n"),
         Err(complaint) => {
-            let error = untold(test, arguments).unwrap_or_else(|| sentence(&complaint));
+            let error = confidential_error(test, arguments).unwrap_or_else(|| sentence(&complaint));
             let failed = json!({"exit": 2, "error": error});
             format!("{head}{}\n", &report::to_line(&failed).unwrap_or_default()[1..])
         }
     }
 }
 
-/// Why there is no result, without a word of what stands in a file outside the folder of the manifest, or of
-/// the recording: a manifest that was sent may name any file, and a folder hold links to any. `None` where
-/// both files lie there.
-fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
+/// Error message that reveals nothing of a file outside the folder of the manifest or of the recording: a
+/// manifest from somebody else may name any file, and a folder may contain links to any. `None` if both files
+/// lie inside.
+fn confidential_error(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     let folder = arguments.manifest.as_ref().unwrap_or(&test.recording).parent();
     let folder = folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = std::fs::canonicalize(folder).ok()?;
@@ -214,9 +214,9 @@ fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     )))
 }
 
-fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<Analysis> {
+fn analyze_test(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<Analysis> {
     let Some(cask) = &test.cask else {
-        // Without its name all recordings that have none say the same.
+        // The message omits the name, so that it is the same for all recordings without cask file.
         let mend = "put NAME.toml beside NAME.mcap, or name one by --cask or in the manifest";
         return Err(miette!(help = mend, "there is no cask file for the recording"));
     };
@@ -224,25 +224,25 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     let folder = arguments
         .out
         .as_ref()
-        .map(|out| Folder::checked(&out.join(&test.folder), report::FILE_NAMES, &inputs));
+        .map(|out| Folder::prepare(&out.join(&test.folder), report::FILE_NAMES, &inputs));
     let folder = folder.transpose()?;
     let mut cask_file = ingest::cask_file::with_columns(cask, &test.stated)?;
     if folder.is_some() {
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
-    arguments.switched_off.in_cask_file(&mut cask_file);
+    arguments.disabled.apply_to(&mut cask_file);
     let recording = read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
     let mut analysis = crate::analyze(&recording, &cask_file);
-    arguments.switched_off.in_settings(&mut analysis.result);
-    stamp(&mut analysis.result, words(plan, test, arguments))?;
+    arguments.disabled.record_in(&mut analysis.result);
+    stamp(&mut analysis.result, command_words(plan, test, arguments))?;
     if let Some(folder) = folder {
         folder.write(&report::files(&analysis)?)?;
     }
     Ok(analysis)
 }
 
-/// The words that would analyse this recording alone, whatever part of the campaign a run did, and where to.
-fn words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
+/// Returns the command that would analyse this recording alone, independent of shard and output folder.
+fn command_words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["batch".to_owned()];
     if arguments.manifest.is_some() {
         words.extend(["--manifest".to_owned(), plan.source.clone()]);
@@ -250,25 +250,25 @@ fn words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<
         words.push(test.shown.clone());
         words.extend(test.cask_shown.iter().flat_map(|cask| ["--cask".to_owned(), cask.clone()]));
     }
-    let without = &arguments.switched_off.without;
+    let without = &arguments.disabled.without;
     if !without.is_empty() {
         words.extend(["--without".to_owned(), without.join(",")]);
     }
     words
 }
 
-/// The campaign's files of all its shards.
+/// Writes the files of the campaign from all its shards.
 pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     let inputs: Vec<&Path> = shards.iter().map(PathBuf::as_path).collect();
-    Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
-    let (lines, first) = lines::merged(shards, report::impossible)?;
+    Folder::prepare(out, &plan::SUMMARY[..3], &inputs)?;
+    let (lines, first) = lines::merge_shards(shards, report::impossible)?;
     let mut batch = Batch::new(first["source"].as_str().unwrap_or_default().to_owned());
-    lines.each(|line| {
+    lines.for_each(|line| {
         batch.add(&serde_json::from_slice(line).unwrap_or_default());
         Ok(())
     })?;
     campaign::write(out, &batch, &lines, &inputs)?;
     print(&batch.table(columns()))?;
-    tell_page(out)?;
+    print_page_path(out)?;
     Ok(campaign::ending(&batch))
 }

@@ -1,4 +1,5 @@
-//! `check`: a recording at rest before the drop to whether the set-up is ready, as a table, JSON or a page.
+//! `check`: checks with a recording at rest before the drop if the set-up is ready, as a table, JSON or a
+//! page.
 
 use super::Ending;
 use super::limits::Bounds;
@@ -32,8 +33,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let Arguments { rest, cask, taps, .. } = arguments;
     let (inputs, names) = ([rest.as_path(), cask], &report::CHECK_NAMES);
-    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, names, &inputs)).transpose()?;
-    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+    let folder = arguments.out.as_deref().map(|dir| Folder::prepare(dir, names, &inputs)).transpose()?;
+    let json = JsonTarget::prepare(arguments.json.as_deref(), &inputs)?;
     let mut file = ingest::cask_file::parse(cask)?;
     if folder.is_some() {
         file = ingest::cask_file::with_photos(file)?;

@@ -1,5 +1,5 @@
-//! Entry points for another program (the Python module): a command line to its result, which is returned
-//! instead of printed.
+//! Entry points for another program (the Python module): each takes a command line and returns its result
+//! instead of printing it.
 
 use super::{Command, CommandLine, analyze, predict, rerun};
 use crate::data::{Analysis, HeldSamples};
@@ -12,58 +12,58 @@ use std::path::PathBuf;
 
 pub use super::analyze::write;
 
-fn command(words: &[OsString]) -> miette::Result<Command> {
+fn parse_command(words: &[OsString]) -> miette::Result<Command> {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
     let line = CommandLine::try_parse_from(named);
     line.map(|line| line.command).map_err(|wrong| {
-        // clap begins with its own "error: ", and tells a person at a terminal where to read on.
+        // clap begins with "error: " and adds a hint for a terminal; both are removed.
         let text = wrong.to_string();
         let text = text.strip_prefix("error: ").unwrap_or(&text);
         miette::miette!("{}", text.split("\n\nFor more information").next().unwrap_or_default())
     })
 }
 
-fn not(what: &str) -> miette::Report {
+fn refuse_command(what: &str) -> miette::Report {
     miette::miette!("the words are not those of `{what}`")
 }
 
-/// The analysis that this command line asks for. `held` replaces the recording by samples in memory; the
-/// result then states no command to run it again, since none makes the same.
+/// Runs the analysis that this command line asks for. `held` replaces the recording by samples in memory; no
+/// command is then stored in the result, since none repeats it.
 ///
 /// # Errors
-/// What the command complains of.
+/// Those of the command.
 pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
-    let Command::Analyze(arguments) = command(words)? else { return Err(not("analyze")) };
-    let mut analysis = analyze::analysis(&arguments, held)?;
-    let words = if held.is_none() { rerun::in_text(words) } else { Vec::new() };
+    let Command::Analyze(arguments) = parse_command(words)? else { return Err(refuse_command("analyze")) };
+    let mut analysis = analyze::analyze(&arguments, held)?;
+    let words = if held.is_none() { rerun::to_text(words) } else { Vec::new() };
     rerun::stamp(&mut analysis.result, words)?;
     Ok(analysis)
 }
 
-/// The JSON of `predict`.
+/// Returns the JSON of `predict`.
 ///
 /// # Errors
-/// What the command complains of.
+/// Those of the command.
 pub fn prediction(words: &[OsString]) -> miette::Result<Vec<u8>> {
-    let Command::Predict(arguments) = command(words)? else { return Err(not("predict")) };
-    let (file, request) = predict::asked(&arguments)?;
+    let Command::Predict(arguments) = parse_command(words)? else { return Err(refuse_command("predict")) };
+    let (file, request) = predict::read_request(&arguments)?;
     Ok(report::study_json(&crate::analysis::study(&file, &request))?)
 }
 
-/// The JSON of `inspect`.
+/// Returns the JSON of `inspect`.
 ///
 /// # Errors
-/// What the command complains of.
+/// Those of the command.
 pub fn listing(recording: &Path) -> miette::Result<Vec<u8>> {
     Ok(report::pretty_json(&ingest::list(recording, &|_| ())?)?)
 }
 
-/// Writes what `synth` makes of these words: recording, cask file, truth.
+/// Writes the files of `synth` for this command line: recording, cask file, truth.
 ///
 /// # Errors
-/// What the command complains of.
+/// Those of the command.
 #[cfg(feature = "lab")]
 pub fn synthetic(words: &[OsString]) -> miette::Result<[PathBuf; 3]> {
-    let Command::Synth(arguments) = command(words)? else { return Err(not("synth")) };
-    Ok(super::lab::synth::written(&arguments)?.0)
+    let Command::Synth(arguments) = parse_command(words)? else { return Err(refuse_command("synth")) };
+    Ok(super::lab::synth::write_recording(&arguments)?.0)
 }

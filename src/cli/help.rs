@@ -1,6 +1,6 @@
-//! The command line to what a shell completes it by, and to its manual pages.
+//! Writes the completions of the command line for a shell, and its manual pages.
 
-use super::output::print_plain;
+use super::output::print_bytes;
 use super::{CommandLine, Ending};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
@@ -24,7 +24,7 @@ pub struct ManArguments {
 pub fn completions(arguments: &CompletionArguments) -> miette::Result<Ending> {
     let mut out = Vec::new();
     clap_complete::generate(arguments.shell, &mut CommandLine::command(), "dropcheck", &mut out);
-    print_plain(&out)?;
+    print_bytes(&out)?;
     Ok(Ending::Clear)
 }
 

@@ -1,9 +1,9 @@
-//! `init`: what a recording holds to a cask file to fill in, on standard output.
+//! `init`: prints a cask file to fill in, from the content of a recording.
 
 use super::Ending;
 use super::batch::template;
 use super::limits::Bounds;
-use super::output::print_plain;
+use super::output::print_bytes;
 use super::progress::with_progress;
 use super::replace::write_whole;
 use crate::{ingest, report};
@@ -27,14 +27,14 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if arguments.recording.is_dir() && !ingest::is_recording_folder(&arguments.recording) {
-        print_plain(&template(&arguments.recording)?)?;
+        print_bytes(&template(&arguments.recording)?)?;
         return Ok(Ending::Clear);
     }
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
     let Some(list) = &arguments.sensors else {
-        print_plain(report::cask_file_template(&listing)?.as_bytes())?;
+        print_bytes(report::cask_file_template(&listing)?.as_bytes())?;
         return Ok(Ending::Clear);
     };
     let rows = report::sensor_list(&listing)?;
@@ -42,6 +42,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let mend = "name another file, or delete this one: it may be filled in already";
     write_whole(list, &rows).map_err(|why| miette!(help = mend, "{shown} cannot be written: {why}"))?;
     let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
-    print_plain(report::cask_file_with_list(&listing, &name).as_bytes())?;
+    print_bytes(report::cask_file_with_list(&listing, &name).as_bytes())?;
     Ok(Ending::Clear)
 }

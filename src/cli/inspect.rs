@@ -1,4 +1,5 @@
-//! `inspect`: what a recording holds, as a table or JSON, and a page with every source as a curve.
+//! `inspect`: lists the content of a recording as a table or JSON, and writes a page with every source as a
+//! curve.
 
 use super::Ending;
 use super::limits::Bounds;
@@ -29,13 +30,13 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [arguments.recording.as_path()];
     let names = &report::FIRST_LOOK_NAMES;
-    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, names, &inputs)).transpose()?;
-    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+    let folder = arguments.out.as_deref().map(|dir| Folder::prepare(dir, names, &inputs)).transpose()?;
+    let json = JsonTarget::prepare(arguments.json.as_deref(), &inputs)?;
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
     if let Some(folder) = &folder {
-        look(arguments, &listing, folder)?;
+        write_page(arguments, &listing, folder)?;
     }
     json.write(|| report::pretty_json(&listing))?;
     if !json.is_standard_output() {
@@ -44,16 +45,16 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             print(&format!("\nPage: {}\n", report::sanitize(&folder.file(names[0]))))?;
         }
     }
-    let sound = listing.issues.iter().all(|issue| issue.severity == crate::data::Severity::Note);
-    Ok(if sound { Ending::Clear } else { Ending::NeedsALook })
+    let is_sound = listing.issues.iter().all(|issue| issue.severity == crate::data::Severity::Note);
+    Ok(if is_sound { Ending::Clear } else { Ending::NeedsALook })
 }
 
 /// Writes the page into the folder, one source after the other.
-fn look(arguments: &Arguments, listing: &Listing, folder: &Folder) -> miette::Result<()> {
+fn write_page(arguments: &Arguments, listing: &Listing, folder: &Folder) -> miette::Result<()> {
     let Arguments { recording, force, bounds, .. } = arguments;
     let sha256 = ingest::sha256(recording)?;
     if !force {
-        folder.spares_others(&sha256)?;
+        folder.refuse_other_recording(&sha256)?;
     }
     let drawn = report::drawn_sources(listing);
     let mut page = report::FirstLook::new(listing, &drawn);

@@ -1,31 +1,31 @@
-//! `--max-memory`: a size as a person writes it to the limits within which a recording is read.
+//! `--max-memory`: parses a size and limits the reading of a recording to it.
 
 use crate::ingest::{LEAST_MEMORY_BYTES, Limits};
 use clap::Args;
 
-/// How much memory reading may take.
+/// Limit of the memory for reading.
 #[derive(Args)]
 pub struct Bounds {
     /// Memory that reading may take; every size that a file claims is held against it [default: 4GiB]
-    #[arg(long, value_name = "SIZE", value_parser = limits)]
+    #[arg(long, value_name = "SIZE", value_parser = parse_limits)]
     max_memory: Option<Limits>,
 }
 
 impl Bounds {
-    /// The limits asked for, else the usual ones.
+    /// Returns the limits that were given, else the usual ones.
     pub fn limits(&self) -> Limits {
         self.max_memory.unwrap_or_default()
     }
 }
 
-/// Limits from "2GB", "1.5 GiB", "500MB"; thousands and 1024 by the unit's own definition.
-fn limits(text: &str) -> Result<Limits, String> {
-    /// Each larger than the one before by a thousand, or by 1024.
+/// Parses limits such as "2GB", "1.5 GiB", "500MB", in thousands or 1024 as the unit is defined.
+fn parse_limits(text: &str) -> Result<Limits, String> {
+    /// Each unit is larger than the one before by this factor.
     const UNITS: [(&str, f64); 2] = [("b kb mb gb tb", 1000.0), ("b kib mib gib tib", 1024.0)];
     let lower = text.trim().to_lowercase().replace(',', ".");
     let number = lower.trim_end_matches(char::is_alphabetic);
     let unit = &lower[number.len()..];
-    let place = |units: &str| units.split(' ').zip(0..).find(|(own, _)| *own == unit).map(|(_, place)| place);
+    let place = |units: &str| units.split(' ').zip(0..).find(|(u, _)| *u == unit).map(|(_, place)| place);
     let factor = UNITS.iter().find_map(|(units, factor)| Some(factor.powi(place(units)?)));
     let factor = factor.ok_or_else(|| "a size needs its unit, such as 8GB or 500MB".to_owned())?;
     let number: f64 = number.trim().parse().map_err(|_| "no number stands before the unit".to_owned())?;
@@ -48,10 +48,10 @@ mod tests {
         for (text, bytes) in
             [("2GB", 2_000_000_000), ("1.5 GiB", 3 << 29), ("500 mb", 500_000_000), ("0,5GiB", 1 << 29)]
         {
-            assert_eq!(limits(text), Ok(Limits::of_memory(bytes)), "{text}");
+            assert_eq!(parse_limits(text), Ok(Limits::of_memory(bytes)), "{text}");
         }
         for text in ["", "2", "GB", "1MB", "-3GB", "nanGB", "1e30TB", "many"] {
-            assert!(limits(text).is_err(), "{text}");
+            assert!(parse_limits(text).is_err(), "{text}");
         }
     }
 }

@@ -1,7 +1,7 @@
-//! `merge`: the shards of a campaign, as `--jsonl` wrote them on any machines, to the files that one run
-//! would have written.
+//! `merge`: joins the shards of a campaign, as `--jsonl` wrote them on any machines, into the files that one
+//! run would have written.
 
-use super::lines::{no_shard, schema};
+use super::lines::{read_schema, refuse_other_file};
 use super::{Ending, batch};
 use clap::Args;
 use std::path::PathBuf;
@@ -22,11 +22,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (shards, out) = (&arguments.shards[..], arguments.out.as_path());
-    let ending = match schema(&shards[0])?.as_str() {
+    let ending = match read_schema(&shards[0])?.as_str() {
         batch::SHARD_SCHEMA => batch::merge(shards, out)?,
         #[cfg(feature = "lab")]
         crate::lab::campaign::SCHEMA => super::lab::campaign::merge(shards, out)?,
-        _ => return Err(no_shard(&shards[0])),
+        _ => return Err(refuse_other_file(&shards[0])),
     };
-    Ok(ending.or_zero(arguments.exit_zero))
+    Ok(ending.with_exit_zero(arguments.exit_zero))
 }

@@ -1,4 +1,4 @@
-//! Words on the command line to one command each, and its outcome to an exit status.
+//! Parses the command line, runs its command, and turns the outcome into an exit status.
 
 mod analyze;
 mod batch;
@@ -31,13 +31,13 @@ use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 
-/// Without the commands of the laboratory where there is none.
+/// Text after the help, without the lab's commands if the build lacks them.
 fn after_help() -> String {
     let lines = include_str!("help/main.txt").split_inclusive('\n');
     lines.filter(|line| cfg!(feature = "lab") || !line.contains("dropcheck synth")).collect()
 }
 
-/// "0.2.0 (0123abc)": the commit as far as the build was told.
+/// Version and, if the build knows it, commit, as "0.2.0 (0123abc)".
 fn version() -> &'static str {
     let words: &'static str = Program::current().words().leak();
     words.split_once(' ').map_or(words, |(_, version)| version)
@@ -59,7 +59,7 @@ pub struct CommandLine {
 }
 
 impl CommandLine {
-    /// How the command may print.
+    /// Sets colours and quiet mode.
     fn set_output(&self) {
         let colours = match self.color.as_str() {
             "always" => ColorChoice::Always,
@@ -99,54 +99,54 @@ pub enum Command {
     Man(help::ManArguments),
 }
 
-/// How a command that ran to its end ended; its number is the exit status.
+/// Outcome of a command that ran to its end; its number is the exit status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ending {
-    /// Nothing speaks against the result.
+    /// The result is accepted.
     Clear,
-    /// A person should look.
+    /// A person should look at the result.
     NeedsALook,
-    /// A recording of several could not be analysed.
+    /// One recording of several could not be analysed.
     NotDone,
 }
 
 impl Ending {
-    /// Of a result at which a person should look, or need not.
-    pub fn of(needs_a_look: bool) -> Self {
+    /// Outcome for a result at which a person should look, or need not.
+    pub fn from_review(needs_a_look: bool) -> Self {
         if needs_a_look { Self::NeedsALook } else { Self::Clear }
     }
 
-    /// With `--exit-zero` results that want a look end as those that do not.
-    pub fn or_zero(self, exit_zero: bool) -> Self {
+    /// Applies `--exit-zero`: results that need a look end like the others.
+    pub fn with_exit_zero(self, exit_zero: bool) -> Self {
         if exit_zero && self == Self::NeedsALook { Self::Clear } else { self }
     }
 }
 
-/// Runs the command that the words behind the program's name are, and returns its exit status.
+/// Runs the command given by the words after the program's name, and returns its exit status.
 #[must_use]
 pub fn main(words: &[OsString]) -> u8 {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
-    let ended = CommandLine::try_parse_from(named).map(|line| {
+    let outcome = CommandLine::try_parse_from(named).map(|line| {
         line.set_output();
         run(&line.command, words)
     });
-    match ended {
+    match outcome {
         Ok(Ok(ending)) => ending as u8,
         Ok(Err(complaint)) => {
             complaint::complain(&complaint);
             2
         }
-        Err(asked_for_help_or_wrong) => {
-            // There is no one left to tell where the output is closed.
-            let _ = asked_for_help_or_wrong.print();
-            u8::try_from(asked_for_help_or_wrong.exit_code()).unwrap_or(2)
+        Err(help_or_fault) => {
+            // If the output is closed, nobody can be informed.
+            let _ = help_or_fault.print();
+            u8::try_from(help_or_fault.exit_code()).unwrap_or(2)
         }
     }
 }
 
 fn run(command: &Command, words: &[OsString]) -> miette::Result<Ending> {
     match command {
-        Command::Analyze(arguments) => analyze::run(arguments, rerun::in_text(words)),
+        Command::Analyze(arguments) => analyze::run(arguments, rerun::to_text(words)),
         Command::Check(arguments) => check::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),

@@ -1,8 +1,10 @@
-//! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
+//! Writes finished bytes to files, whole or not at all, and to standard output; checks the targets before the
+//! work begins.
 
 use super::protected_folders::is_protected;
 use super::replace::{
-    OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
+    StoppedWrite, TEMP_PREFIX, create_beside, create_staging, parent_of, replace_set, sync_folder,
+    write_whole,
 };
 use crate::data::shown;
 use crate::ingest::{bytes_of, opened};
@@ -12,11 +14,11 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How every JSON document of this program begins, within its first bytes.
+/// Beginning of every JSON document of this program, and the bytes within which it stands.
 const SCHEMA_MARK: &str = "\"schema\": \"dropcheck.";
 const SCHEMA_MARK_WITHIN: u64 = 64;
 
-/// Why something could not be written.
+/// Reason why something could not be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CannotWrite {
     #[error("{0} is a file, and --out needs a folder")]
@@ -60,61 +62,61 @@ fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// `why` of a path where something `is_wrong` with it.
-fn refused_where(is_wrong: bool, why: fn(String) -> CannotWrite, path: &Path) -> Result<(), CannotWrite> {
+/// Refuses a path, for the reason `why`, if something `is_wrong` with it.
+fn refuse_if(is_wrong: bool, why: fn(String) -> CannotWrite, path: &Path) -> Result<(), CannotWrite> {
     if is_wrong { Err(why(shown(path))) } else { Ok(()) }
 }
 
-/// The operating system's words without its error number and without names of files on the way.
-fn bare(source: &io::Error) -> io::Error {
+/// Returns the operating system's message without its error number and without names of intermediate files.
+fn without_details(source: &io::Error) -> io::Error {
     io::Error::new(source.kind(), shown::os_text(source))
 }
 
-/// A folder for files, found fit before the work.
+/// A folder that was checked, before the work, to accept the files.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    /// Checks that files of these `names` can be written in `path`: that it is a folder or can become one,
-    /// writable, and that none of them is an input or another program's. The first of `names` that ends in
-    /// ".json" tells whose they are.
-    pub fn checked(path: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, CannotWrite> {
+    /// Checks that files with these `names` can be written in `path`: that it is a folder or can become one,
+    /// writable, and that none of the files is an input or another program's. The first of `names` that ends
+    /// in ".json" shows who wrote them.
+    pub fn prepare(path: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, CannotWrite> {
         if path.as_os_str().is_empty() {
             return Err(CannotWrite::NoFolder("\"\"".into()));
         }
-        refused_where(is_input(path, inputs), CannotWrite::Input, path)?;
-        // A link may have been put there to have files written elsewhere.
-        refused_where(path.is_symlink(), CannotWrite::Link, path)?;
-        refused_where(is_protected(path), CannotWrite::Shared, path)?;
-        let mut standing = path;
-        while fs::symlink_metadata(standing).is_err() {
-            standing = match standing.parent() {
+        refuse_if(is_input(path, inputs), CannotWrite::Input, path)?;
+        // Somebody may have placed a link to have files written elsewhere.
+        refuse_if(path.is_symlink(), CannotWrite::Link, path)?;
+        refuse_if(is_protected(path), CannotWrite::Shared, path)?;
+        let mut ancestor = path;
+        while fs::symlink_metadata(ancestor).is_err() {
+            ancestor = match ancestor.parent() {
                 Some(parent) if !parent.as_os_str().is_empty() => parent,
-                // A drive or a share of Windows that is not there.
-                _ if standing.has_root() => return Err(CannotWrite::NoFolder(shown(standing))),
+                // This drive or network share of Windows does not exist.
+                _ if ancestor.has_root() => return Err(CannotWrite::NoFolder(shown(ancestor))),
                 _ => Path::new("."),
             };
         }
-        refused_where(!standing.is_dir(), CannotWrite::NotAFolder, standing)?;
-        writable(standing)?;
+        refuse_if(!ancestor.is_dir(), CannotWrite::NotAFolder, ancestor)?;
+        check_writable(ancestor)?;
         let present: Vec<PathBuf> =
             names.iter().map(|name| path.join(name)).filter(|p| fs::symlink_metadata(p).is_ok()).collect();
         for target in &present {
-            refused_where(is_input(target, inputs), CannotWrite::Input, target)?;
+            refuse_if(is_input(target, inputs), CannotWrite::Input, target)?;
             let is_folder = target.is_dir() && !target.is_symlink();
-            refused_where(is_folder, CannotWrite::IsAFolder, target)?;
+            refuse_if(is_folder, CannotWrite::IsAFolder, target)?;
         }
-        let own = names.iter().find(|name| is_json(name)).is_none_or(|name| is_own_json(&path.join(name)));
+        let is_ours = names.iter().find(|name| is_json(name)).is_none_or(|n| is_own_json(&path.join(n)));
         match present.first() {
-            Some(first) if !own => Err(CannotWrite::Foreign(shown(first))),
+            Some(first) if !is_ours => Err(CannotWrite::Foreign(shown(first))),
             _ => Ok(Self { path: path.to_path_buf() }),
         }
     }
 
-    /// Refuses to replace the report or the first look of another recording than that of this SHA-256.
-    pub fn spares_others(&self, sha256: &str) -> Result<(), CannotWrite> {
+    /// Refuses to replace the report or the first look of a recording with another SHA-256.
+    pub fn refuse_other_recording(&self, sha256: &str) -> Result<(), CannotWrite> {
         for (name, input) in [("result.json", "/input"), ("recording.json", "")] {
             let there = bytes_of(&self.path.join(name), 16).unwrap_or_default();
             let there: serde_json::Value = serde_json::from_slice(&there).unwrap_or_default();
@@ -128,69 +130,70 @@ impl Folder {
         Ok(())
     }
 
-    /// Makes the folder, and those it lies in.
-    pub fn make(&self) -> Result<(), CannotWrite> {
-        fs::create_dir_all(&self.path).map_err(failed(&self.path))
+    /// Creates the folder and its parents.
+    pub fn create(&self) -> Result<(), CannotWrite> {
+        fs::create_dir_all(&self.path).map_err(write_error(&self.path))
     }
 
-    /// The path of one of its files, as a person reads it.
+    /// Returns the path of one of the files, for a reader.
     pub fn file(&self, name: &str) -> String {
         shown(&self.path.join(name))
     }
 
-    /// Writes every file beside its place and puts them there only when all are complete.
+    /// Writes every file under a temporary name and moves all to their places when they are complete.
     pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
-        replace_set(&self.path, files).map_err(|Stopped { path, source }| failed(&path)(source))
+        replace_set(&self.path, files).map_err(|StoppedWrite { path, source }| write_error(&path)(source))
     }
 }
 
-/// Where `--json` goes: nowhere, to standard output ("-"), or to a file, found fit before the work.
+/// Target of `--json`: none, standard output ("-"), or a file, checked before the work.
 #[derive(Debug)]
 pub struct JsonTarget(Option<PathBuf>);
 
 impl JsonTarget {
-    /// Checks that `path` can be written, is no input and no other program's; "-" is standard output.
-    pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> Result<Self, CannotWrite> {
+    /// Checks that `path` can be written and is neither an input nor another program's file; "-" is standard
+    /// output.
+    pub fn prepare(path: Option<&Path>, inputs: &[&Path]) -> Result<Self, CannotWrite> {
         let target = Self(path.map(Path::to_path_buf));
         let Some(path) = path.filter(|_| !target.is_standard_output()) else { return Ok(target) };
-        refused_where(is_input(path, inputs), CannotWrite::Input, path)?;
+        refuse_if(is_input(path, inputs), CannotWrite::Input, path)?;
         match fs::metadata(path) {
             Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder(shown(path))),
-            // A pipe or a device takes the bytes as they come.
+            // A pipe or a device accepts the bytes directly.
             Ok(there) if !there.is_file() => return Ok(target),
             _ if path.is_symlink() => return Err(CannotWrite::Link(shown(path))),
-            Ok(there) => refused_where(there.len() > 0 && !is_own_json(path), CannotWrite::Foreign, path)?,
+            Ok(there) => refuse_if(there.len() > 0 && !is_own_json(path), CannotWrite::Foreign, path)?,
             Err(_) => {}
         }
         let parent = parent_of(path);
-        refused_where(!parent.is_dir(), CannotWrite::NoFolder, parent)?;
-        writable(parent)?;
+        refuse_if(!parent.is_dir(), CannotWrite::NoFolder, parent)?;
+        check_writable(parent)?;
         Ok(target)
     }
 
-    /// Whether nothing but JSON may stand on standard output.
+    /// True if standard output is reserved for JSON.
     pub fn is_standard_output(&self) -> bool {
         self.0.as_deref() == Some(Path::new("-"))
     }
 
-    /// Makes the JSON and writes it, where it is wanted at all.
+    /// Makes the JSON and writes it, if it was asked for.
     pub fn write(&self, make: impl FnOnce() -> Result<Vec<u8>, ReportError>) -> miette::Result<()> {
         match &self.0 {
             None => {}
-            Some(_) if self.is_standard_output() => print_plain(&make()?)?,
+            Some(_) if self.is_standard_output() => print_bytes(&make()?)?,
             Some(path) => replace(path, &make()?)?,
         }
         Ok(())
     }
 }
 
-fn failed(path: &Path) -> impl Fn(io::Error) -> CannotWrite + '_ {
-    move |source| CannotWrite::Failed { path: shown(path), source: bare(&source) }
+fn write_error(path: &Path) -> impl Fn(io::Error) -> CannotWrite + '_ {
+    move |source| CannotWrite::Failed { path: shown(path), source: without_details(&source) }
 }
 
-/// Writes a file, or replaces one that was there, whole or not at all.
+/// Writes or replaces a file, whole or not at all.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), CannotWrite> {
-    write_file(path, bytes).map_err(failed(path))
+    write_file(path, bytes).map_err(write_error(path))
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -198,28 +201,29 @@ fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
     let parent = parent_of(path);
-    let staging = staging_in(parent)?;
+    let staging = create_staging(parent)?;
     let staged = staging.path().join("json");
     write_whole(&staged, bytes)?;
     fs::rename(&staged, path)?;
     sync_folder(parent)
 }
 
-/// As [`replace`], by a function that writes piece by piece: what is large is never whole in memory.
-pub fn replace_by(
+/// Like [`replace`], with a function that writes the content in pieces, so that a large file is never whole
+/// in memory.
+pub fn replace_in_pieces(
     path: &Path,
     write: impl FnOnce(&mut dyn FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()>,
 ) -> miette::Result<()> {
-    let (staged, file) = staged_beside(path).map_err(failed(path))?;
+    let (staged, file) = create_beside(path).map_err(write_error(path))?;
     let mut writer = io::BufWriter::new(file);
-    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed(path))?))?;
+    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(write_error(path))?))?;
     let written = writer.into_inner().map_err(io::IntoInnerError::into_error);
-    written.and_then(|file| file.sync_all()).map_err(failed(path))?;
-    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(failed(path))?;
+    written.and_then(|file| file.sync_all()).map_err(write_error(path))?;
+    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(write_error(path))?;
     Ok(())
 }
 
-/// Whether tables and progress are printed at all.
+/// True if tables and progress are not printed.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 pub fn set_quiet(is_quiet: bool) {
@@ -230,48 +234,48 @@ pub fn is_quiet() -> bool {
     IS_QUIET.load(Ordering::Relaxed)
 }
 
-/// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.
+/// Writes to standard output, with colours on a terminal; a reader that has left is no error.
 pub fn print(text: &str) -> Result<(), CannotWrite> {
     if is_quiet() {
         return Ok(());
     }
     let mut out = anstream::stdout().lock();
-    settled(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    ignore_closed_reader(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// Says something to whoever watches, beside the output.
+/// Prints a note on standard error.
 pub fn note(words: &str) {
-    // There is no one left to tell where standard error is closed.
+    // If standard error is closed, nobody can be informed.
     let _ = writeln!(anstream::stderr(), "{}", sanitize(words));
 }
 
-/// Columns that tables may take: those of the terminal, 80 where there is none.
+/// Width of tables in columns: that of the terminal, or 80 without one.
 pub fn columns() -> usize {
-    let of_terminal = terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
-    of_terminal.map_or(80, |width| width.clamp(60, 160))
+    let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
+    terminal.map_or(80, |width| width.clamp(60, 160))
 }
 
-/// Writes bytes to standard output as they are.
-pub fn print_plain(bytes: &[u8]) -> Result<(), CannotWrite> {
+/// Writes bytes to standard output unchanged.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), CannotWrite> {
     let mut out = io::stdout().lock();
-    settled(out.write_all(bytes).and_then(|()| out.flush()))
+    ignore_closed_reader(out.write_all(bytes).and_then(|()| out.flush()))
 }
 
-fn settled(written: io::Result<()>) -> Result<(), CannotWrite> {
+fn ignore_closed_reader(written: io::Result<()>) -> Result<(), CannotWrite> {
     match written {
         Err(source) if source.kind() != ErrorKind::BrokenPipe => {
-            Err(CannotWrite::StandardOutput { source: bare(&source) })
+            Err(CannotWrite::StandardOutput { source: without_details(&source) })
         }
         _ => Ok(()),
     }
 }
 
-fn writable(folder: &Path) -> Result<(), CannotWrite> {
+fn check_writable(folder: &Path) -> Result<(), CannotWrite> {
     tempfile::Builder::new()
-        .prefix(OWN_PREFIX)
+        .prefix(TEMP_PREFIX)
         .tempfile_in(folder)
         .map(drop)
-        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source: bare(&source) })
+        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source: without_details(&source) })
 }
 
 fn is_input(path: &Path, inputs: &[&Path]) -> bool {
@@ -284,12 +288,12 @@ fn is_json(name: &str) -> bool {
 }
 
 fn is_own_json(path: &Path) -> bool {
-    let head = head(path, SCHEMA_MARK_WITHIN).unwrap_or_default();
+    let head = read_head(path, SCHEMA_MARK_WITHIN).unwrap_or_default();
     String::from_utf8_lossy(&head).contains(SCHEMA_MARK)
 }
 
-/// The first so many bytes of a file.
-pub fn head(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+/// Reads at most the first `most` bytes of a file.
+pub fn read_head(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut head = Vec::new();
     opened(path)?.take(most).read_to_end(&mut head)?;
     Ok(head)
@@ -312,7 +316,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let dir = place.path().join("a/b");
         for _ in 0..2 {
-            Folder::checked(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
+            Folder::prepare(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
             assert_eq!(fs::read(dir.join("report.html")).unwrap(), b"new");
             assert_eq!(fs::read_dir(&dir).unwrap().count(), 2);
             fs::write(dir.join("report.html"), "old").unwrap();
@@ -324,11 +328,11 @@ mod tests {
     fn what_is_not_ours_is_left_alone() {
         let place = tempfile::tempdir().unwrap();
         fs::write(place.path().join("report.html"), "theirs").unwrap();
-        let refused = Folder::checked(place.path(), &NAMES, &[]).unwrap_err();
+        let refused = Folder::prepare(place.path(), &NAMES, &[]).unwrap_err();
         assert!(matches!(refused, CannotWrite::Foreign { .. }));
         let file = place.path().join("theirs.json");
         fs::write(&file, "{}").unwrap();
-        let refused = JsonTarget::checked(Some(&file), &[]).unwrap_err();
+        let refused = JsonTarget::prepare(Some(&file), &[]).unwrap_err();
         assert!(matches!(refused, CannotWrite::Foreign { .. }));
     }
 
@@ -339,11 +343,11 @@ mod tests {
         fs::write(&recording, OWN).unwrap();
         let other_words = place.path().join(".").join("result.json");
         assert!(matches!(
-            Folder::checked(place.path(), &NAMES, &[&other_words]),
+            Folder::prepare(place.path(), &NAMES, &[&other_words]),
             Err(CannotWrite::Input { .. })
         ));
         assert!(matches!(
-            JsonTarget::checked(Some(&recording), &[&other_words]),
+            JsonTarget::prepare(Some(&recording), &[&other_words]),
             Err(CannotWrite::Input { .. })
         ));
     }
@@ -354,11 +358,11 @@ mod tests {
         let file = place.path().join("file");
         fs::write(&file, "x").unwrap();
         for out in [file.clone(), file.join("below")] {
-            assert!(matches!(Folder::checked(&out, &NAMES, &[]), Err(CannotWrite::NotAFolder { .. })));
+            assert!(matches!(Folder::prepare(&out, &NAMES, &[]), Err(CannotWrite::NotAFolder { .. })));
         }
-        assert!(matches!(JsonTarget::checked(Some(place.path()), &[]), Err(CannotWrite::IsAFolder { .. })));
+        assert!(matches!(JsonTarget::prepare(Some(place.path()), &[]), Err(CannotWrite::IsAFolder { .. })));
         let far = place.path().join("none/result.json");
-        assert!(matches!(JsonTarget::checked(Some(&far), &[]), Err(CannotWrite::NoFolder { .. })));
+        assert!(matches!(JsonTarget::prepare(Some(&far), &[]), Err(CannotWrite::NoFolder { .. })));
     }
 
     #[cfg(unix)]
@@ -371,17 +375,17 @@ mod tests {
         fs::create_dir(&dir).unwrap();
         fs::write(dir.join("result.json"), OWN).unwrap();
         std::os::unix::fs::symlink(&theirs, dir.join("report.html")).unwrap();
-        Folder::checked(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
+        Folder::prepare(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
         assert_eq!(fs::read(&theirs).unwrap(), b"theirs");
         assert_eq!(fs::read(dir.join("report.html")).unwrap(), b"new");
         let link = place.path().join("link.json");
         std::os::unix::fs::symlink(&theirs, &link).unwrap();
-        assert!(matches!(JsonTarget::checked(Some(&link), &[]), Err(CannotWrite::Link { .. })));
+        assert!(matches!(JsonTarget::prepare(Some(&link), &[]), Err(CannotWrite::Link { .. })));
     }
 
     #[test]
     fn a_reader_that_left_is_no_error() {
-        assert!(settled(Err(io::Error::from(ErrorKind::BrokenPipe))).is_ok());
-        assert!(settled(Err(io::Error::from(ErrorKind::StorageFull))).is_err());
+        assert!(ignore_closed_reader(Err(io::Error::from(ErrorKind::BrokenPipe))).is_ok());
+        assert!(ignore_closed_reader(Err(io::Error::from(ErrorKind::StorageFull))).is_err());
     }
 }

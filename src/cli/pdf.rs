@@ -1,17 +1,17 @@
-//! A page to a PDF, by a browser that is installed.
+//! Prints a page to a PDF by an installed browser.
 
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The report as PDF.
+/// File name of the report as PDF.
 pub const NAME: &str = "report.pdf";
 
-/// What the browsers are called that print without a window, in the order in which they are tried.
+/// Names of the browsers that print without a window, in the order in which they are tried.
 const BROWSERS: &str = "chromium chromium-browser google-chrome google-chrome-stable chrome microsoft-edge \
                         microsoft-edge-stable msedge";
 
-/// Where they are installed without standing on the path.
+/// Paths of browsers that are installed outside the search path.
 const PLACES: [&str; 5] = [
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
@@ -20,20 +20,20 @@ const PLACES: [&str; 5] = [
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 ];
 
-/// A browser that prints a report of megabytes takes some seconds; after these it hangs.
+/// Longest time for a print: a report of megabytes takes some seconds; a browser that takes longer hangs.
 const LONGEST: Duration = Duration::from_mins(1);
 
-/// Prints a page; the error is a sentence on why there is no PDF.
-pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {
-    let browser = browser().ok_or("no Chromium, Chrome or Edge was found")?;
+/// Prints a page; the error is a sentence that says why there is no PDF.
+pub fn print_page(page: &[u8]) -> Result<Vec<u8>, String> {
+    let browser = find_browser().ok_or("no Chromium, Chrome or Edge was found")?;
     let name = browser.display().to_string();
-    let failed = |what: &dyn std::fmt::Display| format!("{name} did not print it: {what}");
-    let folder = tempfile::Builder::new().prefix("dropcheck-pdf-").tempdir().map_err(|e| failed(&e))?;
+    let explain = |what: &dyn std::fmt::Display| format!("{name} did not print it: {what}");
+    let folder = tempfile::Builder::new().prefix("dropcheck-pdf-").tempdir().map_err(|e| explain(&e))?;
     let [html, pdf] = ["report.html", NAME].map(|name| folder.path().join(name));
-    std::fs::write(&html, page).map_err(|e| failed(&e))?;
+    std::fs::write(&html, page).map_err(|e| explain(&e))?;
     let mut command = Command::new(&browser);
-    // Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no
-    // script.
+    // Chromium refuses to run as root without this option, which is for trusted pages: this one is our own
+    // and runs no script.
     #[cfg(unix)]
     if rustix::process::geteuid().is_root() {
         command.arg("--no-sandbox");
@@ -47,12 +47,12 @@ pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|e| failed(&e))?;
-    ended(child).map_err(|e| failed(&e))?;
-    std::fs::read(&pdf).map_err(|e| failed(&e))
+        .map_err(|e| explain(&e))?;
+    wait_for(child).map_err(|e| explain(&e))?;
+    std::fs::read(&pdf).map_err(|e| explain(&e))
 }
 
-fn browser() -> Option<PathBuf> {
+fn find_browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let on_path = std::env::split_paths(&path).flat_map(|folder| {
         BROWSERS.split(' ').map(move |name| folder.join(name).with_extension(std::env::consts::EXE_EXTENSION))
@@ -60,7 +60,7 @@ fn browser() -> Option<PathBuf> {
     on_path.chain(PLACES.map(PathBuf::from)).find(|browser| browser.is_file())
 }
 
-fn ended(mut child: Child) -> std::io::Result<()> {
+fn wait_for(mut child: Child) -> std::io::Result<()> {
     let begun = Instant::now();
     while child.try_wait()?.is_none() {
         if begun.elapsed() > LONGEST {

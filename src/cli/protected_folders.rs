@@ -1,17 +1,17 @@
-//! A folder to whether it is the system's or the user's whole home rather than a place for one report.
+//! Recognises folders of the system and the user's home, in which no report belongs.
 
 use std::path::Path;
 
-/// Where nothing but the system's own files belongs.
-const SYSTEM: &str =
+/// Folders that hold nothing but the system's own files.
+const SYSTEM_FOLDERS: &str =
     "/bin /boot /dev/block /etc /lib /lib32 /lib64 /proc /sbin /sys /usr /Applications /Library /System";
-/// Variables of Windows that name such places.
-const SYSTEM_OF_WINDOWS: [&str; 3] = ["SystemRoot", "ProgramFiles", "ProgramFiles(x86)"];
-/// What holds other folders: one of its own below is a place.
-const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
+/// Environment variables of Windows that name such folders.
+const WINDOWS_VARIABLES: [&str; 3] = ["SystemRoot", "ProgramFiles", "ProgramFiles(x86)"];
+/// Folders that only hold other folders: a report may go into one below.
+const PARENT_FOLDERS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
 
-/// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the
-/// user's home.
+/// True if the files of a report in `folder`, which exists, would mix with those of the system or lie loosely
+/// in the user's home.
 pub fn is_protected(folder: &Path) -> bool {
     let Ok(real) = folder.canonicalize() else { return false };
     let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());
@@ -23,9 +23,9 @@ pub fn is_protected(folder: &Path) -> bool {
     };
     real.parent().is_none()
         || home.is_some_and(|home| home == real || cfg!(windows) && home.parent() == Some(&real))
-        || SYSTEM_OF_WINDOWS.iter().any(is_in)
-        || CROSSROADS.split(' ').any(|place| real == Path::new(place))
-        || SYSTEM.split(' ').any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
+        || WINDOWS_VARIABLES.iter().any(is_in)
+        || PARENT_FOLDERS.split(' ').any(|place| real == Path::new(place))
+        || SYSTEM_FOLDERS.split(' ').any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
 }
 
 #[cfg(all(test, unix))]

@@ -1,5 +1,5 @@
-//! A set of finished files into a folder: all of them or none, whatever interrupts it, and nobody else's
-//! touched.
+//! Writes a set of finished files into a folder: all of them or none, even if interrupted, and without
+//! touching files of others.
 
 use rayon::prelude::*;
 use std::fs::{self, File};
@@ -7,52 +7,53 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What the program's own folders beside and in a report begin with; none outlives an undisturbed run.
-pub const OWN_PREFIX: &str = ".dropcheck-";
-/// Complete files that were on their way to their places when the run was stopped.
+/// Prefix of the temporary folders that the program creates beside and in a report; none outlives an
+/// undisturbed run.
+pub const TEMP_PREFIX: &str = ".dropcheck-";
+/// Folder of complete files that were being moved to their places when the run was stopped.
 const UNFINISHED: &str = ".dropcheck-unfinished";
-/// A folder with more entries is no report's but a person's, and is not exchanged as a whole.
+/// A folder with more other entries belongs to a person, not to a report, and is not exchanged as a whole.
 #[cfg(target_os = "linux")]
 const MOST_ENTRIES: usize = 256;
 
-/// Where a write stopped, and why.
+/// Path at which a write stopped, and the reason.
 #[derive(Debug)]
-pub struct Stopped {
+pub struct StoppedWrite {
     pub path: PathBuf,
     pub source: io::Error,
 }
 
-fn at(path: &Path) -> impl FnOnce(io::Error) -> Stopped + '_ {
-    move |source| Stopped { path: path.to_path_buf(), source }
+fn stop_at(path: &Path) -> impl FnOnce(io::Error) -> StoppedWrite + '_ {
+    move |source| StoppedWrite { path: path.to_path_buf(), source }
 }
 
 /// Writes `files` to `folder`, which need not exist.
 ///
-/// A folder that holds plain files only is exchanged for a complete one in a single step of the file system.
-/// Where that cannot be, complete files are moved one by one; a run that is stopped between two of them is
-/// made good by the next.
-pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+/// A folder with plain files only is exchanged for a complete one in a single step of the file system. If
+/// that is impossible, complete files are moved one by one; if a run is stopped between two of them, the next
+/// run moves the others.
+pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), StoppedWrite> {
     // "." has no parent by its name, and would wait for its own lock.
-    let folder = &std::path::absolute(folder).map_err(at(folder))?;
+    let folder = &std::path::absolute(folder).map_err(stop_at(folder))?;
     let parent = parent_of(folder);
-    fs::create_dir_all(parent).map_err(at(parent))?;
-    let turn = turn(parent);
-    let clear_stale = |place: &Path| turn.iter().for_each(|_| clear_stale(place, files));
-    clear_stale(parent);
+    fs::create_dir_all(parent).map_err(stop_at(parent))?;
+    let lock = lock_folder(parent);
+    let clear_leftovers = |place: &Path| lock.iter().for_each(|_| clear_leftovers(place, files));
+    clear_leftovers(parent);
     match fs::symlink_metadata(folder) {
-        Err(_) => return appear(parent, folder, files),
+        Err(_) => return create_complete(parent, folder, files),
         Ok(there) if !there.is_dir() => {
-            return Err(at(folder)(io::Error::other("a link or a file has taken the folder's place")));
+            return Err(stop_at(folder)(io::Error::other("a link or a file has taken the folder's place")));
         }
-        Ok(_) => clear_stale(folder),
+        Ok(_) => clear_leftovers(folder),
     }
-    if exchange(parent, folder, files).map_err(at(folder))? {
+    if exchange(parent, folder, files).map_err(stop_at(folder))? {
         return Ok(());
     }
     move_one_by_one(folder, files)
 }
 
-/// The folder that `path` lies in.
+/// Returns the folder that contains `path`.
 pub fn parent_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -60,37 +61,36 @@ pub fn parent_of(path: &Path) -> &Path {
     }
 }
 
-/// One run at a time writes below a folder, where its file system knows locks: this one, as long as it holds
-/// the lock.
-fn turn(parent: &Path) -> Option<File> {
+/// Locks a folder, if its file system supports locks: one run at a time writes below it.
+fn lock_folder(parent: &Path) -> Option<File> {
     File::open(parent).ok().filter(|folder| folder.lock().is_ok())
 }
 
-/// Removes what a run that was killed left in `parent`: while this one has its turn nobody is at work there.
-fn clear_stale(parent: &Path, files: &[(String, Vec<u8>)]) {
+/// Removes the leftovers of a killed run in `parent`: while this run holds the lock, no other works there.
+fn clear_leftovers(parent: &Path, files: &[(String, Vec<u8>)]) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        let is_own = name.to_string_lossy().starts_with(OWN_PREFIX) && name != UNFINISHED;
+        let is_own = name.to_string_lossy().starts_with(TEMP_PREFIX) && name != UNFINISHED;
         if is_own && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            clear(&entry.path(), files);
+            remove_leftover(&entry.path(), files);
         } else if is_own && entry.metadata().is_ok_and(|there| there.is_file() && there.len() == 0) {
-            // Made to see whether the folder can be written to.
+            // This file only tested whether the folder is writable.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// Removes a left-over folder with those of its files that were this program's or still have a name
+/// Removes a leftover folder, with those of its files that this program wrote or that still have a name
 /// elsewhere.
-fn clear(stale: &Path, files: &[(String, Vec<u8>)]) {
-    for entry in fs::read_dir(stale).into_iter().flatten().flatten() {
+fn remove_leftover(leftover: &Path, files: &[(String, Vec<u8>)]) {
+    for entry in fs::read_dir(leftover).into_iter().flatten().flatten() {
         let is_own = files.iter().any(|(name, _)| entry.file_name() == name.as_str());
         if is_own || entry.metadata().is_ok_and(|metadata| has_other_name(&metadata)) {
             let _ = fs::remove_file(entry.path());
         }
     }
-    // Refused where something is left in it.
-    let _ = fs::remove_dir(stale);
+    // The system refuses this if the folder is not empty.
+    let _ = fs::remove_dir(leftover);
 }
 
 #[cfg(unix)]
@@ -104,20 +104,20 @@ fn has_other_name(_: &fs::Metadata) -> bool {
     false
 }
 
-/// A folder that vanishes unless it is moved, beside the place its content goes to.
-pub fn staging_in(folder: &Path) -> io::Result<tempfile::TempDir> {
+/// Creates a folder that vanishes unless it is moved, beside the final place of its content.
+pub fn create_staging(folder: &Path) -> io::Result<tempfile::TempDir> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(OWN_PREFIX);
+    builder.prefix(TEMP_PREFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any folder the user makes: the process's mask takes away what it must.
+        // The permissions are those of any new folder: the process's mask restricts them.
         builder.permissions(fs::Permissions::from_mode(0o777));
     }
     builder.tempdir_in(folder)
 }
 
-/// Writes a file that must not exist, down to the disk.
+/// Writes a new file down to the disk; fails if it exists.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     use std::io::Write;
     let mut file = File::create_new(path)?;
@@ -125,31 +125,32 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A file beside `path`, to be filled and given its name: always the same one, so that what a killed run left
-/// is written over.
-pub fn staged_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+/// Creates a file beside `path` to be filled and renamed: always under the same name, so that it replaces the
+/// leftover of a killed run.
+pub fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let staged = parent_of(path).join(format!("{OWN_PREFIX}{name}"));
+    let staged = parent_of(path).join(format!("{TEMP_PREFIX}{name}"));
     match fs::remove_file(&staged) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(source),
         _ => File::create_new(&staged).map(|file| (staged, file)),
     }
 }
 
-/// Makes names durable; a system that cannot open a folder has its own way.
+/// Makes new names in a folder durable; systems other than Unix cannot open a folder for it and do so
+/// themselves.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-fn fill(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+fn write_all_files(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), StoppedWrite> {
     files.par_iter().try_for_each(|(name, bytes)| {
-        write_whole(&staging.join(name), bytes).map_err(at(&folder.join(name)))
+        write_whole(&staging.join(name), bytes).map_err(stop_at(&folder.join(name)))
     })?;
-    sync_folder(staging).map_err(at(folder))
+    sync_folder(staging).map_err(stop_at(folder))
 }
 
-/// Gives a file or folder another name. On Windows a virus scanner may hold what was just written.
-fn moved(from: &Path, to: &Path) -> io::Result<()> {
+/// Renames a file or folder; repeats that on Windows, where a virus scanner may hold new files.
+fn rename(from: &Path, to: &Path) -> io::Result<()> {
     const AGAIN: Duration = Duration::from_millis(50);
     let mut tries = if cfg!(windows) { 20 } else { 0 };
     loop {
@@ -161,27 +162,27 @@ fn moved(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
-/// A folder that was not there, complete from its first moment.
-fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
-    let staging = staging_in(parent).map_err(at(parent))?;
-    fill(staging.path(), folder, files)?;
-    moved(staging.path(), folder).map_err(at(folder))?;
-    // The folder has its name; nothing is left to clear away.
+/// Creates the folder complete from its first moment.
+fn create_complete(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), StoppedWrite> {
+    let staging = create_staging(parent).map_err(stop_at(parent))?;
+    write_all_files(staging.path(), folder, files)?;
+    rename(staging.path(), folder).map_err(stop_at(folder))?;
+    // The folder has been renamed; nothing remains to be removed.
     let _ = staging.keep();
-    sync_folder(parent).map_err(at(parent))
+    sync_folder(parent).map_err(stop_at(parent))
 }
 
-/// Exchanges `folder` for a complete one that holds its other files too, under names of their own; `false`
-/// where nothing was changed and another way must be found.
+/// Exchanges `folder` for a complete one that also holds its other files under their names; `false` if
+/// nothing was changed and another way is needed.
 #[cfg(target_os = "linux")]
 fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<bool> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
-    let Some(others) = others(folder, files)? else { return Ok(false) };
-    let Ok(staging) = staging_in(parent) else { return Ok(false) };
-    if !take_over_rights(folder, staging.path()) {
+    let Some(others) = other_names(folder, files)? else { return Ok(false) };
+    let Ok(staging) = create_staging(parent) else { return Ok(false) };
+    if !copy_rights(folder, staging.path()) {
         return Ok(false);
     }
-    fill(staging.path(), folder, files).map_err(|stopped| stopped.source)?;
+    write_all_files(staging.path(), folder, files).map_err(|stopped| stopped.source)?;
     for name in others {
         if fs::hard_link(folder.join(&name), staging.path().join(&name)).is_err() {
             return Ok(false);
@@ -192,24 +193,24 @@ fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Re
         return Ok(false);
     }
     sync_folder(parent)?;
-    // What somebody put into the folder in the meantime goes back to it.
-    let is_swept = self::others(staging.path(), files)?.is_some_and(|late| {
+    // Files that appeared in the folder in the meantime are moved back to it.
+    let is_emptied = other_names(staging.path(), files)?.is_some_and(|late| {
         late.iter().all(|name| {
             let place = folder.join(name);
             fs::symlink_metadata(&place).is_ok() || fs::rename(staging.path().join(name), place).is_ok()
         })
     });
-    if !is_swept {
-        // It holds what cannot be put back: it stays where a person can find it.
+    if !is_emptied {
+        // It still holds files that cannot be moved back: it stays where a person can find it.
         let _ = staging.keep();
     }
     Ok(true)
 }
 
-/// Names in `folder` that are not among `files`; `None` where it is no plain folder of a report.
+/// Lists the names in `folder` that are not among `files`; `None` if it is no plain folder of a report.
 #[cfg(target_os = "linux")]
-fn others(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<std::ffi::OsString>>> {
-    // Whoever stands in the folder would find himself in one that is gone.
+fn other_names(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<std::ffi::OsString>>> {
+    // A shell in this folder would be left in one that no longer exists.
     let is_here = fs::canonicalize(folder).ok() == fs::canonicalize(".").ok();
     let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -226,66 +227,66 @@ fn others(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<s
     Ok((!is_here).then_some(names))
 }
 
-/// Gives `staging` the owner and permissions of `folder`; `false` where that cannot be.
+/// Gives `staging` the owner and permissions of `folder`; `false` if that is impossible.
 #[cfg(target_os = "linux")]
-fn take_over_rights(folder: &Path, staging: &Path) -> bool {
+fn copy_rights(folder: &Path, staging: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let (Ok(old), Ok(new)) = (fs::metadata(folder), fs::metadata(staging)) else { return false };
     (old.uid(), old.gid(), old.dev()) == (new.uid(), new.gid(), new.dev())
         && fs::set_permissions(staging, old.permissions()).is_ok()
 }
 
-/// Elsewhere no step exchanges two folders.
+/// Other systems cannot exchange two folders in one step.
 #[cfg(not(target_os = "linux"))]
 #[allow(clippy::unnecessary_wraps, reason = "as where it may fail")]
 fn exchange(_: &Path, _: &Path, _: &[(String, Vec<u8>)]) -> io::Result<bool> {
     Ok(false)
 }
 
-/// Stages the files in `folder` itself and moves each to its place.
-fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
-    // Two ways may lead to the folder, through one parent each.
-    let _turn = turn(folder);
+/// Writes the files in `folder` itself and moves each to its place.
+fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), StoppedWrite> {
+    // Two paths may lead to the folder, each through another parent.
+    let _lock = lock_folder(folder);
     let unfinished = folder.join(UNFINISHED);
-    settle(folder, &unfinished, files)?;
-    let staging = staging_in(folder).map_err(at(folder))?;
-    fill(staging.path(), folder, files)?;
+    finish_moves(folder, &unfinished, files)?;
+    let staging = create_staging(folder).map_err(stop_at(folder))?;
+    write_all_files(staging.path(), folder, files)?;
     if cfg!(windows) {
-        // One that another program has open would stop the moves in their middle.
+        // A file that another program has open would stop the moves halfway.
         for (name, _) in files {
             match fs::OpenOptions::new().append(true).open(folder.join(name)) {
                 Err(held) if held.kind() != io::ErrorKind::NotFound => {
-                    return Err(at(&folder.join(name))(held));
+                    return Err(stop_at(&folder.join(name))(held));
                 }
                 _ => {}
             }
         }
     }
-    // From here on every file is complete and a next run can end what this one began.
-    moved(staging.path(), &unfinished).map_err(at(&unfinished))?;
+    // From here on every file is complete, and a next run can finish the moves.
+    rename(staging.path(), &unfinished).map_err(stop_at(&unfinished))?;
     let _ = staging.keep();
-    sync_folder(folder).map_err(at(folder))?;
-    settle(folder, &unfinished, files)
+    sync_folder(folder).map_err(stop_at(folder))?;
+    finish_moves(folder, &unfinished, files)
 }
 
-/// Moves what is in `unfinished` to its places, if it is there.
-fn settle(folder: &Path, unfinished: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+/// Moves the files in `unfinished` to their places, if that folder exists.
+fn finish_moves(folder: &Path, unfinished: &Path, files: &[(String, Vec<u8>)]) -> Result<(), StoppedWrite> {
     if !fs::symlink_metadata(unfinished).is_ok_and(|there| there.is_dir()) {
         return Ok(());
     }
-    let staged = fs::read_dir(unfinished).map_err(at(unfinished))?.flatten();
+    let staged = fs::read_dir(unfinished).map_err(stop_at(unfinished))?.flatten();
     let mut names: Vec<_> = staged.map(|entry| entry.file_name()).collect();
-    // The JSON goes first: it marks the folder as this program's, should a later move fail.
+    // The JSON is moved first: it marks the folder as this program's if a later move fails.
     names.sort_by_key(|name| Path::new(name).extension().is_none_or(|ending| ending != "json"));
     for name in names {
         let target = folder.join(&name);
-        // Of another set of files it is the newer one, unless somebody took the place in the meantime.
+        // A file of another set is newer than the one in place, unless somebody created that in the meantime.
         if files.iter().any(|(own, _)| name == own.as_str()) || fs::symlink_metadata(&target).is_err() {
-            moved(&unfinished.join(&name), &target).map_err(at(&target))?;
+            rename(&unfinished.join(&name), &target).map_err(stop_at(&target))?;
         }
     }
-    fs::remove_dir(unfinished).map_err(at(unfinished))?;
-    sync_folder(folder).map_err(at(folder))
+    fs::remove_dir(unfinished).map_err(stop_at(unfinished))?;
+    sync_folder(folder).map_err(stop_at(folder))
 }
 
 #[cfg(test)]

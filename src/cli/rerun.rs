@@ -1,4 +1,4 @@
-//! A result to the record of the run that made it, and such a record to the same run again and what differs.
+//! Records in a result which run made it, and repeats the run of an earlier result to show the differences.
 
 use super::Ending;
 use crate::data::{CaskFile, DropResult, Program, shorten};
@@ -10,24 +10,24 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// Numbers nearer to one another than this share of their magnitude are the same: machines round otherwise.
+/// Numbers closer than this share of their magnitude are equal: machines round differently.
 const SAME_WITHIN: f64 = 1e-9;
 
-/// Lines on what differs, at most.
+/// Largest number of lines that list differences.
 const MOST_LINES: usize = 20;
 
-/// What an earlier result says of the run that made it.
+/// An earlier result, with the record of its run.
 pub struct EarlierResult {
     result: Value,
     name: String,
 }
 
-/// The words of a command line as a result records them.
-pub fn in_text(words: &[OsString]) -> Vec<String> {
+/// Returns the words of a command line as a result records them.
+pub fn to_text(words: &[OsString]) -> Vec<String> {
     words.iter().map(|word| word.to_string_lossy().into_owned()).collect()
 }
 
-/// SHA-256 of the program's file; `None` where it cannot be read, or where an interpreter runs this.
+/// SHA-256 of the program's file; `None` if it cannot be read, or if an interpreter runs this code.
 pub fn program_sha256() -> Option<String> {
     static OWN: OnceLock<Option<String>> = OnceLock::new();
     let file =
@@ -35,10 +35,9 @@ pub fn program_sha256() -> Option<String> {
     OWN.get_or_init(|| ingest::sha256(&file?).ok()).clone()
 }
 
-/// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is
-/// set.
+/// Records program, command line and time in the result; `SOURCE_DATE_EPOCH` replaces the time if it is set.
 pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()> {
-    // As the commit, for a release alone.
+    // Only a release states its hash, like its commit.
     let sha256 = if cfg!(debug_assertions) { None } else { program_sha256() };
     result.program = Some(Program { sha256, ..Program::current() });
     result.command = command;
@@ -55,7 +54,7 @@ pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()
 }
 
 impl EarlierResult {
-    /// The record in a file that `--json` or `--out` wrote.
+    /// Reads the record in a file that `--json` or `--out` wrote.
     pub fn read(path: &Path) -> miette::Result<Self> {
         let name = path.display().to_string();
         let text = bytes_of(path, 16).into_diagnostic().wrap_err_with(|| format!("{name} cannot be read"))?;
@@ -69,26 +68,26 @@ impl EarlierResult {
         Err(miette!(help = mend, "{name} is no result of dropcheck that holds its cask file"))
     }
 
-    /// The cask file.
+    /// Returns the cask file.
     pub fn cask_file(&self) -> miette::Result<CaskFile> {
         let text_at =
             |pointer: &str| self.result.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
         Ok(ingest::cask_file::of_text(Path::new(text_at("/input/cask")), text_at("/cask_text"))?)
     }
 
-    /// The file with the rest before the drop.
+    /// Returns the file with the cask at rest before the drop.
     pub fn rest(&self) -> Option<PathBuf> {
         self.result["input"]["rest"].as_str().map(PathBuf::from)
     }
 
-    /// The corrections that were switched off on its command line, by their keys.
-    pub fn switched_off(&self) -> Vec<String> {
-        let made = self.result["settings"]["corrections"].as_object().into_iter().flatten();
-        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.clone()).collect()
+    /// Lists the corrections that its command line disabled, by their keys.
+    pub fn disabled(&self) -> Vec<String> {
+        let corrections = self.result["settings"]["corrections"].as_object().into_iter().flatten();
+        corrections.filter(|(_, entry)| entry["from"] == "command line").map(|(key, _)| key.clone()).collect()
     }
 
-    /// Gives a result that was made again the words of the first, where it is of the same recording. Says
-    /// whether recording and numbers are those of the record, what is otherwise but for the date, and whether
+    /// Gives the repeated result the command line of the first one, if both have the same recording. Returns
+    /// a line that says if recording and numbers are equal, a list of the differences except the date, and if
     /// a person should look.
     pub fn repeat(&self, result: &mut DropResult) -> miette::Result<([String; 2], Ending)> {
         let input = &self.result["input"];
@@ -105,7 +104,7 @@ impl EarlierResult {
         let mut found = Vec::new();
         compare("", [&self.result, &now], 0.0, &mut found);
         found.retain(|(_, line)| !line.starts_with("analysed:"));
-        // What was stated otherwise is why the rest is otherwise.
+        // Different settings cause the other differences and come first.
         let is_stated = |line: &str| line.starts_with("settings.");
         found.sort_by(|a, b| is_stated(&b.1).cmp(&is_stated(&a.1)).then(b.0.total_cmp(&a.0)));
         let values = found.iter().filter(|(share, _)| *share > 0.0).count();
@@ -125,14 +124,14 @@ impl EarlierResult {
     }
 }
 
-/// Adds a line for each value that differs, by its place, behind the share of its magnitude by which a number
-/// does: infinite for what has no magnitude and yet counts, 0 for words. Numbers are held against their own
-/// magnitude and this one.
+/// Adds a line for each value that differs, with its place and the share of its magnitude by which a number
+/// differs: infinite for other values, 0 for words. The share refers to the larger of `magnitude` and the
+/// numbers themselves.
 fn compare(place: &str, [before, now]: [&Value; 2], magnitude: f64, found: &mut Vec<(f64, String)>) {
     let under = |key: &str| if place.is_empty() { key.to_owned() } else { format!("{place}.{key}") };
     match (before, now) {
         (Value::Object(a), Value::Object(_)) => {
-            // A value is as near as its half-width lets it be.
+            // A value may differ in proportion to its half-width.
             let magnitude = if a.contains_key("u95") { largest(a.values()) } else { 0.0 };
             for (key, before) in a {
                 compare(&under(key), [before, &now[key]], magnitude, found);
@@ -160,7 +159,7 @@ fn compare(place: &str, [before, now]: [&Value; 2], magnitude: f64, found: &mut 
     }
 }
 
-/// The largest magnitude of the numbers among these.
+/// Returns the largest magnitude of the numbers among the values.
 fn largest<'a>(values: impl Iterator<Item = &'a Value>) -> f64 {
     values.filter_map(Value::as_f64).map(f64::abs).fold(0.0, f64::max)
 }

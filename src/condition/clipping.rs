@@ -1,7 +1,7 @@
-//! Samples to the runs that stand at a limit of the measuring chain.
+//! Finds the runs of samples that stand at a limit of the measuring chain.
 
-use super::levels::Gauge;
-use super::runs::runs;
+use super::levels::{LimitSearch, flattest_top_fall};
+use super::runs::find_runs;
 use crate::data::{Axis, Channel, ChannelFinding, Finding, LEAST_FLANK, Span};
 use crate::numerics::{as_f64, reduce, robust};
 use std::cell::LazyCell;
@@ -9,37 +9,33 @@ use std::cell::LazyCell;
 /// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
 
-/// Standard deviations of the noise within which samples count as standing at an extreme: noise may come
-/// after the limit.
+/// Samples within this many standard deviations of the noise stand at an extreme: noise may be added after
+/// the limit.
 const NOISE_FACTOR: f64 = 6.0;
 
-/// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
-/// plain one is of the second.
-const FLATTEST: i32 = 4;
+/// A reading above this share of the full scale, beside the noise, exceeds it: data sheets round the full
+/// scale, and a filter after the limit rings.
+const BEYOND_SHARE: f64 = 1.05;
 
-/// A reading above this share of the full scale, beside the noise, is beyond it: data sheets round it, and a
-/// filter behind the limit rings.
-const BEYOND: f64 = 1.05;
-
-/// Values that differ by less than this share of the peak are the same.
+/// Values that differ by less than this share of the peak are equal.
 const LEAST_STEP: f64 = 1e-9;
 
-/// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to
-/// sample is a force that stays level, as of a cask that is crushed. Noise that comes after the limit is
-/// taken to be less.
-const NOISE_LEFT: f64 = 0.6;
+/// A limit acts after the sensor's noise and removes it: a level with at least this share of the noise from
+/// sample to sample is a constant force, such as that of a cask that is crushed. Noise that is added after
+/// the limit is assumed to be less.
+const LEAST_NOISE_SHARE: f64 = 0.6;
 
-/// The least that a limited flank falls by, as a share of the peak.
+/// Smallest fall of a limited flank, as a share of the peak.
 const FLANK_SHARE: f64 = 0.2;
 
-/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
-/// extreme, as indices.
+/// Finds the runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat
+/// at an extreme, as indices.
 ///
-/// The first `quiet` samples lie before the impact. What was taken off is `rest`.
-pub(super) fn clipped(
+/// The first `quiet` samples lie before the impact; `level` was subtracted from `force`.
+pub(super) fn find_clipped(
     channel: &Channel,
     force: &[f64],
-    rest: f64,
+    level: f64,
     noise_m_s2: f64,
     quiet: usize,
 ) -> Vec<Span> {
@@ -47,50 +43,54 @@ pub(super) fn clipped(
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
-        // One flat from its first to its last sample within the noise of the limit.
+        // A run is a limit if at least one sample reaches it; the others lie within the noise of it.
         let (at, near) = (0.999 * limit_m_s2, limit_m_s2 - NOISE_FACTOR * noise_m_s2);
-        let reaches = |span: &Span| force[span.from..span.to].iter().any(|f| (f + rest).abs() >= at);
-        spans.extend(runs(force, |f| (f + rest).abs() >= near.min(at)).into_iter().filter(reaches));
+        let reaches = |span: &Span| force[span.from..span.to].iter().any(|f| (f + level).abs() >= at);
+        spans.extend(find_runs(force, |f| (f + level).abs() >= near.min(at)).into_iter().filter(reaches));
     }
     let (low, high) = reduce::extremes(force, 0.0);
     let peak = high.max(-low);
-    // Where the converter's step exceeds the noise, all that lies within a step is one to it.
-    let moved = channel.time_jitter_s > 0.0;
-    let step = LazyCell::new(|| Some(step(force, moved, peak)).filter(|s| s.is_finite()).unwrap_or(0.0));
+    // If the converter's step exceeds the noise, all values within a step are equal to it.
+    let is_resampled = channel.time_jitter_s > 0.0;
+    let step = LazyCell::new(|| step(force, is_resampled, peak));
     let (noise, least) = (NOISE_FACTOR * noise_m_s2, LEAST_STEP * peak);
-    let is_noise = !moved && reduce::least_step_beyond(force, least, noise - least) == 0.0;
-    let band = noise.max(least + if is_noise { 0.0 } else { *step });
+    let step_beyond = |noise: f64| {
+        let is_noise = !is_resampled && reduce::least_step_beyond(force, least, noise - least) == 0.0;
+        if is_noise { 0.0 } else { *step }
+    };
+    let band = noise.max(least + step_beyond(noise));
     for extreme in [low, high] {
         if extreme.abs() < 4.0 * band {
             continue;
         }
-        for span in runs(force, |f| (f - extreme).abs() <= band) {
+        for span in find_runs(force, |f| (f - extreme).abs() <= band) {
             let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
-            let is_rail =
+            let is_limit =
                 |span| is_flat_top(force, span, band, *step) && !carries_noise(force, span, roughness);
-            if span.to - span.from >= LEAST_RUN && !is_known && is_rail(span) {
+            if span.to - span.from >= LEAST_RUN && !is_known && is_limit(span) {
                 spans.push(span);
             }
         }
     }
     if channel.axis == Axis::Transverse {
-        // Noise of the converter stands on a limit of the amplifier: there nothing else tells it.
-        let limits = Gauge::new(force, noise_m_s2, converter_step(channel, force, noise_m_s2)).limits();
+        // Noise of the converter is added after a limit of the amplifier: only these levels show such a
+        // limit.
+        let limits = LimitSearch::new(force, noise_m_s2, step_beyond(noise_m_s2).max(least)).find();
         let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
         let further: Vec<Span> = limits.into_iter().filter(|s| !is_known(s)).collect();
         spans.extend(further);
-        spans.extend(limited_flanks(force, roughness, peak));
+        spans.extend(find_limited_flanks(force, roughness, peak));
     }
     spans.sort_by_key(|s| s.from);
     spans
 }
 
-/// The flanks towards 0, or through it, that fall in one straight line between two kinks: no force does so,
-/// and the amplifier does not follow it. A limiter's rise is straight, too, but its fall as it lets go is
+/// Finds the flanks towards 0, or through it, that fall in a straight line between two kinks: no force does
+/// so, the amplifier could not follow it. An impact limiter rises in a straight line too, but its fall is
 /// rounded.
-fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
+fn find_limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     let slopes: Vec<f64> = force.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let mut flanks = Gauge::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).limits();
+    let mut flanks = LimitSearch::new(&slopes, roughness * std::f64::consts::SQRT_2, 0.0).find();
     flanks.retain(|flank| {
         let (from, to) = (force[flank.from], force[flank.to]);
         let is_long = flank.to - flank.from >= LEAST_FLANK && (from - to).abs() > FLANK_SHARE * peak;
@@ -99,72 +99,61 @@ fn limited_flanks(force: &[f64], roughness: f64, peak: f64) -> Vec<Span> {
     flanks
 }
 
-/// Samples beyond the stated full scale and the noise on it, which then is none.
-pub(super) fn beyond_full_scale(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Option<Finding> {
+/// Reports samples beyond the stated full scale and its noise: the full scale is stated wrongly.
+pub(super) fn judge_full_scale(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Option<Finding> {
     let full_scale_m_s2 = (channel.full_scale? * channel.scale_m_s2).abs();
     let reads_m_s2 = reduce::peak(force);
-    let most_m_s2 = BEYOND * full_scale_m_s2 + NOISE_FACTOR * noise_m_s2;
-    let found = ChannelFinding::BeyondFullScale { reads_m_s2, full_scale_m_s2 };
-    (reads_m_s2 > most_m_s2).then(|| found.tag(&channel.name))
+    let most_m_s2 = BEYOND_SHARE * full_scale_m_s2 + NOISE_FACTOR * noise_m_s2;
+    let finding = ChannelFinding::BeyondFullScale { reads_m_s2, full_scale_m_s2 };
+    (reads_m_s2 > most_m_s2).then(|| finding.tag(&channel.name))
 }
 
-/// The converter's step where it exceeds the noise, else 0.
-pub(super) fn converter_step(channel: &Channel, force: &[f64], noise: f64) -> f64 {
-    let peak = reduce::peak(force);
-    let (moved, least) = (channel.time_jitter_s > 0.0, LEAST_STEP * peak);
-    let is_noise = !moved && reduce::least_step_beyond(force, least, noise - least) == 0.0;
-    Some(step(force, moved, peak)).filter(|s| !is_noise && s.is_finite()).unwrap_or(0.0).max(least)
-}
-
-/// The converter's step, infinite where the samples tell none: the least distance of neighbours. Of samples
-/// that were `moved` to other times only those among equals stand where they did.
+/// Returns the converter's step, the least distance of neighbours; 0 if the samples show none. If they were
+/// resampled to even times, only equal neighbours still have their recorded value.
 #[allow(clippy::float_cmp, reason = "between equal samples a cubic is theirs to the bit")]
-fn step(force: &[f64], moved: bool, peak: f64) -> f64 {
+fn step(force: &[f64], is_resampled: bool, peak: f64) -> f64 {
     let least = LEAST_STEP * peak;
-    if !moved {
-        return reduce::least_step(force, least);
+    if !is_resampled {
+        return Some(reduce::least_step(force, least)).filter(|step| step.is_finite()).unwrap_or(0.0);
     }
     let mut levels: Vec<f64> = force.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     levels.sort_unstable_by(f64::total_cmp);
     let step = reduce::least_step(&levels, least);
-    // A limit and rest alone are no steps.
-    if step < peak / 4.0 { step } else { f64::INFINITY }
+    // A limit and the level at rest alone are no steps.
+    if step < peak / 4.0 { step } else { 0.0 }
 }
 
-/// Standard deviation of the noise by the steps from sample to sample, which no slow swing adds to.
+/// Standard deviation of the noise from the steps between samples, to which slow oscillations add nothing.
 fn roughness(quiet: &[f64]) -> f64 {
     let pairs = quiet.windows(2).step_by(robust::stride(quiet.len()));
     let steps: Vec<f64> = pairs.map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
     if steps.len() < 8 { 0.0 } else { robust::spread(&steps) / std::f64::consts::SQRT_2 }
 }
 
-/// Whether the inside of a flat run still has the sensor's noise.
+/// True if the inside of a flat run still has the sensor's noise.
 fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
     let inside = &force[span.from + 1..(span.to - 1).max(span.from + 1)];
     let steps: f64 = inside.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
     let count = inside.len().saturating_sub(1);
-    count > 0 && roughness > 0.0 && (steps / as_f64(count) / 2.0).sqrt() > NOISE_LEFT * roughness
+    count > 0 && roughness > 0.0 && (steps / as_f64(count) / 2.0).sqrt() > LEAST_NOISE_SHARE * roughness
 }
 
-/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest
+/// True if the signal enters and leaves the flat run steeply, as at a stop, and not as over the flattest
 /// rounded top.
 fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let run = span.to - span.from;
-    // A quarter of the run beyond it: far enough for the slope to stand out of the noise.
+    // The comparison reaches a quarter of the run beyond it: far enough for the slope to exceed the noise.
     let reach = (run / 4).max(1);
-    let level = force[span.from];
-    let fallen = |beyond: &[f64]| beyond.iter().map(|f| (level - f).abs()).fold(0.0, f64::max);
-    let before = fallen(&force[span.from.saturating_sub(reach)..span.from]);
-    let after = fallen(&force[span.to..(span.to + reach).min(force.len())]);
-    let (low, high) = reduce::extremes(&force[span.from..span.to], level);
-    // What lies within the run, and half of the band at the least: a few samples of noise may lie near one
-    // another by chance.
+    let top = force[span.from];
+    let largest_fall = |beyond: &[f64]| beyond.iter().map(|f| (top - f).abs()).fold(0.0, f64::max);
+    let before = largest_fall(&force[span.from.saturating_sub(reach)..span.from]);
+    let after = largest_fall(&force[span.to..(span.to + reach).min(force.len())]);
+    let (low, high) = reduce::extremes(&force[span.from..span.to], top);
+    // The range of the run, and at least half of the band: a few samples of noise may lie near one another by
+    // chance.
     let depth = (high - low + step).max(band / 2.0);
-    // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther
-    // on.
-    let wider = as_f64(run - 1 + 2 * reach) / as_f64(run - 1);
     // The less steep side counts: a kink has one steep side.
-    before.min(after) > depth * (wider.powi(FLATTEST) - 1.0)
+    before.min(after) > depth * (flattest_top_fall(run, reach) - 1.0)
 }
 
 #[cfg(test)]
@@ -182,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, 0);
+        let spans = find_clipped(&channel(None), &pulse(3000.0), 0.0, 0.0, 0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -198,7 +187,7 @@ mod tests {
             };
             let behind: Vec<f64> = [&quiet[..], force, &quiet].concat().iter().map(follow).collect();
             let noisy: Vec<f64> = behind.iter().zip(0..).map(|(f, i)| f + 0.5 * noise(i, 3)).collect();
-            limited_flanks(&noisy, roughness(&noisy[..200]), 4000.0)
+            find_limited_flanks(&noisy, roughness(&noisy[..200]), 4000.0)
         };
         // A half sine of 4000 over 200 samples rises by up to 63 a sample.
         let [flank] = limited(&pulse(1e9), 30.0)[..] else { panic!("one flank") };
@@ -220,13 +209,14 @@ mod tests {
         // 28 of 4000 is a step of a 10-bit converter over 3.6 times the peak.
         for step in [10.0, 28.0] {
             let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / step).round() * step).collect();
-            assert!(clipped(&channel(None), &coarse, 0.0, 0.0, 0).is_empty(), "{step}");
+            assert!(find_clipped(&channel(None), &coarse, 0.0, 0.0, 0).is_empty(), "{step}");
         }
-        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0.0, 0).is_empty());
+        assert!(find_clipped(&channel(None), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
-    /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a
-    /// step, as a converter of so many bits over so many peaks writes it; the pulse has `length` samples.
+    /// Simulates quiet, a half sine with ringing of a fifth of it and the ringing that follows, with noise of
+    /// less than a step, as a converter of `bits` bits over `range` peaks writes it; the pulse has `length`
+    /// samples.
     fn converted(bits: i32, range: f64, length: u32, seed: u64) -> Vec<f64> {
         use std::f64::consts::PI;
         let codes = 2_f64.powi(bits - 1);
@@ -247,7 +237,7 @@ mod tests {
             for length in [20, 47, 110, 260, 900, 3000] {
                 let found = |range: f64| {
                     let force = converted(bits, range, length, seed);
-                    clipped(&channel(None), &force, 0.0, robust::spread(&force[..200]), 200)
+                    find_clipped(&channel(None), &force, 0.0, robust::spread(&force[..200]), 200)
                 };
                 for range in [3.0, 4.1, 5.9, 8.3, 11.7, 16.9, 23.0, 30.0] {
                     assert!(found(range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
@@ -269,7 +259,7 @@ mod tests {
         for noise_m_s2 in [0.05, 0.5, 1.1, 2.0, 5.0] {
             for power in [2, 4] {
                 assert!(
-                    clipped(&channel(None), &top(power), 0.0, noise_m_s2, 0).is_empty(),
+                    find_clipped(&channel(None), &top(power), 0.0, noise_m_s2, 0).is_empty(),
                     "{noise_m_s2} {power}"
                 );
             }
@@ -292,7 +282,7 @@ mod tests {
         };
         for length in [110, 900] {
             let clipped_within =
-                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 0.0, 200);
+                |range: f64| find_clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 0.0, 200);
             assert!(clipped_within(10.0).is_empty() && clipped_within(25.0).is_empty(), "{length}");
             assert!(!clipped_within(0.5).is_empty() && !clipped_within(0.8).is_empty(), "{length}");
         }
@@ -305,15 +295,15 @@ mod tests {
             pulse(limit).iter().enumerate().map(|(i, f)| f + 3.4 * hash(i)).collect()
         };
         // Uniform noise of ±1.7 has a standard deviation of 1.
-        assert_eq!(clipped(&channel(None), &noisy(3800.0), 0.0, 1.0, 0).len(), 1);
-        assert!(clipped(&channel(None), &noisy(1e9), 0.0, 1.0, 0).is_empty());
+        assert_eq!(find_clipped(&channel(None), &noisy(3800.0), 0.0, 1.0, 0).len(), 1);
+        assert!(find_clipped(&channel(None), &noisy(1e9), 0.0, 1.0, 0).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0.0, 0).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0.0, 0).is_empty());
+        assert_eq!(find_clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0.0, 0).len(), 1);
+        assert!(find_clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0.0, 0).is_empty());
     }
 
     /// 100 samples of free fall and a pulse cut at 3000 m/s², with noise before the limit and after it.
@@ -329,22 +319,22 @@ mod tests {
         let crushing: Vec<f64> =
             limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
         let along = Channel { axis: Axis::Axial, ..channel(None) };
-        assert!(clipped(&along, &crushing, 0.0, 5.0, 100).is_empty());
+        assert!(find_clipped(&along, &crushing, 0.0, 5.0, 100).is_empty());
         // Across the axis a force that a limiter keeps level rings with the body, by 2 % of it here; what has
         // noise alone, as a converter behind the limit makes it, is a limit.
         let rings = |i: u32| if i < 100 { 0.0 } else { 60.0 * (0.15 * f64::from(i)).sin() };
         let ringing: Vec<f64> = crushing.iter().zip(0..).map(|(f, i)| f + rings(i)).collect();
-        assert!(clipped(&channel(None), &ringing, 0.0, 5.0, 100).is_empty());
-        assert_eq!(clipped(&channel(None), &crushing, 0.0, 5.0, 100).len(), 1);
-        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 0.0, 5.0, 100).len(), 1);
-        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, 100).len(), 1);
+        assert!(find_clipped(&channel(None), &ringing, 0.0, 5.0, 100).is_empty());
+        assert_eq!(find_clipped(&channel(None), &crushing, 0.0, 5.0, 100).len(), 1);
+        assert_eq!(find_clipped(&channel(None), &limited(5.0, 0.0), 0.0, 5.0, 100).len(), 1);
+        assert_eq!(find_clipped(&channel(None), &limited(5.0, 1.5), 0.0, 5.2, 100).len(), 1);
         // The stated limit of 300 g is 2942 m/s²: then noise does not matter.
-        assert!(!clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, 100).is_empty());
+        assert!(!find_clipped(&channel(Some(300.0)), &crushing, 0.0, 5.0, 100).is_empty());
     }
 
     #[test]
     fn what_reads_beyond_its_full_scale_says_so() {
-        let found = |full_scale: f64| beyond_full_scale(&channel(Some(full_scale)), &pulse(3900.0), 5.0);
+        let found = |full_scale: f64| judge_full_scale(&channel(Some(full_scale)), &pulse(3900.0), 5.0);
         assert!(found(300.0).is_some() && found(390.0).is_none() && found(500.0).is_none());
     }
 }

@@ -1,41 +1,41 @@
-//! Samples to the spikes and dropouts of cables and connectors, which no pulse of a cask looks like.
+//! Finds the spikes and dropouts of cables and connectors, which no pulse of a cask resembles.
 
-use super::runs::runs_of_steps;
+use super::runs::find_step_runs;
 use crate::data::{ChannelFinding, Finding, Severity, Signal, Span};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::ops::Range;
 
-/// A disturbance stands out of its neighbours by this share of the channel's peak …
+/// A disturbance differs from its neighbours by this share of the channel's peak.
 const SHARE_OF_PEAK: f64 = 0.05;
-/// … and by this many standard deviations of the noise.
+/// It also differs by this many standard deviations of the noise.
 const NOISE_FACTOR: f64 = 20.0;
-/// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's
-/// peak do not.
+/// The two neighbours on either side of a spike agree within this share of its height, unlike those of a
+/// pulse's peak.
 const AGREEMENT: f64 = 0.3;
-/// Samples on either side of a spike in which the signal bends less than this share of its height, in the
-/// median of its second differences: a mode of a few samples a period has such extremes one beside the other.
+/// In this many samples on either side of a spike the median second difference is less than [`CALM_SHARE`] of
+/// its height: a mode of a few samples per period has such extremes next to one another.
 const AROUND: usize = 12;
-const CALM: f64 = 0.2;
-/// What is sharper than this share of a spike beside it, on its channel or another, says that the body is as
-/// sharp: bending waves of a struck cask come through a recorder's filter as bells of two to five samples …
-const AS_SHARP: f64 = 0.4;
-/// … within this time of it, s, and no fewer than [`AROUND`] samples.
+const CALM_SHARE: f64 = 0.2;
+/// A spike is a disturbance only if nothing beside it, on its channel or another, has this share of its
+/// sharpness: bending waves of a struck cask pass a recorder's filter as pulses of two to five samples.
+const AS_SHARP_SHARE: f64 = 0.4;
+/// Time beside a spike that is searched for equally sharp samples, s; at least [`AROUND`] samples.
 const BESIDE_S: f64 = 1e-3;
-/// Longest spike, in samples: a contact that breaks for longer is a dropout or a burst.
+/// Longest spike, in samples: a longer break of contact is a dropout or a burst.
 const LONGEST_SPIKE: usize = 5;
-/// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too
-/// slowly.
+/// Largest area of a spike, as a share of the impact's velocity change: a larger one is a pulse with too few
+/// samples.
 const SHARE_OF_STEP: f64 = 0.1;
-/// Spikes that together add less are a note, m/s: 0.1 % of a slap-down.
+/// Spikes whose areas add to less are a note, m/s: 0.1 % of a slap-down.
 const SMALL_M_S: f64 = 0.02;
-/// Fewest equal samples in a row after a jump that are a dropout.
+/// Fewest equal samples in a row after a jump that make a dropout.
 const LEAST_RUN: usize = 5;
-/// Fewest without a jump, where noise keeps samples from repeating: with 9 % of them equal to the last, 5 in
-/// 10⁸ runs are as long.
+/// Fewest equal samples without a jump, if noise keeps samples from repeating: if at most [`MOST_REPEATED`]
+/// of them are equal to the last, 5 in 10⁸ runs are as long.
 const LEAST_QUIET_RUN: usize = 8;
 const MOST_REPEATED: f64 = 0.09;
 
-/// The height above which something is a disturbance, m/s².
+/// Height above which a deviation is a disturbance, m/s².
 fn height(peak_m_s2: f64, noise_m_s2: f64) -> f64 {
     (SHARE_OF_PEAK * peak_m_s2).max(NOISE_FACTOR * noise_m_s2)
 }
@@ -44,25 +44,25 @@ fn is_lost(signal: &Signal, index: usize) -> bool {
     signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= index + 1 && index <= g.to)
 }
 
-/// Spikes of one to five samples of one of the signals with what they hold together; nothing is repaired.
-pub(super) fn spikes(signals: &[Signal], index: usize, velocity_step_m_s: f64) -> Option<Finding> {
+/// Finds the spikes of one to five samples in one of the signals, with their total area; repairs nothing.
+pub(super) fn find_spikes(signals: &[Signal], index: usize, velocity_step_m_s: f64) -> Option<Finding> {
     let signal = signals.get(index)?;
     let force = &signal.force_m_s2;
     let height = height(reduce::peak(force), signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
     let (mut found, mut held_m_s) = (Vec::new(), 0.0);
-    // Few samples stand out of the one before: what costs more is asked after that.
-    let high = runs_of_steps(force, |before, f| (f - before).abs() > height);
+    // Few samples differ that much from the one before: the costly tests follow for these alone.
+    let high = find_step_runs(force, |before, f| (f - before).abs() > height);
     let mut free_from = 2;
     for i in high.into_iter().flat_map(|steps| steps.from + 1..=steps.to) {
         if i < free_from || i + 2 >= force.len() {
             continue;
         }
         let spike = (1..=LONGEST_SPIKE)
-            .find_map(|width| area(force, i, width, height).map(|a| (width, a)))
+            .find_map(|width| spike_area(force, i, width, height).map(|a| (width, a)))
             .map(|(width, area)| (width, area / signal.sample_rate_hz))
             .filter(|(_, area_m_s)| *area_m_s < most_m_s && !is_lost(signal, i))
-            .filter(|(width, _)| *width == 1 || is_alone(signals, signal, i..i + width));
+            .filter(|(width, _)| *width == 1 || is_sharpest(signals, signal, i..i + width));
         if let Some((width, area_m_s)) = spike {
             found.push(i);
             held_m_s += area_m_s;
@@ -75,8 +75,8 @@ pub(super) fn spikes(signals: &[Signal], index: usize, velocity_step_m_s: f64) -
     Some(found.tag(&signal.name).span(signal.time_s(*first), signal.time_s(*last)))
 }
 
-/// What the `width` samples from `i` on hold above their neighbours, m/s² × samples, if they are a spike.
-fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
+/// Area of the `width` samples from `i` on above their neighbours, m/s² × samples, if they are a spike.
+fn spike_area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
     let (before, run, after) =
         (force.get(i - 2..i)?, force.get(i..i + width)?, force.get(i + width..i + width + 2)?);
     let base = f64::midpoint(before[1], after[0]);
@@ -85,12 +85,12 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
     let is_flat = [before[1] - before[0], after[0] - before[1], after[1] - after[0]]
         .iter()
         .all(|step| step.abs() < AGREEMENT * least);
-    (least > height && is_flat && bends_around(force, i, width) < CALM * least)
+    (least > height && is_flat && bend_around(force, i, width) < CALM_SHARE * least)
         .then(|| run.iter().map(|f| sign * (f - base)).sum())
 }
 
 /// Median of the second differences about the `width` samples from `i` on, without them, m/s².
-fn bends_around(force: &[f64], i: usize, width: usize) -> f64 {
+fn bend_around(force: &[f64], i: usize, width: usize) -> f64 {
     let beside = [i.saturating_sub(AROUND)..i, i + width..(i + width + AROUND).min(force.len())];
     robust::median(&mut beside.into_iter().flat_map(|range| bends(&force[range])).collect::<Vec<_>>())
 }
@@ -100,8 +100,8 @@ fn bends(force: &[f64]) -> impl Iterator<Item = f64> {
     force.windows(3).map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
 }
 
-/// Whether nothing about a run of samples is nearly as sharp, on its channel or on another of its rate.
-fn is_alone(signals: &[Signal], signal: &Signal, run: Range<usize>) -> bool {
+/// True if nothing near a run of samples is almost as sharp, on its channel or on another with its rate.
+fn is_sharpest(signals: &[Signal], signal: &Signal, run: Range<usize>) -> bool {
     let beside = AROUND.max(as_count(BESIDE_S * signal.sample_rate_hz));
     let sharpest = |signal: &Signal, over: Range<usize>| {
         let over = over.start.min(over.end)..over.end.min(signal.force_m_s2.len());
@@ -117,15 +117,16 @@ fn is_alone(signals: &[Signal], signal: &Signal, run: Range<usize>) -> bool {
         let [from, to] = [before, after].map(|i| other.index_from(signal.time_s(i)));
         sharpest(other, from..to)
     });
-    let on_own = [before..run.start.saturating_sub(1), run.end + 1..after].map(|over| sharpest(signal, over));
-    on_own.into_iter().chain(on_others).all(|sharp| sharp < AS_SHARP * spike)
+    let on_this_channel =
+        [before..run.start.saturating_sub(1), run.end + 1..after].map(|over| sharpest(signal, over));
+    on_this_channel.into_iter().chain(on_others).all(|sharp| sharp < AS_SHARP_SHARE * spike)
 }
 
-/// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.
+/// Marks runs of equal samples that no converter gives as gaps, sets them to 0 and reports them.
 pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Finding> {
     let end = signal.index_from(before_s);
     let force = &signal.force_m_s2;
-    let equal = repeats(force);
+    let equal = find_repeats(force);
     if equal.is_empty() {
         return None;
     }
@@ -155,21 +156,21 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
         .collect();
     let (first, last) = (*dropouts.first()?, *dropouts.last()?);
     let samples: usize = dropouts.iter().map(|d| d.to - d.from).sum();
-    let most_m_s = dropouts.iter().map(|d| bridged_m_s(signal, *d)).fold(0.0, f64::max);
+    let most_m_s = dropouts.iter().map(|d| bridge_area_m_s(signal, *d)).fold(0.0, f64::max);
     for span in &dropouts {
         signal.force_m_s2[span.from..span.to].fill(0.0);
     }
     let stretches = dropouts.len();
     signal.gaps.extend(dropouts);
     signal.gaps.sort_by_key(|gap| gap.from);
-    let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
-    Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
+    let finding = ChannelFinding::Dropout { stretches, samples, most_m_s };
+    Some(finding.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
 }
 
-/// Whether equal samples are one step of numbers cut to three digits, as `7.27E+02`: they rise and fall about
-/// the run by whole steps of a size that goes with theirs.
+/// True if equal samples are one step of numbers cut to three digits, such as `7.27E+02`: the values around
+/// the run change by whole steps of a size that fits the numbers.
 fn is_rounded(force: &[f64], run: Range<usize>) -> bool {
-    /// The last of three digits is no less a part of the number.
+    /// The last of three digits is at least this share of the number.
     const LEAST_STEP: f64 = 9e-4;
     let about = force.get(run.start.saturating_sub(AROUND)..run.end + AROUND).unwrap_or_default();
     let step = |pair: &[f64]| (pair[1] - pair[0]).abs();
@@ -183,14 +184,14 @@ fn is_rounded(force: &[f64], run: Range<usize>) -> bool {
         && ends.all(|end| step(end) < 1.5 * least)
 }
 
-/// Runs of [`LEAST_RUN`] equal samples and more, from the first step between them to behind the last: each
-/// holds a step in so many less one, so that the others are not asked.
-fn repeats(force: &[f64]) -> Vec<Span> {
+/// Finds the runs of at least [`LEAST_RUN`] equal samples, from the first step between them to just after the
+/// last: each contains every `LEAST_RUN − 1`-th step, so the others need no test.
+fn find_repeats(force: &[f64]) -> Vec<Span> {
     #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
     let repeats = |&i: &usize| force.get(i).zip(force.get(i + 1)).is_some_and(|(a, b)| a == b);
     let mut found: Vec<Span> = Vec::new();
-    // Few of the steps asked have another beside them: without that the processor guesses wrong at each
-    // coarse converter's repeat.
+    // Few of the tested steps have an equal one next to them: without this test the processor mispredicts at
+    // each repeated value of a coarse converter.
     let is_run = |i: usize| repeats(&i) & (repeats(&(i + 1)) | (i > 0 && repeats(&(i - 1))));
     for i in (0..force.len()).step_by(LEAST_RUN - 1) {
         if is_run(i) && found.last().is_none_or(|before| i >= before.to) {
@@ -202,8 +203,8 @@ fn repeats(force: &[f64]) -> Vec<Span> {
     found
 }
 
-/// What a straight bridge over a span holds, against 0, m/s.
-fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
+/// Area of a straight bridge over a span, against 0, m/s.
+fn bridge_area_m_s(signal: &Signal, span: Span) -> f64 {
     let at = |i: Option<usize>| i.and_then(|i| signal.force_m_s2.get(i)).copied().unwrap_or(0.0);
     let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
     middle.abs() * as_f64(span.to - span.from) / signal.sample_rate_hz
@@ -226,14 +227,14 @@ mod tests {
 
     #[test]
     fn a_pulse_has_neither() {
-        assert!(spikes(&[pulse()], 0, 20.0).is_none());
+        assert!(find_spikes(&[pulse()], 0, 20.0).is_none());
         assert!(mark_dropouts(&mut pulse(), 1.0, 0.04).is_none());
         // Nor a pulse of five samples, and ringing of fifteen samples a period.
         let mut short = pulse();
         short.force_m_s2[300..305].copy_from_slice(&[2000.0, 3600.0, 4000.0, 3500.0, 1900.0]);
-        assert!(spikes(&[short], 0, 1.5).is_none());
+        assert!(find_spikes(&[short], 0, 1.5).is_none());
         let ringing = |i: u32| 3000.0 * (f64::from(i) * std::f64::consts::TAU / 15.0).sin() + noise(i, 2);
-        assert!(spikes(&[signal((0..900).map(ringing).collect())], 0, 20.0).is_none());
+        assert!(find_spikes(&[signal((0..900).map(ringing).collect())], 0, 20.0).is_none());
     }
 
     #[test]
@@ -243,7 +244,7 @@ mod tests {
             for f in &mut spiky.force_m_s2[200..200 + width] {
                 *f += 900.0;
             }
-            let finding = spikes(&[spiky], 0, 20.0).expect("a spike");
+            let finding = find_spikes(&[spiky], 0, 20.0).expect("a spike");
             let FindingKind::Channel(ChannelFinding::Spikes { count: 1, held_m_s: held, .. }) = finding.what
             else {
                 panic!("{finding:?}")
@@ -256,7 +257,7 @@ mod tests {
         let mut small = pulse();
         small.force_m_s2[100] += 205.0;
         small.sample_rate_hz = 2e4;
-        assert_eq!(spikes(&[small], 0, 20.0).map(|i| i.severity), Some(Severity::Note));
+        assert_eq!(find_spikes(&[small], 0, 20.0).map(|i| i.severity), Some(Severity::Note));
     }
 
     #[test]
@@ -270,7 +271,7 @@ mod tests {
             struck
         };
         let other = |name: &str, at: usize, share: f64| Signal { name: name.into(), ..struck(at, share) };
-        let is_spike = |signals: [Signal; 2]| spikes(&signals, 0, 20.0).is_some();
+        let is_spike = |signals: [Signal; 2]| find_spikes(&signals, 0, 20.0).is_some();
         assert!(is_spike([struck(600, 1.0), other("A2", 600, 0.1)]));
         assert!(is_spike([struck(600, 1.0), other("A2", 700, 1.0)]));
         assert!(!is_spike([struck(600, 1.0), other("A2", 607, -0.6)]));

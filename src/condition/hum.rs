@@ -1,4 +1,4 @@
-//! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
+//! Finds mains hum in the free fall before first contact and subtracts it from the whole signal.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
 use crate::numerics::reduce::{block_means, block_size};
@@ -8,27 +8,27 @@ use std::f64::consts::{PI, TAU};
 
 /// Frequencies of power grids, Hz: Europe, America, railways.
 const MAINS_HZ: [f64; 3] = [50.0, 60.0, 50.0 / 3.0];
-/// Grids keep their frequency within this, and recorders their clock, as a share: 0.5 Hz of 50.
-const WITHIN: f64 = 0.01;
-/// Harmonics looked for beside the fundamental: rectifiers make odd ones up to the seventh.
+/// Grids keep their frequency, and recorders their clock, within this share: 0.5 Hz of 50.
+const FREQUENCY_SHARE: f64 = 0.01;
+/// Highest harmonic that is searched: rectifiers produce odd ones up to the seventh.
 const HARMONICS: u32 = 7;
-/// Fewest periods of free fall that tell hum from a slope and from another grid.
+/// Fewest periods of free fall that distinguish hum from a slope and from another grid.
 const LEAST_PERIODS: f64 = 2.5;
-/// A line stands out by this many of its standard uncertainties …
-const SURE: f64 = 6.0;
-/// … and by this factor over what is found as far beside it as the stretch resolves: noise that is not white
-/// has such lines too.
-const OVER_NEIGHBOURS: f64 = 4.0;
-/// Velocity that hum may leave before a person should look, m/s: 0.2 % of a slap-down.
-const MOST_LEFT_M_S: f64 = 0.05;
-/// A line whose whole swing of velocity is below this is not worth a word, m/s.
+/// A line exceeds this many of its standard uncertainties.
+const LEAST_LINE_U: f64 = 6.0;
+/// It also exceeds the lines beside it, as near as the stretch resolves them, by this factor: noise that is
+/// not white has such lines too.
+const NEIGHBOUR_FACTOR: f64 = 4.0;
+/// Residual velocity of hum from which it is a warning, m/s: 0.2 % of a slap-down.
+const MOST_RESIDUAL_M_S: f64 = 0.05;
+/// A line whose velocity swings by less than this is not reported, m/s.
 const LEAST_M_S: f64 = 0.002;
-/// Samples are averaged down to about this rate for the search, Hz: ten times the highest harmonic.
+/// Sample rate to which samples are averaged for the search, Hz: ten times the highest harmonic.
 const SEARCH_RATE_HZ: f64 = 4000.0;
-/// How far the hum is extrapolated into the event, s: contact and flight.
+/// Time over which the hum is extrapolated into the event, s: contact and flight.
 const AHEAD_S: f64 = 0.1;
 
-/// Finds hum before `before_s`; takes it off all samples if `take_off`, and says so.
+/// Finds hum before `before_s` and reports it; subtracts it from all samples if `take_off`.
 pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Option<Finding> {
     let end = signal.index_from(before_s);
     if signal.gaps.iter().any(|gap| gap.from < end) {
@@ -37,9 +37,9 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     let block = block_size(SEARCH_RATE_HZ, signal.sample_rate_hz);
     let means = block_means(signal.force_m_s2.get(..end)?, block);
     let block_rate_hz = signal.sample_rate_hz / as_f64(block);
-    let lines: Vec<Sinusoid> = lines(&means, block_rate_hz)
+    let lines: Vec<Sinusoid> = find_lines(&means, block_rate_hz)
         .iter()
-        .map(|line| unblocked(line, block, signal.sample_rate_hz))
+        .map(|line| undo_averaging(line, block, signal.sample_rate_hz))
         .collect();
     let fundamental = *lines.first()?;
     let swing = |line: &Sinusoid, size: f64| 2.0 * size / (TAU * line.frequency_hz);
@@ -59,84 +59,84 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         }
     }
     let left_m_s =
-        if take_off { left_m_s(&lines, as_f64(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
-    let found = ChannelFinding::Hum {
+        if take_off { residual_m_s(&lines, as_f64(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
+    let finding = ChannelFinding::Hum {
         amplitude_m_s2: fundamental.amplitude(),
         frequency_hz: fundamental.frequency_hz,
         harmonics: lines.len() - 1,
         is_taken_off: take_off,
         left_m_s,
-        severity: if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note },
+        severity: if left_m_s > MOST_RESIDUAL_M_S { Severity::Warning } else { Severity::Note },
     };
-    Some(found.tag(&signal.name))
+    Some(finding.tag(&signal.name))
 }
 
-/// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.
-fn unblocked(line: &Sinusoid, block: usize, sample_rate_hz: f64) -> Sinusoid {
+/// Restores the amplitude that the mean over `block` samples takes from a line: sin(n x)/(n sin x), x = π
+/// f/f_s.
+fn undo_averaging(line: &Sinusoid, block: usize, sample_rate_hz: f64) -> Sinusoid {
     let x = PI * line.frequency_hz / sample_rate_hz;
     let share = (as_f64(block) * x).sin() / (as_f64(block) * x.sin());
     Sinusoid { cosine: line.cosine / share, sine: line.sine / share, ..*line }
 }
 
-/// The fundamental and the harmonics that stand out, strongest grid only; empty where none does.
-fn lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
+/// Finds the fundamental of the strongest grid and its harmonics, as far as they stand out; empty if none
+/// does.
+fn find_lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
     let length_s = as_f64(quiet.len()) / sample_rate_hz;
-    let mut left = quiet.to_vec();
-    let band = |f: f64| (f * (1.0 - WITHIN), f * (1.0 + WITHIN));
+    let mut residual = quiet.to_vec();
+    let band = |f: f64| (f * (1.0 - FREQUENCY_SHARE), f * (1.0 + FREQUENCY_SHARE));
     let fundamental = MAINS_HZ
         .iter()
         .filter(|f| length_s * **f >= LEAST_PERIODS)
-        .filter_map(|f| sinusoid::search(&left, sample_rate_hz, band(*f)))
+        .filter_map(|f| sinusoid::search(&residual, sample_rate_hz, band(*f)))
         .max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
-    let mut found = Vec::new();
-    let Some(fundamental) = fundamental.filter(|line| stands_out(line, &left, sample_rate_hz)) else {
-        return found;
+    let mut lines = Vec::new();
+    let Some(fundamental) = fundamental.filter(|line| stands_out(line, &residual, sample_rate_hz)) else {
+        return lines;
     };
-    take(&mut left, &fundamental, sample_rate_hz);
-    found.push(fundamental);
+    subtract(&mut residual, &fundamental, sample_rate_hz);
+    lines.push(fundamental);
     for harmonic in 2..=HARMONICS {
-        let Some(line) = sinusoid::fit(&left, sample_rate_hz, fundamental.frequency_hz * f64::from(harmonic))
-        else {
-            break;
-        };
-        if stands_out(&line, &left, sample_rate_hz) {
-            take(&mut left, &line, sample_rate_hz);
-            found.push(line);
+        let frequency_hz = fundamental.frequency_hz * f64::from(harmonic);
+        let Some(line) = sinusoid::fit(&residual, sample_rate_hz, frequency_hz) else { break };
+        if stands_out(&line, &residual, sample_rate_hz) {
+            subtract(&mut residual, &line, sample_rate_hz);
+            lines.push(line);
         }
     }
-    found
+    lines
 }
 
-/// Whether a line is sure of itself and of its neighbours in the samples it was found in.
+/// True if a line exceeds its uncertainty and its neighbours in the samples in which it was found.
 fn stands_out(line: &Sinusoid, samples: &[f64], sample_rate_hz: f64) -> bool {
-    let mut rest = samples.to_vec();
-    take(&mut rest, line, sample_rate_hz);
+    let mut residual = samples.to_vec();
+    subtract(&mut residual, line, sample_rate_hz);
     let apart_hz = sample_rate_hz / as_f64(samples.len());
     let mut beside: Vec<f64> = [-3.0, -2.0, -1.5, 1.5, 2.0, 3.0]
         .iter()
-        .filter_map(|n| sinusoid::fit(&rest, sample_rate_hz, line.frequency_hz + n * apart_hz))
+        .filter_map(|n| sinusoid::fit(&residual, sample_rate_hz, line.frequency_hz + n * apart_hz))
         .map(|s| s.amplitude())
         .collect();
     let amplitude = line.amplitude();
-    amplitude > SURE * line_uncertainty(line, &rest)
-        && (beside.is_empty() || amplitude > OVER_NEIGHBOURS * robust::median(&mut beside))
+    amplitude > LEAST_LINE_U * line_uncertainty(line, &residual)
+        && (beside.is_empty() || amplitude > NEIGHBOUR_FACTOR * robust::median(&mut beside))
 }
 
-/// Standard uncertainty of the amplitude by what is left beside the line, white: σ √(2/n).
-fn line_uncertainty(line: &Sinusoid, rest: &[f64]) -> f64 {
-    line.u_amplitude.max(robust::spread(rest) * (2.0 / as_f64(rest.len())).sqrt())
+/// Standard uncertainty of the amplitude from the residual beside the line, as white noise: σ √(2/n).
+fn line_uncertainty(line: &Sinusoid, residual: &[f64]) -> f64 {
+    line.u_amplitude.max(robust::spread(residual) * (2.0 / as_f64(residual.len())).sqrt())
 }
 
-fn take(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
+fn subtract(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
     let middle = (as_f64(samples.len()) - 1.0) / 2.0;
     for (i, x) in samples.iter_mut().enumerate() {
         *x -= line.value_at((as_f64(i) - middle) / sample_rate_hz);
     }
 }
 
-/// Swing of velocity that the lines' uncertainties leave at the end of the event, m/s, twice the standard
+/// Swing of velocity at the end of the event that the lines' uncertainties allow, m/s, as twice the standard
 /// uncertainty.
-fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -> f64) -> f64 {
+fn residual_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -> f64) -> f64 {
     let ahead_s = length_s / 2.0 + AHEAD_S;
     lines
         .iter()

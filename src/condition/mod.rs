@@ -1,4 +1,4 @@
-//! Channels as read to signals fit to integrate: offset, gaps, clipping, what each channel is worth.
+//! Turns channels as read into signals that can be integrated: offset, hum, gaps, clipping and noise of each.
 
 mod clipping;
 mod disturbed;
@@ -16,21 +16,21 @@ use crate::data::{
 use crate::numerics::robust;
 use rayon::prelude::*;
 
-/// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4
-/// m.
-const BEFORE_S: f64 = 0.25;
+/// Length of free fall that determines the offset, s: long compared with noise and hum, short compared with
+/// any free fall from above 0.4 m.
+const OFFSET_TIME_S: f64 = 0.25;
 
-/// The farthest that signals reach after the coarse event, s: the longest flight to slap-down (steep drops)
-/// and its pulse.
+/// Longest reach of the signals after the coarse event, s: the longest flight to slap-down (steep drops) and
+/// its pulse.
 const LONGEST_AFTER_S: f64 = 1.6;
 
-/// The least that they reach, s: a flat drop's slap-down and what rings after it.
+/// Shortest reach of the signals, s: the slap-down of a flat drop and its ringing.
 const LEAST_AFTER_S: f64 = 0.15;
 
-/// R comes down at this share of v0 at the least, from the height that an angle 10° steeper would give it.
+/// Least speed at which R descends, as a share of v0; its height is that of an angle 10° steeper.
 const SLOWEST_DESCENT: f64 = 0.25;
 
-/// How far the signals reach around the coarse event.
+/// Reach of the signals around the coarse event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// Before it, s.
@@ -40,47 +40,47 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// From the free fall that must lie before first contact and the slap-down that must lie after it.
-    pub fn of(cask: &Cask, drop: &Drop) -> Self {
+    /// Computes the reach from the free fall before first contact and the latest slap-down after it.
+    pub fn for_drop(cask: &Cask, drop: &Drop) -> Self {
         let steeper_rad = (drop.angle_rad + 10.0_f64.to_radians()).min(std::f64::consts::FRAC_PI_2);
         let descent_s = cask.length_m * steeper_rad.sin() / (SLOWEST_DESCENT * drop.impact_velocity_m_s);
         Self {
-            before_s: BEFORE_S.min(0.8 * drop.impact_velocity_m_s / drop.gravity_m_s2),
+            before_s: OFFSET_TIME_S.min(0.8 * drop.impact_velocity_m_s / drop.gravity_m_s2),
             after_s: (descent_s + LEAST_AFTER_S / 2.0).clamp(LEAST_AFTER_S, LONGEST_AFTER_S),
         }
     }
 
-    /// The same, but as far as the longest flight to slap-down may last.
-    pub fn longest(self) -> Self {
+    /// Extends the reach to the end of the longest flight to slap-down.
+    pub fn with_longest_flight(self) -> Self {
         Self { after_s: LONGEST_AFTER_S, ..self }
     }
 
-    /// The same, but no farther than what rings after the last change of velocity, s after the coarse event.
-    pub fn until(self, last_change_s: f64) -> Self {
+    /// Limits the reach to the ringing after the last change of velocity, s after the coarse event.
+    pub fn cut_at(self, last_change_s: f64) -> Self {
         Self { after_s: self.after_s.min(last_change_s.max(0.0) + LEAST_AFTER_S), ..self }
     }
 }
 
-/// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, marks what
-/// is clipped or missing.
+/// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, and marks
+/// clipped and missing samples.
 ///
-/// Returns the signals in the order of the channels and what was found about them.
+/// Returns the signals in the order of the channels and the findings on them.
 pub fn condition(
     recording: &Recording,
     event: &CoarseEvent,
     reach: &Reach,
     corrections: Corrections,
 ) -> (Vec<Signal>, Vec<Finding>) {
-    let each = |channel| signal(channel, event, reach, corrections);
-    let (signals, mut findings): (Vec<_>, Vec<Vec<_>>) = recording.channels.par_iter().map(each).unzip();
-    findings.par_iter_mut().enumerate().for_each(|(index, of_channel)| {
-        of_channel.extend(disturbed::spikes(&signals, index, event.velocity_step_m_s));
+    let treat = |channel| condition_channel(channel, event, reach, corrections);
+    let (signals, mut findings): (Vec<_>, Vec<Vec<_>>) = recording.channels.par_iter().map(treat).unzip();
+    findings.par_iter_mut().enumerate().for_each(|(index, findings)| {
+        findings.extend(disturbed::find_spikes(&signals, index, event.velocity_step_m_s));
     });
     (signals, findings.into_iter().flatten().collect())
 }
 
-/// One channel as [`condition`] treats all, but for what only a comparison of several shows.
-pub fn signal(
+/// Treats one channel as [`condition`] does, without the checks that compare several.
+pub fn condition_channel(
     channel: &Channel,
     event: &CoarseEvent,
     reach: &Reach,
@@ -101,9 +101,9 @@ pub fn signal(
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = robust::thin(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let clipped = clipping::clipped(channel, &force, 0.0, noise_m_s2, before);
-    findings.extend(clipping::beyond_full_scale(channel, &force, noise_m_s2));
-    let gaps = runs::runs(&force, |f| !f.is_finite());
+    let clipped = clipping::find_clipped(channel, &force, 0.0, noise_m_s2, before);
+    findings.extend(clipping::judge_full_scale(channel, &force, noise_m_s2));
+    let gaps = runs::find_runs(&force, |f| !f.is_finite());
     for f in &mut force {
         if !f.is_finite() {
             *f = 0.0;
@@ -166,7 +166,7 @@ mod tests {
     fn missing_samples_are_spans() {
         let force = [0.0, f64::NAN, f64::NAN, 1.0, f64::NAN];
         assert_eq!(
-            runs::runs(&force, |f| !f.is_finite()),
+            runs::find_runs(&force, |f| !f.is_finite()),
             [Span { from: 1, to: 3 }, Span { from: 4, to: 5 }]
         );
     }

@@ -1,54 +1,53 @@
-//! The free fall before first contact to a channel's offset and noise.
+//! Determines a channel's offset and noise from the free fall before first contact.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
 use crate::numerics::reduce::{self, block_means, block_size};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
-/// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an
-/// offset.
+/// Shortest free fall that determines an offset, s: a period of 50 Hz hum is 20 ms, and half of it still
+/// bounds an offset.
 const LEAST_S: f64 = 0.01;
 
-/// Offsets above this are worth a warning, m/s², and above this share of the channel's peak: data sheets of
+/// Offsets above both limits are a warning, m/s² and as a share of the channel's peak: data sheets of
 /// piezoresistive shock sensors allow a bias of some percent of the range.
 const LARGE_M_S2: f64 = 50.0;
 const LARGE_SHARE: f64 = 0.05;
 
-/// Offsets above this are worth a note, m/s².
+/// Offsets above this are a note, m/s².
 const NOTABLE_M_S2: f64 = 0.98;
 
-/// Samples this many spreads off the median are disturbances, not offset: none of a million of normal noise
-/// is.
-const WILD: f64 = 8.0;
+/// Samples this many spreads off the median are disturbances: not one in a million of normal noise is.
+const OUTLIER_SPREADS: f64 = 8.0;
 
-/// The spectrum is that of means at about this rate, Hz: an integral over milliseconds holds nothing above a
-/// few hundred.
+/// Rate of the means from which the spectrum is computed, Hz: an integral over milliseconds contains nothing
+/// above a few hundred.
 const SPECTRUM_RATE_HZ: f64 = 8000.0;
 
-/// A slope counts beyond this many of its standard uncertainties from eight means: noise of 1/f is ten times
-/// as steep as white noise.
-const SURE: f64 = 15.0;
+/// A slope counts beyond this many of its standard uncertainties from [`BLOCKS`] means: that of 1/f noise is
+/// ten times that of white noise.
+const LEAST_SLOPE_U: f64 = 15.0;
 const BLOCKS: usize = 8;
 
-/// Contact and flight that an offset is carried over, s: a 9 m drop from 15°.
+/// Contact and flight over which an offset is integrated, s: those of a 9 m drop from 15°.
 const AHEAD_S: f64 = 0.06;
 
-/// Velocity that a drift or an offset left may add before it is worth a warning, m/s: 0.2 % of a slap-down.
+/// Velocity from a drift or a residual offset above which it is a warning, m/s: 0.2 % of a slap-down.
 const SMALL_M_S: f64 = 0.05;
 
-/// Notes the mean before `before_s`, its uncertainty and the noise in the signal, and takes the mean off if
+/// Stores the mean before `before_s`, its uncertainty and the noise in the signal, and subtracts the mean if
 /// `take_off`.
 pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Finding> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
-    let quiet = recorded(signal, end);
+    let quiet = recorded_samples(signal, end);
     if length_s < LEAST_S || quiet.len() < 8 {
-        let finding = too_short(signal, length_s, quiet.len());
+        let finding = judge_short_fall(signal, length_s, quiet.len());
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
         return vec![finding];
     }
-    let (quiet, spread_m_s2) = tame(quiet);
+    let (quiet, spread_m_s2) = replace_outliers(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
     let noise_m_s2 = spread_m_s2.max(1e-3 * rms);
     let block = block_size(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
@@ -56,8 +55,8 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     let u_offset_m_s2 = robust::mean_and_u(&quiet).1.hypot(rounding_m_s2(signal, spread_m_s2));
     let mut findings = Vec::new();
     let large_m_s2 = LARGE_M_S2.max(LARGE_SHARE * reduce::peak(&signal.force_m_s2));
-    findings.extend(offset(&signal.name, mean, take_off, large_m_s2));
-    findings.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
+    findings.extend(judge_offset(&signal.name, mean, take_off, large_m_s2));
+    findings.extend(judge_drift(&signal.name, &quiet, (signal.start_s, before_s)));
     signal.noise_m_s2 = noise_m_s2;
     signal.noise_spectrum = noise_spectrum;
     signal.free_fall_s = length_s;
@@ -74,15 +73,15 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     findings
 }
 
-/// What a level between two steps q of a converter is off by, q/√12, where the noise is less than half a step
-/// and so does not average it out.
+/// Standard uncertainty of a level from the converter's step q, q/√12, if the noise is less than half a step
+/// and does not average it out.
 fn rounding_m_s2(signal: &Signal, noise_m_s2: f64) -> f64 {
     let force = &signal.force_m_s2;
     reduce::least_step_beyond(force, 1e-9 * reduce::peak(force), 2.0 * noise_m_s2) / 12.0_f64.sqrt()
 }
 
-/// The first `end` samples but for those that are missing.
-fn recorded(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
+/// Returns the first `end` samples without the missing ones.
+fn recorded_samples(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
     let force = &signal.force_m_s2[..end];
     let mut gaps = signal.gaps.iter().filter(|gap| gap.from < end).peekable();
     if gaps.peek().is_none() {
@@ -97,20 +96,20 @@ fn recorded(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
     Cow::Owned(quiet)
 }
 
-fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Finding {
-    let found = if length_s < LEAST_S {
+fn judge_short_fall(signal: &Signal, length_s: f64, samples: usize) -> Finding {
+    let finding = if length_s < LEAST_S {
         ChannelFinding::ShortFreeFall { length_s: length_s.max(0.0) }
     } else {
-        // As long a fall with as few samples is a rate at fault, not a late start.
+        // So few samples in a fall of that length mean a wrong rate, not a late start.
         ChannelFinding::FewSamples { length_s, samples, sample_rate_hz: signal.sample_rate_hz }
     };
-    found.tag(&signal.name)
+    finding.tag(&signal.name)
 }
 
-/// The samples with wild ones set to the median, and the spread that is left: a spike is no offset.
-fn tame(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
+/// Replaces outliers by the median, since a spike is no offset; returns the samples and the remaining spread.
+fn replace_outliers(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
     let (median, spread) = robust::centre_and_spread(&quiet);
-    let most = WILD * spread;
+    let most = OUTLIER_SPREADS * spread;
     let (low, high) = reduce::extremes(&quiet, median);
     if most > 0.0 && (high - median).max(median - low) > most {
         for x in quiet.to_mut().iter_mut().filter(|x| (**x - median).abs() > most) {
@@ -122,19 +121,19 @@ fn tame(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
     (quiet, spread)
 }
 
-fn offset(name: &str, mean_m_s2: f64, taken_off: bool, large_m_s2: f64) -> Option<Finding> {
+fn judge_offset(name: &str, mean_m_s2: f64, is_removed: bool, large_m_s2: f64) -> Option<Finding> {
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
-    if taken_off {
-        let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
-        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.tag(name));
+    if is_removed {
+        let finding = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > large_m_s2 };
+        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| finding.tag(name));
     }
     let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
-    (adds_m_s > 0.1 * SMALL_M_S).then(|| found.tag(name))
+    let finding = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
+    (adds_m_s > 0.1 * SMALL_M_S).then(|| finding.tag(name))
 }
 
-/// A slope of the free fall beyond its noise whose continuation into the flight would matter.
-fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Finding> {
+/// Reports a slope of the free fall beyond its noise whose continuation into the flight matters.
+fn judge_drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Finding> {
     let size = quiet.len() / BLOCKS;
     if size == 0 {
         return None;
@@ -147,12 +146,14 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Findin
     let square: f64 = (0..BLOCKS).map(|i| place(i).powi(2)).sum();
     let slope = means.iter().enumerate().map(|(i, m)| place(i) * m).sum::<f64>() / square;
     let mean = robust::mean_and_rms(&means).0;
-    let left: f64 = means.iter().enumerate().map(|(i, m)| (m - mean - slope * place(i)).powi(2)).sum();
-    let u_slope = (left / as_f64(BLOCKS - 2) / square).sqrt();
-    // From the middle of the free fall, whose mean was taken off, through contact and flight.
+    let residual: f64 = means.iter().enumerate().map(|(i, m)| (m - mean - slope * place(i)).powi(2)).sum();
+    let u_slope = (residual / as_f64(BLOCKS - 2) / square).sqrt();
+    // The drift counts from the middle of the free fall, whose mean was subtracted, through contact and
+    // flight.
     let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
-    let found = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
-    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| found.tag(name).span(from_s, to_s))
+    let finding = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
+    (slope.abs() > LEAST_SLOPE_U * u_slope && adds_m_s > SMALL_M_S)
+        .then(|| finding.tag(name).span(from_s, to_s))
 }
 
 #[cfg(test)]
@@ -162,7 +163,8 @@ mod tests {
     use crate::data::FindingKind;
     use crate::data::example::noise;
 
-    /// 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a slope.
+    /// Simulates 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a
+    /// slope.
     fn channel(slope: f64, seed: u64) -> Signal {
         signal((0..3000).map(|i| 3.0 + 2.0 * noise(i, seed) + slope * f64::from(i) * 1e-4).collect())
     }

@@ -1,5 +1,5 @@
-//! A channel that takes no part in the motion to what it reads: level at rest, noise, extremes, limits; of an
-//! angular-rate sensor the rotation of the cask in the fall, and what the flight has beyond it   (45)
+//! Summarises a channel beside the accelerometers: level at rest, noise, extremes and limits; of an
+//! angular-rate sensor also the rotation of the cask in the fall, and its change by the first impact   (45)
 
 use super::clipping;
 use crate::data::{
@@ -10,22 +10,23 @@ use crate::numerics::reduce::block_means;
 use crate::numerics::{as_f64, robust};
 use nalgebra::{DMatrix, DVector};
 
-/// So far from a release and a contact nothing of them is left, s: a hook lets go within some milliseconds.
+/// Time after a release and before a contact in which their effects last, s: a hook opens within some
+/// milliseconds.
 const CLEAR_S: f64 = 0.02;
 const BEFORE_CONTACT_S: f64 = 1e-3;
-/// Rest before the release that a zero is taken from, s.
-const REST_S: f64 = 1.0;
-/// A level of less is none: a period of 50 Hz hum.
-const LEAST_S: f64 = 0.02;
+/// Time at rest before the release that determines a zero, s.
+const ZERO_TIME_S: f64 = 1.0;
+/// Shortest time and fewest samples that determine a level, s: a period of 50 Hz hum.
+const LEAST_LEVEL_S: f64 = 0.02;
 const LEAST_SAMPLES: usize = 8;
-/// Means that the flight is fitted by, at most.
-const MOST_MEANS: usize = 240;
+/// Largest number of means to which the flight is fitted.
+const MOST_FLIGHT_MEANS: usize = 240;
 
-/// What the channel reads over the whole recording; at rest before the release where the record shows it,
-/// else before the first contact.
+/// Summarises the channel over the whole recording, with its level at rest before the release, or before the
+/// first contact if no release is recorded.
 pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
     let mut values = channel.force_m_s2(0, channel.samples.len());
-    let [smallest, largest] = channel.extremes().map_or([None; 2], |both| both.map(Some));
+    let [smallest, largest] = channel.extremes().map_or([None; 2], |extremes| extremes.map(Some));
     let mut summary = OtherSummary {
         name: channel.name.clone(),
         unit: channel.unit.clone(),
@@ -44,14 +45,14 @@ pub fn read_other(channel: &Channel, events: &Events) -> OtherSummary {
         for value in &mut values {
             *value -= rest;
         }
-        summary.clipped = clipping::clipped(channel, &values, rest, noise, quiet);
+        summary.clipped = clipping::find_clipped(channel, &values, rest, noise, quiet);
         (summary.rest, summary.noise) = (Some(rest), Some(noise));
     }
     summary
 }
 
-/// A sensor's rotation, by `usual_s` of the fall where its release is not seen; `None` where the sensor does
-/// not show fall and flight.
+/// Measures the rotation by an angular-rate sensor, over `usual_s` of the fall if its release is not
+/// recorded; `None` if the sensor does not show fall and flight.
 pub fn measured_rotation(
     channel: &Channel,
     spec: RateSpec,
@@ -63,20 +64,20 @@ pub fn measured_rotation(
     let contact_s = events.fall_end_s.or(events.first_contact_s())? - BEFORE_CONTACT_S;
     let sensor = RateReader { channel, scale_rad_s, clipped: &read_other(channel, events).clipped };
     let fall_from_s = events.release_s.map_or(contact_s - usual_s, |at_s| at_s + CLEAR_S);
-    let fall = sensor.level(fall_from_s, contact_s)?;
+    let fall = sensor.mean_rate(fall_from_s, contact_s)?;
     let zero = match (events.release_s, channel.rest) {
-        (Some(at_s), _) => sensor.level(at_s - CLEAR_S - REST_S, at_s - CLEAR_S),
+        (Some(at_s), _) => sensor.mean_rate(at_s - CLEAR_S - ZERO_TIME_S, at_s - CLEAR_S),
         (None, rest) => rest.map(|rest| sensor.rate(rest.level, rest.u)),
     };
-    let less = |a: RotationRate, b: RotationRate| RotationRate {
+    let difference = |a: RotationRate, b: RotationRate| RotationRate {
         rad_s: a.rad_s - b.rad_s,
         u_rad_s: a.u_rad_s.hypot(b.u_rad_s),
     };
     Some(MeasuredRotation {
         channel: channel.name.clone(),
         calibration: spec.calibration,
-        before: zero.map(|zero| less(fall, zero)),
-        gained: less(sensor.in_flight(flight)?, fall),
+        before: zero.map(|zero| difference(fall, zero)),
+        gained: difference(sensor.fit_in_flight(flight)?, fall),
     })
 }
 
@@ -92,9 +93,9 @@ impl RateReader<'_> {
         RotationRate { rad_s: self.scale_rad_s * level, u_rad_s: self.scale_rad_s.abs() * u }
     }
 
-    /// The samples between two times, and the time of the first, s; `None` where they are too few or one
-    /// stands at a limit.
-    fn between(&self, from_s: f64, to_s: f64) -> Option<(Vec<f64>, f64)> {
+    /// Returns the samples between two times, and the time of the first, s; `None` if there are too few or
+    /// one stands at a limit.
+    fn samples_between(&self, from_s: f64, to_s: f64) -> Option<(Vec<f64>, f64)> {
         let (from, to) = (self.channel.index_at(from_s), self.channel.index_at(to_s));
         let is_clipped = self.clipped.iter().any(|span| span.from < to && span.to > from);
         let values = self.channel.force_m_s2(from, to);
@@ -102,17 +103,17 @@ impl RateReader<'_> {
         (is_whole && !is_clipped).then(|| (values, self.channel.time_s(from)))
     }
 
-    /// The mean between two times; its uncertainty as that of an offset.
-    fn level(&self, from_s: f64, to_s: f64) -> Option<RotationRate> {
-        let (values, begins_s) = self.between(from_s, to_s)?;
+    /// Mean between two times, with its uncertainty determined like that of an offset.
+    fn mean_rate(&self, from_s: f64, to_s: f64) -> Option<RotationRate> {
+        let (values, begins_s) = self.samples_between(from_s, to_s)?;
         let (mean, u) = robust::mean_and_u(&values);
-        (to_s - begins_s >= LEAST_S).then(|| self.rate(mean, u))
+        (to_s - begins_s >= LEAST_LEVEL_S).then(|| self.rate(mean, u))
     }
 
-    /// The constant part in the flight, beside the modes that the accelerometers show there.
-    fn in_flight(&self, flight: &FlightFit) -> Option<RotationRate> {
-        let (values, begins_s) = self.between(flight.from_s, flight.to_s)?;
-        let block = values.len().div_ceil(MOST_MEANS);
+    /// Fits the constant part in the flight beside the modes that the accelerometers show there.
+    fn fit_in_flight(&self, flight: &FlightFit) -> Option<RotationRate> {
+        let (values, begins_s) = self.samples_between(flight.from_s, flight.to_s)?;
+        let block = values.len().div_ceil(MOST_FLIGHT_MEANS);
         let means = DVector::from_vec(block_means(&values, block));
         let step_s = as_f64(block) / self.channel.sample_rate_hz;
         let middle_s = begins_s - flight.from_s + (as_f64(block) - 1.0) / 2.0 / self.channel.sample_rate_hz;
@@ -126,11 +127,11 @@ impl RateReader<'_> {
         let model = DMatrix::from_columns(&parts);
         let inverse = model.tr_mul(&model).try_inverse()?;
         let sizes = &inverse * model.tr_mul(&means);
-        let left = &means - &model * &sizes;
+        let residuals = &means - &model * &sizes;
         let spare = as_f64(means.len().checked_sub(parts.len() + 1)?);
-        let square = left.norm_squared().max(f64::MIN_POSITIVE);
-        // Neighbours that go together count as one   (21)
-        let lag = left.as_slice().windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / square;
+        let square = residuals.norm_squared().max(f64::MIN_POSITIVE);
+        // Correlated neighbours count as one   (21)
+        let lag = residuals.as_slice().windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / square;
         let lag = lag.clamp(0.0, 0.95);
         let u = (square / spare * (1.0 + lag) / (1.0 - lag) * inverse[(0, 0)]).sqrt();
         let length_s = flight.to_s - flight.from_s;
@@ -146,7 +147,7 @@ mod tests {
     use crate::data::example;
     use crate::data::{At, Span};
 
-    /// 500 of noise of 1 about 20, then a half sine of 100 that is cut at `limit` above 20.
+    /// Simulates 500 samples of noise of 1 about 20, then a half sine of 100 that is cut at `limit` above 20.
     fn pulse(limit: f64) -> Vec<f64> {
         let sine = |i: u32| {
             let x = (f64::from(i) - 500.0) / 200.0;
@@ -162,11 +163,11 @@ mod tests {
 
     #[test]
     fn rest_noise_and_extremes_have_their_times() {
-        let told = read(pulse(f64::INFINITY));
-        assert!((told.rest.unwrap() - 20.0).abs() < 0.2 && (told.noise.unwrap() - 1.0).abs() < 0.15);
-        let largest = told.largest.unwrap();
+        let summary = read(pulse(f64::INFINITY));
+        assert!((summary.rest.unwrap() - 20.0).abs() < 0.2 && (summary.noise.unwrap() - 1.0).abs() < 0.15);
+        let largest = summary.largest.unwrap();
         assert!((largest.value - 120.0).abs() < 3.0 && (largest.time_s - 0.06).abs() < 2e-3);
-        assert!(told.clipped.is_empty());
+        assert!(summary.clipped.is_empty());
         assert!(read(vec![f64::NAN; 900]).largest.is_none());
     }
 

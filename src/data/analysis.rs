@@ -1,7 +1,7 @@
 //! The result of `analyze`, as the JSON document has it, and further data for the report.
 
 use super::cask_file::CaskFile;
-use super::cause::{Opening, StatedCause};
+use super::cause::{OpenedInput, StatedCause};
 use super::channel::Span;
 use super::curves::LazyCurves;
 use super::estimate::{At, Estimate};
@@ -357,5 +357,5 @@ pub struct Analysis {
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
     /// Numbers of the cask file that would make an inconsistent motion consistent.
-    pub openings: Vec<Opening>,
+    pub opened_inputs: Vec<OpenedInput>,
 }

@@ -11,7 +11,7 @@ pub const DECISIVE_CHI_SQUARE: f64 = 9.0;
 /// A stated number and the value with which the motion would be consistent; in SI units, for a scale or clock
 /// its factor.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Opening {
+pub struct OpenedInput {
     /// The key to correct, with its table unless it belongs to a channel.
     pub key: &'static str,
     /// The channel, where the key is one's.
@@ -24,27 +24,27 @@ pub struct Opening {
     pub chi_square: f64,
 }
 
-/// Mistake in a key of the cask file: the file says x where `from` + `by` x is meant, or exchanges the
-/// sources of two channels.
+/// Mistake in a key of the cask file: the file states x where `offset` + `factor` x is meant, or exchanges
+/// the sources of two channels.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slip {
+pub struct Mistake {
     /// The key, with its table unless it belongs to a channel; `[cask]` for all lengths there.
     pub key: &'static str,
     /// The channels, where the key is theirs.
     pub names: Vec<String>,
     /// Correction, such as "in ft" or "0.15 in place of 0.65".
-    pub right: Cow<'static, str>,
+    pub correction: Cow<'static, str>,
     /// Offset, in the unit that the key's number has here.
-    pub from: f64,
+    pub offset: f64,
     /// The factor.
-    pub by: f64,
+    pub factor: f64,
 }
 
 /// Mistakes that make everything consistent when corrected together, and the result with these corrections.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cure {
+pub struct Remedy {
     /// One mistake, or two.
-    pub slips: Vec<Slip>,
+    pub mistakes: Vec<Mistake>,
     /// The causes, one per mistake.
     pub causes: Vec<StatedCause>,
 }
@@ -66,15 +66,16 @@ pub struct StatedCause {
     pub k: Option<Estimate>,
 }
 
-impl Cure {
+impl Remedy {
     /// Names the keys and their corrections, as "`position_m` of A1 0.15 in place of 0.65".
     pub(crate) fn keys(&self) -> String {
-        let words = |Slip { key, names, right, .. }: &Slip| match &names[..] {
-            [] => format!("`{key}` {right}"),
+        let words = |Mistake { key, names, correction, .. }: &Mistake| match &names[..] {
+            [] => format!("`{key}` {correction}"),
             names => {
-                format!("`{key}` of {} {right}", names.join(if names.len() > 2 { ", " } else { " and " }))
+                let between = if names.len() > 2 { ", " } else { " and " };
+                format!("`{key}` of {} {correction}", names.join(between))
             }
         };
-        self.slips.iter().map(words).collect::<Vec<_>>().join(" and ")
+        self.mistakes.iter().map(words).collect::<Vec<_>>().join(" and ")
     }
 }

@@ -7,7 +7,7 @@ use super::untested::{self, SilentMistake};
 use super::{FitData, Reconstruct};
 use crate::data::{
     CONSISTENT_U, CheckKind, Consistency, Contribution, Estimate, FlightFit, Method, MethodCandidate,
-    MethodChoice, Opening, Quantities, Tolerances, Untested,
+    MethodChoice, OpenedInput, Quantities, Tolerances, Untested,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -47,7 +47,7 @@ pub struct SelectedMethod {
     /// Inputs with the corrections of the selected method.
     pub taken: Inputs,
     /// Inputs of which another number would explain a failed check.
-    pub openings: Vec<Opening>,
+    pub opened_inputs: Vec<OpenedInput>,
     base: Inputs,
     inputs: Vec<UncertainInput>,
     fit: PriorFit,
@@ -90,7 +90,7 @@ pub fn run_methods(measured: &FitData, reconstruct: Reconstruct) -> Option<Selec
     let flight = model.propagate_stated()?;
     let joint = model.fit_jointly();
     let closures = model.closures();
-    let openings = model.openings(&closures).unwrap_or_default();
+    let opened_inputs = model.opened_inputs(&closures).unwrap_or_default();
     let mut steps = vec![flight_method(measured, flight, &closures)];
     let (mut widened, mut why) = interval_factor(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
@@ -127,7 +127,7 @@ pub fn run_methods(measured: &FitData, reconstruct: Reconstruct) -> Option<Selec
         budget,
         choice,
         taken: base.shift(&inputs, &fit.unknowns),
-        openings,
+        opened_inputs,
         base,
         inputs,
         fit,

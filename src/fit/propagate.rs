@@ -6,7 +6,7 @@ use super::inputs::{Inputs, UncertainInput, inputs};
 use super::untested::Influence;
 use super::{COVERAGE, FitData, Reconstruct};
 use crate::data::{
-    Adjustment, Axis, Consistency, Contribution, Estimate, MISSED_U, Motion, Opening, Quantities,
+    Adjustment, Axis, Consistency, Contribution, Estimate, MISSED_U, Motion, OpenedInput, Quantities,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::{DMatrix, DVector, Matrix};
@@ -26,7 +26,7 @@ const SLOPE_STEPS: usize = 50;
 const U_LINE_M_S: f64 = 0.03;
 
 /// Rounds of the Gauss-Newton method that seek the number of an opened input.
-const OPENING_ROUNDS: usize = 5;
+const OPENED_ROUNDS: usize = 5;
 
 /// Shifts below this many standard uncertainties are not listed.
 const NOTABLE_MOVE: f64 = 0.05;
@@ -204,7 +204,7 @@ impl<'a> Model<'a> {
     /// steps, the best first; none if no check fails.
     ///
     /// That number has the least χ² = mᵀ (JJᵀ + 1)⁻¹ m of the misses m, by the Gauss-Newton method   (31)
-    pub fn openings(&self, closures: &[Consistency]) -> Option<Vec<Opening>> {
+    pub fn opened_inputs(&self, closures: &[Consistency]) -> Option<Vec<OpenedInput>> {
         // A step that is off the line by less than its uncertainty lies on it.
         let is_on_line = self.line.residuals(&self.base).iter().all(|miss| miss.abs() < MISSED_U);
         if is_on_line && closures.iter().all(|closure| closure.largest_residual() < MISSED_U) {
@@ -231,7 +231,7 @@ impl<'a> Model<'a> {
             let stated = own.stated.as_ref().filter(|_| own.shifts.len() == 1)?;
             let [number, by_u] = stated.number?;
             let (mut at_u, mut missed) = (start.clone(), misses.clone());
-            for _ in 0..OPENING_ROUNDS {
+            for _ in 0..OPENED_ROUNDS {
                 let slope = missed_by(&with_one_moved(&at_u, input))? - &missed;
                 let weighed = &in_u.weights * &slope;
                 at_u[input] -= weighed.dot(&missed) / weighed.dot(&slope);
@@ -245,10 +245,10 @@ impl<'a> Model<'a> {
                 "tolerance.clock_percent" => "sample_rate_hz",
                 key => key,
             };
-            let opening = Opening { key, channel, stated: number, explains, chi_square };
+            let opening = OpenedInput { key, channel, stated: number, explains, chi_square };
             (explains.is_finite() && chi_square.is_finite()).then_some(opening)
         };
-        let mut all: Vec<Opening> = self.inputs.iter().enumerate().filter_map(opened).collect();
+        let mut all: Vec<OpenedInput> = self.inputs.iter().enumerate().filter_map(opened).collect();
         all.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));
         Some(all)
     }

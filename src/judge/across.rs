@@ -1,15 +1,17 @@
-//! What sensors of the skin read across the plane of the drop, and what one alone cannot tell, to findings.
+//! Judges motion across the plane of the drop from sensors on the skin, and names single sensors that cannot
+//! show it.
 
 use crate::data::{ChannelFinding, Events, Finding, Signal};
 use crate::numerics::as_f64;
 
-/// Velocity across the plane that a planar motion does not hold any more, m/s: 2 % of a slap-down's.
+/// Largest velocity across the plane in a planar motion, m/s: 2 % of that of a slap-down.
 const NOT_PLANAR_M_S: f64 = 0.3;
 
-/// Sensors alone are named from this uncertainty of their scale on: 3° off the line that they should be on.
+/// Smallest uncertainty of the scale from which a single sensor is named: 3° off the direction that it should
+/// have.
 const LEAST_U_AROUND: f64 = 5e-4;
 
-/// The mean velocity across the plane through the flight, where it is beyond what a planar drop has.
+/// Reports the mean velocity across the plane in the flight if it exceeds that of a planar drop.
 pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
     let (contact_s, left_s, struck_s) =
         (events.first_contact_s()?, events.separation_s()?, events.slap_down_s()?);
@@ -23,14 +25,14 @@ pub fn judge_across(signal: &Signal, events: &Events) -> Option<Finding> {
     }
     let mean_m_s = flight_m_s.iter().sum::<f64>() / as_f64(flight_m_s.len().max(1));
     let u_m_s = signal.u_offset_m_s2 * (struck_s + left_s - 2.0 * contact_s) / 2.0;
-    let found = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
-    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::MovesAcross { velocity_m_s: mean_m_s, u_m_s };
+    (!is_lost && mean_m_s.abs() > NOT_PLANAR_M_S + 2.0 * u_m_s).then(|| finding.tag(&signal.name))
 }
 
-/// A sensor alone, off the lines where it reads in the plane of the drop only.
+/// Names a single sensor that does not read in the plane of the drop alone.
 pub fn judge_alone(signal: &Signal) -> Option<Finding> {
-    let found = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
-    (signal.u_around > LEAST_U_AROUND).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::AloneOnSkin { u_share: signal.u_around };
+    (signal.u_around > LEAST_U_AROUND).then(|| finding.tag(&signal.name))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What the channels read at rest before the drop to what is wrong with their set-up.
+//! Judges the set-up of the channels from their levels at rest before the drop.
 
 use super::sampling::low_rate;
 use crate::data::{
@@ -7,29 +7,29 @@ use crate::data::{
 };
 use std::f64::consts::PI;
 
-/// A reading may be so far off, g: at rest an offset is not told from a scale, and the free fall takes the
-/// offset off.
+/// Largest accepted deviation of a level at rest, g: there an offset cannot be separated from a scale, and it
+/// is removed in the free fall.
 const MOST_OFF_G: f64 = 0.4;
-/// A reading below this is none, g.
+/// Level below which a channel reads nothing, g.
 const NOTHING_G: f64 = 0.05;
-/// A factor explains a reading within this share of what it makes it.
-const WITHIN: f64 = 0.25;
-/// Factors between units that are taken for one another, and by which a gain is set wrong.
+/// A factor explains a reading within this share.
+const FACTOR_SHARE: f64 = 0.25;
+/// Factors between units that are often confused, and typical factors of a wrong gain.
 const UNITS: [f64; 4] = [G, 1.0 / G, 1000.0, 0.001];
 const GAINS: [f64; 6] = [2.0, 0.5, 10.0, 0.1, 100.0, 0.01];
 
-/// How long a first impact lasts that nobody states, s: with a limiter the longest, of bare contact as
-/// short as this.
+/// Durations of a first impact if none is stated, s: the longest with an impact limiter, the shortest of bare
+/// contact.
 const LIMITER_S: f64 = 0.02;
 const BARE_S: f64 = 0.005;
 
-/// An offset that is known no better than this leaves 0.05 m/s over contact and flight of 60 ms, m/s².
+/// Standard uncertainty of an offset that adds 0.05 m/s over contact and flight of 60 ms, m/s².
 const MOST_U_OFFSET_M_S2: f64 = 0.83;
 
-/// Free fall that a recording must hold before the impact, s.
+/// Shortest free fall in a recording before the impact, s.
 pub const LEAST_BEFORE_S: f64 = 0.1;
 
-/// Holds the levels at rest against gravity on each axis; an AC-coupled channel has none.
+/// Compares the levels at rest with gravity on each axis; an AC-coupled channel has none.
 pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
     let found = |(channel, rest): &(&Channel, AtRest)| {
         let (reads_g, expected_g) = (rest.level_m_s2 / G, drop.weight_m_s2(channel.axis) / G);
@@ -39,7 +39,7 @@ pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
         } else if !rest.is_still {
             RestFinding::Unsteady
         } else if channel.coupling == Coupling::Dc && (reads_g - expected_g).abs() > most_g {
-            let cause = cause(channel.axis, reads_g, all, drop);
+            let cause = find_cause(channel.axis, reads_g, all, drop);
             RestFinding::Reads { reads_g, expected_g, most_g, cause }
         } else {
             return None;
@@ -49,21 +49,22 @@ pub fn judge_levels(all: &[(&Channel, AtRest)], drop: &Drop) -> Vec<Finding> {
     all.iter().filter_map(found).collect()
 }
 
-/// What a channel that reads right would read the same with, but for an offset.
-pub fn open_causes(channel: &Channel, rest: AtRest, drop: &Drop) -> Vec<RestCause> {
+/// Lists the mistakes that this level cannot reveal: with any of them the channel could read the same, given
+/// an offset.
+pub fn hidden_causes(channel: &Channel, rest: AtRest, drop: &Drop) -> Vec<RestCause> {
     let reads_g = rest.level_m_s2 / G;
-    let of_level = other_levels(channel.axis, drop).into_iter();
-    let open = of_level.filter(|(makes_g, _)| channel.coupling == Coupling::Dc && is_near(reads_g, *makes_g));
-    open.map(|(_, cause)| cause).collect()
+    let levels = other_levels(channel.axis, drop).into_iter();
+    let hidden = levels.filter(|(makes_g, _)| channel.coupling == Coupling::Dc && is_near(reads_g, *makes_g));
+    hidden.map(|(_, cause)| cause).collect()
 }
 
-/// What a channel reads with its sign turned, on the other axis, and without gravity, g.
+/// Levels of a channel with its sign reversed, on the other axis, and without gravity, g.
 fn other_levels(axis: Axis, drop: &Drop) -> [(f64, RestCause); 3] {
-    let [own_g, across_g] = [axis, across(axis)].map(|axis| drop.weight_m_s2(axis) / G);
+    let [own_g, across_g] = [axis, other_axis(axis)].map(|axis| drop.weight_m_s2(axis) / G);
     [(-own_g, RestCause::Sign), (across_g, RestCause::Axis), (0.0, RestCause::Nothing)]
 }
 
-fn across(axis: Axis) -> Axis {
+fn other_axis(axis: Axis) -> Axis {
     if axis == Axis::Axial { Axis::Transverse } else { Axis::Axial }
 }
 
@@ -71,8 +72,8 @@ fn is_near(reads_g: f64, expected_g: f64) -> bool {
     (reads_g - expected_g).abs() <= MOST_OFF_G
 }
 
-fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> RestCause {
-    let other_axis = across(axis);
+fn find_cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> RestCause {
+    let other_axis = other_axis(axis);
     let [expected_g, across_g] = [axis, other_axis].map(|axis| drop.weight_m_s2(axis) / G);
     let is_exchanged = |(other, rest): &&(&Channel, AtRest)| {
         let theirs_g = rest.level_m_s2 / G;
@@ -91,34 +92,34 @@ fn cause(axis: Axis, reads_g: f64, all: &[(&Channel, AtRest)], drop: &Drop) -> R
     let units = UNITS.map(|factor| (factor, RestCause::Unit(ratio)));
     let factors = units.into_iter().chain(GAINS.map(|factor| (factor, RestCause::Gain(ratio))));
     let factors = factors.map(|(factor, cause)| ((ratio / factor - 1.0).abs(), cause));
-    // An offset may be on top of what has no factor.
+    // Causes other than a factor may have an offset as well.
     let others = other_levels(axis, drop)
-        .map(|(makes_g, cause)| (WITHIN * (reads_g - makes_g).abs() / MOST_OFF_G, cause));
+        .map(|(makes_g, cause)| (FACTOR_SHARE * (reads_g - makes_g).abs() / MOST_OFF_G, cause));
     let likeliest = factors.chain(others).min_by(|a, b| a.0.total_cmp(&b.0));
-    likeliest.filter(|(off, _)| *off < WITHIN).map_or(RestCause::Open, |(_, cause)| cause)
+    likeliest.filter(|(off, _)| *off < FACTOR_SHARE).map_or(RestCause::Open, |(_, cause)| cause)
 }
 
-/// The longest and the shortest that a first impact may last, s: as stated, else with a limiter and of bare
-/// contact.
+/// Longest and shortest duration of a first impact, s: as stated, else with a limiter and of bare contact.
 pub fn pulse_lengths_s(drop: &Drop) -> (f64, f64) {
     let stated_s = drop.contact_duration_s;
     if stated_s > 0.0 { (stated_s, stated_s) } else { (LIMITER_S, BARE_S) }
 }
 
-/// The peaks of half sines that change the velocity by `step_m_s`, π/2 of the mean, the longest first   (47)
+/// Peaks of half sines that change the velocity by `step_m_s`, π/2 times the mean, the longest pulse
+/// first   (47)
 pub fn expected_peaks(step_m_s: f64, drop: &Drop) -> Vec<ExpectedPeak> {
     let (longest_s, shortest_s) = pulse_lengths_s(drop);
     let peak = |lasts_s| ExpectedPeak { lasts_s, peak_g: PI / 2.0 * step_m_s / lasts_s / G };
     [longest_s].into_iter().chain((shortest_s < longest_s).then_some(shortest_s)).map(peak).collect()
 }
 
-/// Holds offset, range and rate of a channel against the peaks of a first impact, the last one the shortest.
+/// Compares offset, range and rate of a channel with the peaks of a first impact, the last one the shortest.
 pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) -> Vec<Finding> {
     let range_g = channel.range_m_s2().map(|range_m_s2| range_m_s2 / G);
     let too_small = |(i, peak): (usize, &ExpectedPeak)| {
         let (range_g, ExpectedPeak { lasts_s: pulse_s, peak_g }) = (range_g?, *peak);
-        let found = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
-        (range_g < peak_g).then(|| found.tag(&channel.name))
+        let finding = RestFinding::Range { range_g, peak_g, pulse_s, is_sure: i == 0 };
+        (range_g < peak_g).then(|| finding.tag(&channel.name))
     };
     let range = peaks.iter().enumerate().find_map(too_small);
     let rate =
@@ -129,7 +130,7 @@ pub fn judge_chain(channel: &Channel, quiet: &Signal, peaks: &[ExpectedPeak]) ->
     [range, rate, offset].into_iter().flatten().collect()
 }
 
-/// Holds what a record keeps before and behind its trigger against free fall and flight.
+/// Compares the record before and after its trigger with the free fall and the flight.
 pub fn judge_record(before_s: Option<f64>, length_s: f64, needs_s: f64) -> Vec<Finding> {
     let Some(before_s) = before_s else { return Vec::new() };
     let after_s = length_s - before_s;

@@ -1,31 +1,30 @@
-//! The noise of the free fall to a low-pass in the measuring chain that takes off what the report's would
-//! leave.
+//! Finds a low-pass in the measuring chain below that of the report, from the noise of the free fall.
 
 use crate::data::{Axis, ChannelFinding, Events, Finding, IssueCode, Signal};
 use crate::numerics::as_f64;
 
-/// Noise this many times as dense below a corner as in the octave that begins an octave above it, and from
-/// there on, is filtered: 1/f gives 8. Of 267 channels of 65 simulated sound drops none is above 7.1; of 278
-/// behind a Butterworth low-pass of the second to eighth order below the report's cut-off, with the
-/// converter's noise behind it, 233 are named.
-const FALL: f64 = 12.0;
-/// Below the corner the noise is level: the means of its halves differ by less than this factor.
-const LEVEL: f64 = 2.0;
-/// Where the noise is looked at, over the corner: the level from the first to the second, the fall from the
-/// third to the fourth, and from there on.
+/// Noise is filtered if it is this many times as dense below a corner as in the octave that begins an octave
+/// above it, and beyond: 1/f gives 8. Of 267 channels of 65 simulated sound drops none exceeds 7.1; of 278
+/// with a Butterworth low-pass of the second to eighth order below the report's cut-off, and the converter's
+/// noise after it, 233 are named.
+const LEAST_FALL: f64 = 12.0;
+/// Noise below the corner is level: the means of its halves differ by less than this factor.
+const LEVEL_FACTOR: f64 = 2.0;
+/// Bands of the noise as factors of the corner: the level from the first to the second, the fall from the
+/// third to the fourth, and beyond.
 const LEVEL_FROM: f64 = 1.0 / 6.0;
 const LEVEL_TO: f64 = 0.8;
 const FALLEN_FROM: f64 = 2.0;
 const FALLEN_TO: f64 = 4.0;
-/// Fewest bins of a level, which begins no higher than this share of the corner: chance or a drift makes one
-/// of fewer.
+/// Fewest bins of a level, and the largest factor of the corner at which it begins: chance or a drift makes
+/// one of fewer bins.
 const FEWEST_BINS: usize = 3;
 const BEGINS: f64 = 1.0 / 3.0;
-/// A low-pass of this −3 dB frequency f rises from 10 to 90 % within this / f, whatever its order.
-const RISE: f64 = 0.35;
+/// A low-pass with −3 dB at f rises from 10 to 90 % within this factor / f, for any order.
+const RISE_FACTOR: f64 = 0.35;
 
 /// Names each transverse channel whose noise ends below `cutoff_hz`, the −3 dB frequency of the report's
-/// low-pass; hum that was `found` on one hides its noise.
+/// low-pass; hum among the findings `found` hides its noise.
 pub fn judge_bandwidth(
     signals: &[Signal],
     events: &Events,
@@ -33,23 +32,23 @@ pub fn judge_bandwidth(
     found: &[Finding],
 ) -> Vec<Finding> {
     let Some((from_s, to_s)) = events.first_contact_s().zip(events.separation_s()) else { return Vec::new() };
-    let hums =
+    let has_hum =
         |s: &Signal| found.iter().any(|f| f.code == IssueCode::Hum && f.channel.as_ref() == Some(&s.name));
-    let across = signals.iter().filter(|signal| signal.axis == Axis::Transverse && !hums(signal));
+    let across = signals.iter().filter(|signal| signal.axis == Axis::Transverse && !has_hum(signal));
     let filtered = across.filter_map(|signal| {
         let corner_hz = corner_hz(&signal.noise_spectrum, cutoff_hz)?;
         let contact_s = to_s - from_s;
-        // What the second order at that corner leaves of a half sine as long as the contact.
+        // Share of a half sine as long as the contact that a low-pass of second order at that corner passes.
         let left = 1.0 / (1.0 + (0.5 / (contact_s * corner_hz)).powi(4)).sqrt();
-        let rise_s = RISE / corner_hz;
-        let said = ChannelFinding::Filtered { corner_hz, cutoff_hz, rise_s, contact_s, lost: 1.0 - left };
-        Some(said.tag(&signal.name))
+        let rise_s = RISE_FACTOR / corner_hz;
+        let finding = ChannelFinding::Filtered { corner_hz, cutoff_hz, rise_s, contact_s, lost: 1.0 - left };
+        Some(finding.tag(&signal.name))
     });
     filtered.collect()
 }
 
-/// The frequency below `cutoff_hz` at which a spectrum of noise, as [`Signal`] has it, falls to half of its
-/// level for good.
+/// Frequency below `cutoff_hz` at which a spectrum of noise, as in [`Signal`], falls permanently to half of
+/// its level.
 fn corner_hz(spectrum: &[(f64, f64)], cutoff_hz: f64) -> Option<f64> {
     let between = |from_hz: f64, to_hz: f64| {
         let from = spectrum.partition_point(|bin| bin.0 < from_hz);
@@ -64,9 +63,9 @@ fn corner_hz(spectrum: &[(f64, f64)], cutoff_hz: f64) -> Option<f64> {
         let (first, second) = level.split_at(level.len() / 2);
         let is_level = level.len() >= FEWEST_BINS
             && level[0].0 <= BEGINS * corner_hz
-            && mean(first) < LEVEL * mean(second);
+            && mean(first) < LEVEL_FACTOR * mean(second);
         let fall = mean(level) / mean(fallen).max(mean(beyond)).max(f64::MIN_POSITIVE);
-        (is_level && fallen.len() > 1 && fall > FALL).then_some((fall, mean(level)))
+        (is_level && fallen.len() > 1 && fall > LEAST_FALL).then_some((fall, mean(level)))
     });
     let (_, level) = falls.max_by(|one, other| one.0.total_cmp(&other.0))?;
     let last = spectrum.iter().rposition(|bin| bin.1 > level / 2.0)?;

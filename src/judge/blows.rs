@@ -1,50 +1,49 @@
-//! A flight to the shocks in it that its ringing does not foretell: loose contents that strike the cask, once
-//! or in a train.
+//! Finds shocks in a flight that its ringing does not predict: loose contents that strike the cask, once or
+//! repeatedly.
 
-use super::turned::turned_m_s2;
+use super::tilt::tilt_m_s2;
 use crate::data::{Cask, ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
 use crate::numerics::reduce::{self, block_means, block_size, converter_step, peak};
 use crate::numerics::{as_count, as_f64};
 use std::ops::Range;
 
-/// Samples are looked at in means over this rate, Hz: a blow lasts one to some milliseconds.
+/// Rate of the means that are examined, Hz: a blow lasts one to some milliseconds.
 const RATE_HZ: f64 = 8_000.0;
-/// Stretches that are looked at by themselves, s: what rings at the beginning of a long flight is gone at its
-/// end, and so is what it leaves.
+/// Length of the pieces that are examined separately, s: ringing at the beginning of a long flight, and its
+/// residual, has decayed at its end.
 const PIECE_S: f64 = 0.1;
-/// A mean this many times as far off its prediction as those before it is a shock. Modes that the prediction
-/// has no room for leave a residual too, but one that decays.
-const LIMIT: f64 = 6.0;
-/// All channels together are struck where a window of theirs is this far above noise, behind the stretch that
-/// the flight was fitted over: of 310 sound drops of elastic beams none is named …
-const TOGETHER: f64 = 7.0;
-/// … and a step that (21b) finds is a shock from this on: where it finds one in those drops, 22, at most 2.8.
-const SHARP: f64 = 3.0;
-/// A shock of one channel this far off, beside which no other is farther off than the second, is none of the
-/// cask: a blow has all places of a rigid body jump, and those near its centre of percussion ring.
-const ALONE: f64 = 24.0;
-const ELSEWHERE: f64 = 4.0;
-/// Windows in which all channels are looked at together, s, and the fewest means of one.
+/// A mean whose deviation from its prediction is this many times that of the means before it is a shock.
+/// Modes that the prediction cannot include also leave a residual, but one that decays.
+const SHOCK_LIMIT: f64 = 6.0;
+/// A window of all channels is struck if its deviation exceeds noise by this much, after the interval over
+/// which the flight was fitted: of 310 sound drops of elastic beams none is named.
+const COMBINED_LIMIT: f64 = 7.0;
+/// A step found by (21b) is a shock from this value on: in those drops it finds 22 steps, of at most 2.8.
+const SHARP_LIMIT: f64 = 3.0;
+/// A shock of one channel of the first size, while no other exceeds the second, is not one of the cask: a
+/// blow moves all places of a rigid body, and those near its centre of percussion ring.
+const ALONE_SIZE: f64 = 24.0;
+const OTHERS_SIZE: f64 = 4.0;
+/// Windows in which all channels are combined, s, and the fewest means of one.
 const WINDOW_S: f64 = 1e-3;
 const FEWEST_MEANS: f64 = 4.0;
-/// So many means before it are those: 3 ms, longer than most shocks. A third of them will do at first.
+/// Number of means before a mean that are compared with it: 3 ms, longer than most shocks. A third of them is
+/// enough at first.
 const BEFORE: usize = 24;
 const FEWEST_BEFORE: usize = 8;
-/// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of
-/// v0.
+/// Smallest spread, as a share of the largest mean: less changes no velocity by 1 % of v0.
 const LEAST_SPREAD: f64 = 3e-4;
-/// Nor is it less than this share of what bending makes an axial channel read in the mean: the RMS with which
-/// that swings about it, at twice the frequency.
-const TURNED_SPREAD: f64 = 0.7;
-/// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
+/// Smallest spread, as a share of an axial channel's mean reading from bending: the RMS of its variation at
+/// twice the frequency.
+const TILT_SPREAD: f64 = 0.7;
+/// The onset of the slap-down may begin this much earlier than it was found, s, plus a share of the flight.
 const FOOT_S: f64 = 1e-3;
 const FOOT: f64 = 0.06;
 /// Blows closer together than this are one, s.
 const APART_S: f64 = 3e-3;
 
-/// The channel that is struck hardest in the flight, with the times; `found` says which channels are
-/// disturbed there.
+/// Names the channel with the largest shock in the flight, with the times; `found` names disturbed channels.
 pub fn judge_blows(
     signals: &[Signal],
     flight: &FlightFit,
@@ -53,90 +52,90 @@ pub fn judge_blows(
     cask: &Cask,
 ) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
-    let looked = looked_at(signals, flight, events, found, cask);
-    // Before that a step is sought (21b), and modes that were not fitted ring.
-    let is_shaken = |window: &Unforetold| window.far > TOGETHER && window.time_s > flight.to_s;
-    let shaken: Vec<Unforetold> = together(&looked).into_iter().filter(is_shaken).collect();
-    let is_in_one = |mean: &Unforetold| shaken.iter().any(|w| (w.time_s - mean.time_s).abs() < WINDOW_S);
-    let hardest = |channel: &Looked<'_>| {
-        let struck = channel.means.iter().filter(|mean| mean.far > LIMIT || is_in_one(mean));
-        struck.map(|mean| mean.far).fold(0.0, f64::max)
+    let channels = find_deviations(signals, flight, events, found, cask);
+    // Within that interval a step is searched by (21b), and modes that were not fitted ring.
+    let is_shaken = |window: &Deviation| window.size > COMBINED_LIMIT && window.time_s > flight.to_s;
+    let shaken: Vec<Deviation> = combine_channels(&channels).into_iter().filter(is_shaken).collect();
+    let is_in_one = |mean: &Deviation| shaken.iter().any(|w| (w.time_s - mean.time_s).abs() < WINDOW_S);
+    let hardest = |channel: &ChannelDeviations<'_>| {
+        let struck = channel.means.iter().filter(|mean| mean.size > SHOCK_LIMIT || is_in_one(mean));
+        struck.map(|mean| mean.size).fold(0.0, f64::max)
     };
-    let struck = looked.iter().max_by(|a, b| hardest(a).total_cmp(&hardest(b)))?;
-    let alone_s = struck.means.iter().filter(|mean| mean.far > LIMIT).map(|mean| mean.time_s);
+    let struck = channels.iter().max_by(|a, b| hardest(a).total_cmp(&hardest(b)))?;
+    let alone_s = struck.means.iter().filter(|mean| mean.size > SHOCK_LIMIT).map(|mean| mean.time_s);
     let mut times_s: Vec<f64> = alone_s.chain(shaken.iter().map(|window| window.time_s)).collect();
     times_s.sort_by(f64::total_cmp);
     let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
     let mut before_s = f64::NEG_INFINITY;
     times_s.retain(|&t| t - std::mem::replace(&mut before_s, t) > APART_S);
     let after_s = times_s.iter().map(|t| t - contact_s).collect();
-    let far = hardest(struck);
-    let is_near = |mean: &&Unforetold| times_s.iter().any(|time_s| (time_s - mean.time_s).abs() < APART_S);
-    let mut others = looked.iter().filter(|channel| channel.signal.name != struck.signal.name);
-    let farthest =
-        |channel: &Looked<'_>| channel.means.iter().filter(is_near).map(|m| m.far).reduce(f64::max);
-    let is_alone = looked.len() > 1
-        && far > ALONE
-        && others.all(|other| farthest(other).is_some_and(|far| far < ELSEWHERE));
+    let size = hardest(struck);
+    let is_near = |mean: &&Deviation| times_s.iter().any(|time_s| (time_s - mean.time_s).abs() < APART_S);
+    let mut others = channels.iter().filter(|channel| channel.signal.name != struck.signal.name);
+    let largest = |c: &ChannelDeviations<'_>| c.means.iter().filter(is_near).map(|m| m.size).reduce(f64::max);
+    let is_alone = channels.len() > 1
+        && size > ALONE_SIZE
+        && others.all(|other| largest(other).is_some_and(|size| size < OTHERS_SIZE));
     let found = if is_alone {
-        ChannelFinding::JumpsAlone { after_s, far }
+        ChannelFinding::JumpsAlone { after_s, far: size }
     } else {
-        ChannelFinding::Struck { after_s, far }
+        ChannelFinding::Struck { after_s, far: size }
     };
     Some(found.tag(&struck.signal.name).span(first_s, last_s))
 }
 
-/// Whether a shock of the flight is as sharp as what strikes a cask; true where no prediction covers it. A
-/// step that makes up for modes that were not fitted has no shock.
+/// True if a shock of the flight is as sharp as a blow on a cask, or if no prediction covers it. A step that
+/// compensates for modes that were not fitted has no shock.
 pub fn is_sharp(signals: &[Signal], flight: &FlightFit, events: &Events, cask: &Cask, at_s: f64) -> bool {
-    let windows = together(&looked_at(signals, flight, events, &[], cask));
+    let windows = combine_channels(&find_deviations(signals, flight, events, &[], cask));
     let near = windows.iter().filter(|window| (window.time_s - at_s).abs() < APART_S);
-    near.map(|window| window.far).reduce(f64::max).is_none_or(|far| far > SHARP)
+    near.map(|window| window.size).reduce(f64::max).is_none_or(|size| size > SHARP_LIMIT)
 }
 
-/// A channel, and what its flight does not foretell.
-struct Looked<'a> {
+/// A channel with the deviations of its means from their predictions.
+struct ChannelDeviations<'a> {
     signal: &'a Signal,
-    means: Vec<Unforetold>,
+    means: Vec<Deviation>,
 }
 
-fn looked_at<'a>(
+fn find_deviations<'a>(
     signals: &'a [Signal],
     flight: &FlightFit,
     events: &Events,
     found: &[Finding],
     cask: &Cask,
-) -> Vec<Looked<'a>> {
+) -> Vec<ChannelDeviations<'a>> {
     let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
     let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
     let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
-    let least_m_s2 = |s| TURNED_SPREAD * turned_m_s2(s, signals, flight, cask).abs();
-    whole.map(|signal| Looked { signal, means: unforetold(signal, &span_s, least_m_s2(signal)) }).collect()
+    let least_m_s2 = |s| TILT_SPREAD * tilt_m_s2(s, signals, flight, cask).abs();
+    let means = |signal| deviations(signal, &span_s, least_m_s2(signal));
+    whole.map(|signal| ChannelDeviations { signal, means: means(signal) }).collect()
 }
 
-/// All channels together, window by window: by how many of its standard deviations Σ far² is above the number
-/// of means, for which noise makes it χ².
-fn together(looked: &[Looked<'_>]) -> Vec<Unforetold> {
-    let means = || looked.iter().flat_map(|l| &l.means);
+/// Combines all channels, window by window: the number of standard deviations by which Σ size² exceeds the
+/// number of means; for noise that is χ².
+fn combine_channels(channels: &[ChannelDeviations<'_>]) -> Vec<Deviation> {
+    let means = || channels.iter().flat_map(|l| &l.means);
     let [first_s, last_s] = [f64::min, f64::max].map(|end| means().map(|m| m.time_s).reduce(end));
     let (Some(first_s), Some(last_s)) = (first_s, last_s) else { return Vec::new() };
     let half = |time_s: f64| as_count((time_s - first_s) / (WINDOW_S / 2.0));
     let mut halves = vec![(0.0, 0.0); half(last_s) + 1];
     for mean in means() {
         let (squares, count) = &mut halves[half(mean.time_s)];
-        *squares += mean.far.powi(2);
+        *squares += mean.size.powi(2);
         *count += 1.0;
     }
     let of_window = |(i, w): (usize, &[(f64, f64)])| {
         let (squares, count) = (w[0].0 + w[1].0, w[0].1 + w[1].1);
-        let far = (squares - count) / (2.0_f64 * count).sqrt();
+        let size = (squares - count) / (2.0_f64 * count).sqrt();
         let time_s = first_s + as_f64(i + 1) * WINDOW_S / 2.0;
-        (count >= FEWEST_MEANS).then_some(Unforetold { time_s, far })
+        (count >= FEWEST_MEANS).then_some(Deviation { time_s, size })
     };
     halves.windows(2).enumerate().filter_map(of_window).collect()
 }
 
-/// Whether samples are lost, clipped or spiked between two times.
+/// True if samples between two times are missing, clipped or part of a spike.
 fn is_disturbed(signal: &Signal, span_s: &Range<f64>, found: &[Finding]) -> bool {
     let touches = |spans: &[_]| signal.overlaps(spans, span_s.start, span_s.end);
     let is_spiked = |f: &Finding| {
@@ -148,15 +147,15 @@ fn is_disturbed(signal: &Signal, span_s: &Range<f64>, found: &[Finding]) -> bool
     touches(&signal.gaps) || touches(&signal.clipped) || found.iter().any(is_spiked)
 }
 
-/// A mean far from its prediction.
-struct Unforetold {
+/// Deviation of a mean from its prediction.
+struct Deviation {
     time_s: f64,
-    /// How far it is off, over the means before it.
-    far: f64,
+    /// Deviation over that of the means before it.
+    size: f64,
 }
 
-/// How far each mean of a stretch is off; none where it is too short to say.
-fn unforetold(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unforetold> {
+/// Deviations of the means of an interval; none if it is too short.
+fn deviations(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Deviation> {
     let from = signal.index_from(span_s.start);
     let samples = signal.force_m_s2.get(from..signal.index_from(span_s.end)).unwrap_or_default();
     let block = block_size(RATE_HZ, signal.sample_rate_hz);
@@ -166,28 +165,28 @@ fn unforetold(signal: &Signal, span_s: &Range<f64>, least_m_s2: f64) -> Vec<Unfo
     let pieces = as_count(((span_s.end - span_s.start) / PIECE_S).round().max(1.0));
     let length = means.len().div_ceil(pieces).max(1);
     let of_piece = |i: usize| {
-        // Each but the first begins within the one before, so that all of its own means are judged.
+        // Each piece but the first begins within the one before, so that all of its own means are judged.
         let first = (i * length).saturating_sub(MOST_BEFORE + BEFORE);
-        let Some(foretold) =
+        let Some(prediction) =
             predict_linearly(means.get(first..means.len().min((i + 1) * length)).unwrap_or_default())
         else {
             return Vec::new();
         };
-        let spread_m_s2 = foretold.spread.hypot(foretold.gain * rounding_m_s2).max(least_m_s2);
-        let time_s = |j: usize| signal.time_s(from + (first + foretold.before + j) * block);
-        let judged = foretold.left.iter().enumerate().skip(if i == 0 { FEWEST_BEFORE } else { BEFORE });
+        let spread_m_s2 = prediction.spread.hypot(prediction.gain * rounding_m_s2).max(least_m_s2);
+        let time_s = |j: usize| signal.time_s(from + (first + prediction.before + j) * block);
+        let judged = prediction.left.iter().enumerate().skip(if i == 0 { FEWEST_BEFORE } else { BEFORE });
         let of_mean = |(j, left): (usize, &f64)| {
-            let before = &foretold.left[j.saturating_sub(BEFORE)..j];
+            let before = &prediction.left[j.saturating_sub(BEFORE)..j];
             let before_m_s2 = (reduce::dot(before, before) / as_f64(before.len())).sqrt();
-            Unforetold { time_s: time_s(j), far: left.abs() / spread_m_s2.max(before_m_s2) }
+            Deviation { time_s: time_s(j), size: left.abs() / spread_m_s2.max(before_m_s2) }
         };
         judged.map(of_mean).collect()
     };
     (0..pieces).flat_map(of_piece).collect()
 }
 
-/// Standard uncertainty of means by a converter's step q: q/√12 of each sample that differs from the one
-/// before, as those that do not have one error.
+/// Standard uncertainty of means from a converter's step q: q/√12 of each sample that differs from the one
+/// before; equal samples share one error.
 fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
     let step = converter_step(samples);
     let changes = samples.windows(2).filter(|w| (w[1] - w[0]).abs() >= step).count();
@@ -265,20 +264,21 @@ mod tests {
     fn what_four_channels_show_a_little_at_one_time_stands_out_together() {
         let signal = signal(&[0.06], 60.0);
         let means = |struck: Range<u32>| {
-            let far = |i: u32| if struck.contains(&i) { 2.5 } else { 1.0 };
-            let mean = |i: u32| Unforetold { time_s: 0.2 + f64::from(i) / 8e3, far: far(i) };
+            let size = |i: u32| if struck.contains(&i) { 2.5 } else { 1.0 };
+            let mean = |i: u32| Deviation { time_s: 0.2 + f64::from(i) / 8e3, size: size(i) };
             (0..400).map(mean).collect()
         };
         let largest = |struck: Range<u32>, channels: usize| {
-            let looked: Vec<Looked<'_>> =
-                (0..channels).map(|_| Looked { signal: &signal, means: means(struck.clone()) }).collect();
-            together(&looked).into_iter().max_by(|a, b| a.far.total_cmp(&b.far)).expect("windows")
+            let channels: Vec<ChannelDeviations<'_>> = (0..channels)
+                .map(|_| ChannelDeviations { signal: &signal, means: means(struck.clone()) })
+                .collect();
+            combine_channels(&channels).into_iter().max_by(|a, b| a.size.total_cmp(&b.size)).expect("windows")
         };
         // Some 32 means of (2.5² − 1) over √64, and 8 over √16.
         let four = largest(200..212, 4);
-        assert!((18.0..25.0).contains(&four.far) && (0.225..0.227).contains(&four.time_s), "{}", four.far);
-        assert!((9.0..12.5).contains(&largest(200..212, 1).far));
-        assert!(largest(0..0, 4).far.abs() < 1e-9);
+        assert!((18.0..25.0).contains(&four.size) && (0.225..0.227).contains(&four.time_s), "{}", four.size);
+        assert!((9.0..12.5).contains(&largest(200..212, 1).size));
+        assert!(largest(0..0, 4).size.abs() < 1e-9);
         let (cask, flight) = (example::cask(1.0, 5.0, 0.0), example::flight(0.025, 0.1, vec![]));
         let events = example::events(0.02, 0.29);
         let sharp = |at_s| is_sharp(std::slice::from_ref(&signal), &flight, &events, &cask, at_s);

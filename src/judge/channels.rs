@@ -1,4 +1,4 @@
-//! Signals and events to what speaks against single channels.
+//! Judges single channels from their signals and the events.
 
 use super::sampling;
 use crate::data::{
@@ -9,29 +9,29 @@ use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::reduce;
 use std::ops::Range;
 
-/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ±
+/// Standard uncertainty of the velocity from noise alone that makes a result worthless, as a share of v0: ±
 /// 10 %.
 const MOST_NOISE: f64 = 0.05;
-/// Noise that deserves a note: as much as everything else that the interval carries.
+/// Uncertainty from noise that is a note, as a share of v0: as much as all other contributions.
 const NOTABLE_NOISE: f64 = 0.005;
-/// An error of a velocity step below this share of what the half-widths allow changes no number.
-const HELD: f64 = 0.5;
-/// Longest integration that noise is held against, s: contact and the window of the flight's fit.
+/// An error of a velocity step below this share of the half-widths changes no number.
+const HARMLESS: f64 = 0.5;
+/// Longest integration for which noise is judged, s: contact and the window of the flight's fit.
 const LONGEST_S: f64 = 0.1;
-/// A sensor sits on the cask within this, m: its bolt and the tape's hook.
+/// A sensor sits on the cask within this tolerance, m: its bolt and the hook of the tape measure.
 const SLACK_M: f64 = 0.05;
 /// A recording whose first sample exceeds this share of the first peak began during the impact.
-const UNDER_WAY: f64 = 0.1;
-/// Factors between units that are taken for one another: g and m/s², V and mV.
+const LATE_START_SHARE: f64 = 0.1;
+/// Factors between units that are often confused: g and m/s², V and mV.
 const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
-/// Two measuring chains of one kind and unit have the same noise within this share.
-const ALIKE: f64 = 0.2;
-/// Taking g for m/s² scales noise and peaks by 9.8. Two channels in the same unit whose peaks differ by less
-/// than this factor are not suspected: peaks of 9.8 / 3 times another's, with 9.8 times its noise, are.
-const PEAKS: f64 = 3.0;
+/// Two measuring chains of one kind and unit have equal noise within this share.
+const NOISE_SHARE: f64 = 0.2;
+/// Reading g as m/s² scales noise and peaks by 9.8. Two channels in the same unit are suspected only if their
+/// peaks differ by the factor of units over this: peaks of 9.8 / 3 times another's, with 9.8 times its noise.
+const PEAK_FACTOR: f64 = 3.0;
 
-/// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found`
-/// is what is known of them already.
+/// Judges each channel over the event: clipping, gaps, sample rate, noise, position. `found` holds the
+/// findings so far.
 pub fn judge_channels(
     signals: &[Signal],
     events: &Events,
@@ -43,26 +43,25 @@ pub fn judge_channels(
     let contact_s = events.first_contact_s();
     let separation_s = events.separation_s();
     for signal in signals {
-        findings.extend(clipped(signal, events));
+        findings.extend(judge_clipping(signal, events));
         if let (Some(from), Some(to)) = (contact_s, separation_s) {
-            findings.extend(lost(signal, from, to, events.slap_down_s()));
+            findings.extend(judge_gap(signal, from, to, events.slap_down.is_some()));
         }
     }
     let disturbances = found.iter().filter(|f| f.effect == Effect::Disturbance);
     let disturbed: Vec<&str> = disturbances.filter_map(|f| f.channel.as_deref()).collect();
     findings.extend(sampling::judge_sampling(signals, events, &disturbed));
-    findings.extend(judge_by_themselves(signals, events, flight, cask_file));
+    findings.extend(judge_singly(signals, events, flight, cask_file));
     findings
 }
 
-/// Whether clipping between two times takes more of the velocity than may be missing.
+/// True if clipping between two times removes more velocity than may be missing.
 pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
     signal.lost_to_clipping_m_s(from_s, to_s) > MOST_LOST_M_S
 }
 
-/// One finding for each kind of limit and part of the drop: what stands at a limit before, between and after
-/// the impacts.
-fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
+/// Reports samples at a limit before, between and after the impacts, one finding for each kind of limit.
+fn judge_clipping(signal: &Signal, events: &Events) -> Vec<Finding> {
     let separation_s = events.separation_s().unwrap_or(f64::INFINITY);
     let slap_down_s = events.slap_down_s().unwrap_or(f64::INFINITY);
     let parts = [
@@ -70,7 +69,7 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
         (separation_s..slap_down_s, DropPart::Flight),
         (slap_down_s..f64::INFINITY, DropPart::SlapDown),
     ];
-    let of_part = |(part_s, during): (Range<f64>, DropPart), is_flank: bool| {
+    let judge_part = |(part_s, during): (Range<f64>, DropPart), is_flank: bool| {
         let spans = signal.clipped.iter().filter(|s| part_s.contains(&signal.time_s(s.from)));
         let spans: Vec<_> = spans.filter(|s| signal.is_flank(s) == is_flank).collect();
         let (first, last) = (spans.first()?, spans.last()?);
@@ -80,7 +79,7 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
             during != DropPart::SlapDown && lost_m_s > MOST_LOST_M_S,
         );
         let level_m_s2 = signal.force_m_s2[first.from];
-        let found = if is_flank {
+        let finding = if is_flank {
             let fall_m_s2 = level_m_s2 - signal.force_m_s2[first.to - 1];
             let length_s = signal.time_s(first.to - 1) - signal.time_s(first.from);
             ChannelFinding::Slewed {
@@ -94,20 +93,20 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Finding> {
             let limit_m_s2 = (level_m_s2 + signal.removed_offset_m_s2).abs();
             ChannelFinding::Clipped { limit_m_s2, samples, during, lost_m_s, takes_step }
         };
-        Some(found.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
+        Some(finding.tag(&signal.name).span(signal.time_s(first.from), signal.time_s(last.to)))
     };
-    let of_kind = |is_flank| parts.clone().into_iter().filter_map(move |part| of_part(part, is_flank));
-    of_kind(false).chain(of_kind(true)).collect()
+    let judge_kind = |is_flank| parts.clone().into_iter().filter_map(move |part| judge_part(part, is_flank));
+    judge_kind(false).chain(judge_kind(true)).collect()
 }
 
-fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<f64>) -> Option<Finding> {
-    let inside = signal.overlaps(&signal.gaps, contact_s, separation_s);
-    let found = ChannelFinding::LostStep { shows_slap_down: slap_down_s.is_some() };
-    inside.then(|| found.tag(&signal.name).span(contact_s, separation_s))
+fn judge_gap(signal: &Signal, contact_s: f64, left_s: f64, shows_slap_down: bool) -> Option<Finding> {
+    let inside = signal.overlaps(&signal.gaps, contact_s, left_s);
+    let finding = ChannelFinding::LostStep { shows_slap_down };
+    inside.then(|| finding.tag(&signal.name).span(contact_s, left_s))
 }
 
-/// Checks of each channel by itself and against the others, beside those of its samples over the impact.
-fn judge_by_themselves(
+/// Judges each channel by itself and against the others, apart from its samples in the impact.
+fn judge_singly(
     signals: &[Signal],
     events: &Events,
     flight: Option<&FlightFit>,
@@ -116,29 +115,29 @@ fn judge_by_themselves(
     let mut findings = judge_places(signals, cask_file);
     for signal in signals {
         findings.extend(judge_noise(signal, events, flight, cask_file.drop.impact_velocity_m_s));
-        findings.extend(under_way(signal, events));
+        findings.extend(judge_late_start(signal, events));
     }
-    findings.extend(units(signals));
+    findings.extend(judge_units(signals));
     findings
 }
 
-/// Makes a note of noise that leaves the numbers narrow all the same, and of a step that was sampled too
-/// coarsely by less than they are known to.
-pub fn note_what_is_held(findings: &mut [Finding], k: Estimate, speed: Option<Estimate>) {
-    let open = speed.map_or(0.0, |speed| speed.u95 / speed.value);
-    let is_held = |found: &Finding| match found.what {
-        FindingKind::Channel(ChannelFinding::Noise { .. }) => k.u95.max(open) < 2.0 * MOST_NOISE,
+/// Downgrades noise to a note if the intervals are narrow all the same, and a coarsely sampled step if its
+/// error is below its uncertainty.
+pub fn downgrade_harmless(findings: &mut [Finding], k: Estimate, speed: Option<Estimate>) {
+    let u95_share = speed.map_or(0.0, |speed| speed.u95 / speed.value);
+    let is_harmless = |found: &Finding| match found.what {
+        FindingKind::Channel(ChannelFinding::Noise { .. }) => k.u95.max(u95_share) < 2.0 * MOST_NOISE,
         FindingKind::Channel(ChannelFinding::LowRate { off_percent, .. }) => {
             let off = off_percent / 100.0;
-            off * (1.0 + k.value) < HELD * k.u95 && (speed.is_none() || off < HELD * open)
+            off * (1.0 + k.value) < HARMLESS * k.u95 && (speed.is_none() || off < HARMLESS * u95_share)
         }
         _ => false,
     };
-    findings.iter_mut().filter(|found| is_held(found)).for_each(|found| found.severity = Severity::Note);
+    findings.iter_mut().filter(|found| is_harmless(found)).for_each(|found| found.severity = Severity::Note);
 }
 
-/// The uncertainty of the velocity that the noise before first contact causes: no more than the noise of the
-/// contact and the flight's fit, whose plateau averages it, together.
+/// Reports the uncertainty of the velocity from the noise before first contact: at most that of the contact
+/// and the flight's fit together, whose plateau averages the noise.
 pub fn judge_noise(
     signal: &Signal,
     events: &Events,
@@ -150,15 +149,16 @@ pub fn judge_noise(
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
     let walk_m_s = |length_s| integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
     let plateau = flight.and_then(|flight| flight.plateau(&signal.name)).zip(events.separation_s());
-    let of_fit_m_s = plateau.map(|(plateau, left_s)| plateau.u_m_s.hypot(walk_m_s(left_s - contact_s)));
-    let u_m_s = walk_m_s(length_s).min(of_fit_m_s.unwrap_or(f64::INFINITY));
+    let fit_m_s = plateau.map(|(plateau, left_s)| plateau.u_m_s.hypot(walk_m_s(left_s - contact_s)));
+    let u_m_s = walk_m_s(length_s).min(fit_m_s.unwrap_or(f64::INFINITY));
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
-    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.tag(&signal.name))
+    let finding = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| finding.tag(&signal.name))
 }
 
-/// What the first sample shows already is missing from the velocity step.
-fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
+/// Reports a recording that began in the impact: the velocity before its first sample is missing from the
+/// step.
+fn judge_late_start(signal: &Signal, events: &Events) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let to_s = events.separation_s().unwrap_or(contact_s + 0.02);
     let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
@@ -166,39 +166,39 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
     let peak = reduce::extremes(force, 0.0).1;
     let first = *force.first()?;
     let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
-    let found = ChannelFinding::BeginsInImpact { share: first / peak };
-    (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak)
-        .then(|| found.tag(&signal.name).span(signal.start_s, to_s))
+    let finding = ChannelFinding::BeginsInImpact { share: first / peak };
+    (is_struck && begins && peak > 0.0 && first > LATE_START_SHARE * peak)
+        .then(|| finding.tag(&signal.name).span(signal.start_s, to_s))
 }
 
-/// Sensors beyond the ends of the cask, and ends that lie the other way round.
+/// Reports sensors beyond the ends of the cask, and ends in the wrong order.
 pub fn judge_places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     let length_m = cask_file.cask.length_m;
-    let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
+    let is_off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
     let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.tag(&s.name);
-    let mut findings: Vec<Finding> = signals.iter().filter(off).map(off_cask).collect();
+    let mut findings: Vec<Finding> = signals.iter().filter(is_off).map(off_cask).collect();
     let transverse = |end| signals.iter().filter(move |s| s.end == end && s.axis == Axis::Transverse);
     for first in transverse(End::First) {
         for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
             let (position_m, second_m) = (first.position_m, second.position_m);
-            let found = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
-            findings.push(found.tag(&first.name));
+            let finding = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
+            findings.push(finding.tag(&first.name));
         }
     }
     let middle_m = length_m / 2.0;
-    let far =
+    let is_far =
         |s: &&Signal| if s.end == End::First { s.position_m > middle_m } else { s.position_m < middle_m };
     let nearer = |s: &Signal| {
         ChannelFinding::NearerOtherEnd { end: s.end, position_m: s.position_m, length_m }.tag(&s.name)
     };
     if findings.is_empty() {
-        findings.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(nearer));
+        findings.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(is_far).map(nearer));
     }
     findings
 }
 
-/// Two transverse channels whose noise and peaks both differ by the factor between two units.
-fn units(signals: &[Signal]) -> Vec<Finding> {
+/// Reports two transverse channels whose noise and peaks both differ by the factor between two units.
+fn judge_units(signals: &[Signal]) -> Vec<Finding> {
     let transverse: Vec<&Signal> = signals.iter().filter(|s| s.axis == Axis::Transverse).collect();
     let peak = |s: &Signal| reduce::peak(&s.force_m_s2);
     let mut findings = Vec::new();
@@ -207,22 +207,22 @@ fn units(signals: &[Signal]) -> Vec<Finding> {
             if small.noise_m_s2 <= 0.0 {
                 continue;
             }
-            // The noise first: peaks are asked for in all samples.
+            // Noise is compared first, since peaks need all samples.
             let noise = large.noise_m_s2 / small.noise_m_s2;
-            let Some((factor, names)) = UNITS.iter().find(|u| (noise / u.0 - 1.0).abs() < ALIKE) else {
+            let Some((factor, names)) = UNITS.iter().find(|u| (noise / u.0 - 1.0).abs() < NOISE_SHARE) else {
                 continue;
             };
             let (highest, lowest) = (peak(large), peak(small));
-            if lowest <= 0.0 || highest / lowest <= factor / PEAKS {
+            if lowest <= 0.0 || highest / lowest <= factor / PEAK_FACTOR {
                 continue;
             }
-            let found = ChannelFinding::UnitFactor {
+            let finding = ChannelFinding::UnitFactor {
                 noise,
                 peak: highest / lowest,
                 other: small.name.clone(),
                 units: names,
             };
-            findings.push(found.tag(&large.name));
+            findings.push(finding.tag(&large.name));
         }
     }
     findings

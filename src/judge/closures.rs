@@ -1,4 +1,4 @@
-//! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
+//! Judges the consistency checks: those that fail contradict scales, positions, angle or height.
 
 use crate::data::{
     CONSISTENT_U, CheckKind, Consistency, Drop, DropFinding, Estimate, Events, Finding, MISSED_U, Method,
@@ -6,61 +6,62 @@ use crate::data::{
 };
 use crate::numerics::pooled::chi_square_quantile;
 
-/// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a
-/// scale is not as stated.
+/// A check that fails by this many standard uncertainties removes the numbers: angle, height or a scale is
+/// not as stated.
 const GROSS_U: f64 = 12.0;
 
-/// The second impact's rotation is named from here on, by chance in one of 400: it is the one closure that
-/// tells a length off by 5 %, and by no more than this in half of the drops.
+/// Limit for the rotation of the second impact, which chance exceeds in one of 400 drops: only this check
+/// shows a length off by 5 %, and by no more than this in half of the drops.
 const LENGTH_U: f64 = 3.0;
 
-/// χ² at this normal quantile is passed by chance as often as one closure passes [`MISSED_U`]: a normal
-/// deviate is above 3.31 as often as it is beyond ± 3.5.
+/// Normal quantile of the limit on χ², exceeded by chance as often as a single check exceeds [`MISSED_U`]: a
+/// normal deviate is above 3.31 as often as it is beyond ± 3.5.
 const CHANCE: f64 = 3.31;
 
-/// A closure missed by this many standard uncertainties strains a k of this 95 % half-width, three times the
-/// usual: chance alone has one in 60 of such k, and an overloaded channel k 3.9 half-widths off.
+/// A check that fails by this many standard uncertainties casts doubt on a k with at least this 95 %
+/// half-width, three times the usual: chance alone causes that for one in 60 of such k, and an overloaded
+/// channel had k 3.9 half-widths off.
 const STRAINED_U: f64 = 2.4;
 const OPEN_U95_K: f64 = 0.075;
 
-/// A gap within this time of the first contact may hide the contact, s.
+/// A gap this near to the first contact may hide the contact, s.
 const CONTACT_S: f64 = 1e-3;
-/// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a
-/// share, 20 ± 3 m/s.
+/// Largest 95 % half-widths of a useful number: k ± 0.25 spans half of 0 to 1; for a speed, as a share, 20 ±
+/// 3 m/s.
 pub const MOST_U95_K: f64 = 0.25;
 pub const MOST_U95_SPEED: f64 = 0.15;
 
-/// One finding a closure that is missed by more than noise and tolerances explain.
+/// Reports each check that fails by more than noise and tolerances explain.
 pub fn judge_closures(choice: &MethodChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
-    let mut findings: Vec<Finding> = missed.map(|closure| self::missed(closure, drop, events)).collect();
+    let mut findings: Vec<Finding> = missed.map(|closure| judge_missed(closure, drop, events)).collect();
     if findings.is_empty() {
-        findings.extend(together(choice));
+        findings.extend(judge_together(choice));
     }
     findings
 }
 
-/// A closure that is met only because k is open: no contradiction, but nothing that confirms it either.
+/// Reports a check that is met only because k is uncertain: no contradiction, but no confirmation either.
 pub fn judge_strained(choice: &MethodChoice, k: Estimate) -> Option<Finding> {
     let strained = choice.closures.iter().find(|c| c.largest_residual() > STRAINED_U)?;
     let is_missed = choice.closures.iter().any(|c| c.miss_in_u.abs() > MISSED_U);
-    let found = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
-    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| found.into())
+    let finding = DropFinding::RestitutionDoubted { k, strained: Some(strained.clone()) };
+    (k.u95 > OPEN_U95_K && k.value >= 0.0 && !is_missed).then(|| finding.into())
 }
 
-/// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the
-/// slap-down tells the step of one end, rotation against impulse that of the other.
+/// True if the checks determine the velocity steps that channels lost to clipping or gaps: R's height at the
+/// slap-down determines the step of one end, rotation against impulse that of the other.
 ///
-/// A gap at the first contact hides the time that both closures count from. A closure that is missed though
-/// the lost steps are free to move says that more is wrong than the steps.
-pub fn tells_lost_steps(
+/// A gap at the first contact hides the time from which both checks count. If a check fails although the lost
+/// steps are free, more is wrong than the steps.
+pub fn determines_lost_steps(
     choice: &MethodChoice,
     (k, speed): (Estimate, Option<Estimate>),
     signals: &[Signal],
     contact_s: f64,
 ) -> bool {
     let has = |kind| choice.closures.iter().any(|c| c.kind == kind);
-    let all_met = choice.closures.iter().all(|c| c.largest_residual() < CONSISTENT_U);
+    let are_all_met = choice.closures.iter().all(|c| c.largest_residual() < CONSISTENT_U);
     let shows_contact =
         signals.iter().all(|s| !s.overlaps(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
     let says_something =
@@ -68,24 +69,24 @@ pub fn tells_lost_steps(
     choice.rung == Method::Joint
         && has(CheckKind::Height)
         && has(CheckKind::Turning)
-        && all_met
+        && are_all_met
         && shows_contact
         && says_something
 }
 
-/// Three closures missed by 3 u each: chance allows one such miss, but not all three together.
-fn together(choice: &MethodChoice) -> Option<Finding> {
+/// Reports several checks that fail together: chance allows one failure of 3 u, but not three.
+fn judge_together(choice: &MethodChoice) -> Option<Finding> {
     let (chi_square, degrees) = choice.chi_square?;
     let most_u = |c: &Consistency| if c.kind == CheckKind::SecondTurning { LENGTH_U } else { MISSED_U };
-    let apart = choice.closures.iter().any(|c| c.largest_residual() > most_u(c));
-    (apart || chi_square > chi_square_quantile(degrees, CHANCE)).then(|| {
+    let is_any_far = choice.closures.iter().any(|c| c.largest_residual() > most_u(c));
+    (is_any_far || chi_square > chi_square_quantile(degrees, CHANCE)).then(|| {
         let closures = choice.closures.iter().filter(|c| c.largest_residual() > 1.0).cloned().collect();
         DropFinding::AllMissed { chi_square, degrees, closures }.into()
     })
 }
 
-/// A closure that is missed, as a finding.
-pub(super) fn missed(closure: &Consistency, drop: &Drop, events: &Events) -> Finding {
+/// Reports a check that fails.
+pub(super) fn judge_missed(closure: &Consistency, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
     let is_gross = closure.miss_in_u.abs() > GROSS_U;
     let found =
@@ -151,14 +152,14 @@ mod tests {
             let mut choice = choice(CheckKind::Height, height);
             choice.closures.extend(self::choice(CheckKind::Turning, turning).closures);
             let speed = Estimate::new(20.0, 0.2, "m/s");
-            tells_lost_steps(&choice, (Estimate::new(0.5, u95, "1"), Some(speed)), &[], 0.1)
+            determines_lost_steps(&choice, (Estimate::new(0.5, u95, "1"), Some(speed)), &[], 0.1)
         };
         assert!(told([0.5, -1.5], 0.1));
         assert!(!told([0.5, -2.5], 0.1), "missed though a step is free to move");
         assert!(!told([0.5, -1.5], 0.3), "k may be anything");
         let alone = choice(CheckKind::Height, 0.5);
         let k = Estimate::new(0.5, 0.1, "1");
-        assert!(!tells_lost_steps(&alone, (k, Some(Estimate::new(20.0, 0.2, "m/s"))), &[], 0.1));
+        assert!(!determines_lost_steps(&alone, (k, Some(Estimate::new(20.0, 0.2, "m/s"))), &[], 0.1));
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! The channels as recorded to those that hold the samples of another one.
+//! Finds channels that hold the samples of another one.
 
 use crate::data::{Channel, ChannelFinding, Finding, Samples};
 
-/// Names each channel that holds the samples of one before it: a sensor that is told twice counts once, and
+/// Names each channel that holds the samples of one before it: a sensor that is stated twice counts once, and
 /// two ends never read the same.
 pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     let copy = |at: usize| {
@@ -15,8 +15,8 @@ pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     (1..channels.len()).filter_map(copy).collect()
 }
 
-/// Whether both hold the same samples, and more than one value; two sensors differ within the first of them
-/// by their noise.
+/// True if both hold the same samples, and more than one value; two sensors differ by their noise within the
+/// first samples.
 fn is_same(one: &Samples, other: &Samples) -> bool {
     let is_copy = one.len() == other.len()
         && match (one, other) {

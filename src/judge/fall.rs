@@ -1,4 +1,4 @@
-//! The recorded free fall beside the one that the cask file states, to what speaks against them.
+//! Compares the recorded free fall with the one that the cask file states.
 
 use super::closures;
 use crate::data::{
@@ -7,24 +7,25 @@ use crate::data::{
 };
 use crate::numerics::as_f64;
 
-/// A first touch this share of the fall time before first contact is another event, not a late onset.
-const MOST_LAG: f64 = 0.02;
+/// A first touch earlier than this share of the fall time before first contact is another event, not a
+/// delayed onset.
+const MOST_LAG_SHARE: f64 = 0.02;
 
-/// A fall longer than free by this many standard uncertainties is no chance beside rest levels that say the
-/// same; a scale error of all channels leaves its length as it is.
-const CLEAR_FALL: f64 = 3.0;
+/// A fall is longer than free if it exceeds its length by this many standard uncertainties and the rest
+/// levels agree; a scale error of all channels does not change its length.
+const LEAST_FALL_U: f64 = 3.0;
 
-/// Checks the fall, where the recording shows it from its release on.
+/// Judges the fall, if its release was recorded.
 pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
     events.release_s?;
     let (end_s, contact_s) = events.fall_end_s.zip(events.first_contact_s())?;
     let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    let found = DropFinding::SoftTouch { end_s, contact_s };
-    (contact_s - end_s > MOST_LAG * expected_s).then(|| Finding::from(found).span(end_s, contact_s))
+    let finding = DropFinding::SoftTouch { end_s, contact_s };
+    (contact_s - end_s > MOST_LAG_SHARE * expected_s).then(|| Finding::from(finding).span(end_s, contact_s))
 }
 
-/// Holds the length of the recorded fall against v0 where no motion could be had that does so with everything
-/// else   (35)
+/// Compares the length of the recorded fall with v0, if no motion could be determined that includes this
+/// comparison   (35)
 pub fn judge_fall_time(
     found: &[Finding],
     drop: &Drop,
@@ -47,20 +48,20 @@ pub fn judge_fall_time(
         beside_others_in_u: miss_in_u,
     };
     (miss_in_u.abs() > MISSED_U && !found.iter().any(|f| missed_kind(f) == Some(CheckKind::Fall)))
-        .then(|| closures::missed(&closure, drop, events))
+        .then(|| closures::judge_missed(&closure, drop, events))
 }
 
-/// Of which closure a finding says that it is missed.
+/// Kind of check that a finding reports as failed.
 fn missed_kind(finding: &Finding) -> Option<CheckKind> {
     let FindingKind::Drop(DropFinding::Missed { closure, .. }) = &finding.what else { return None };
     Some(closure.kind)
 }
 
-/// The closures' findings, in which one of a fall slower than free takes the place of those on the rest
-/// levels and on the fall's length where it explains them all.
+/// Replaces the findings on rest levels and on the fall's length by one on a slow fall, if that explains them
+/// all.
 ///
-/// What takes the share q of g off the fall, a guide, a rope or a brake, leaves (1 − q) g cos φ of every step
-/// from rest to fall, and the time √(2 h / (1 − q) g).
+/// A guide, a rope or a brake that removes the share q of g leaves (1 − q) g cos φ of every step from rest to
+/// fall, and the time √(2 h / (1 − q) g).
 pub fn judge_slowed(
     mut found: Vec<Finding>,
     drop: &Drop,
@@ -80,8 +81,8 @@ pub fn judge_slowed(
     found
 }
 
-/// The share of g that a fall lacks, with its standard uncertainty, where all rest levels and the length of
-/// the fall say so alike.
+/// Share of g that a fall lacks, with its standard uncertainty, if all rest levels and the length of the fall
+/// agree.
 fn slowed_share(
     drop: &Drop,
     rests: &[RestLevel],
@@ -97,36 +98,36 @@ fn slowed_share(
     // Half of a 95 % half-width is a standard uncertainty; the angle is one for all channels.
     let u_angle = tolerances.angle_rad / 2.0 * sin / cos;
     let u_cross = tolerances.cross_axis / 2.0 * sin / cos;
-    let each = |r: &RestLevel| {
+    let lack = |r: &RestLevel| {
         let u_own = (r.u_m_s2 / weight_m_s2).hypot(tolerances.calibration / 2.0).hypot(u_cross);
         (1.0 - r.rest_m_s2 / weight_m_s2, u_own)
     };
     let count = as_f64(rests.len());
-    let mean = rests.iter().map(|r| each(r).0).sum::<f64>() / count;
-    let u_mean = rests.iter().map(|r| each(r).1.powi(2)).sum::<f64>().sqrt() / count;
+    let mean = rests.iter().map(|r| lack(r).0).sum::<f64>() / count;
+    let u_mean = rests.iter().map(|r| lack(r).1.powi(2)).sum::<f64>().sqrt() / count;
     let u_rest = u_mean.hypot(u_angle);
     let fall_s = events.fall_end_s? - events.release_s?;
     let free_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
     let by_fall = 1.0 - (free_s / fall_s).powi(2);
     let u_fall = (2.0 * U_RELEASE_S / fall_s).hypot(tolerances.impact_velocity).hypot(tolerances.clock);
-    let are_alike = rests.iter().map(|r| each(r)).all(|(share, u)| (share - mean).abs() < MISSED_U * u)
+    let are_alike = rests.iter().map(|r| lack(r)).all(|(share, u)| (share - mean).abs() < MISSED_U * u)
         && (mean - by_fall).abs() < MISSED_U * u_rest.hypot(u_fall);
-    let is_clear = mean > MISSED_U * u_rest && by_fall > CLEAR_FALL * u_fall;
+    let is_clear = mean > MISSED_U * u_rest && by_fall > LEAST_FALL_U * u_fall;
     let (w_rest, w_fall) = (u_rest.powi(-2), u_fall.powi(-2));
     (are_alike && is_clear)
         .then(|| ((w_rest * mean + w_fall * by_fall) / (w_rest + w_fall), (w_rest + w_fall).powf(-0.5)))
 }
 
-/// Says that another drop follows the one at `event`.
+/// Reports another drop after the one at `event`.
 pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Finding {
     let (from_s, to_s) = (another.near_s, another.near_s + another.spread_s);
-    let found = DropFinding::SeveralDrops {
+    let finding = DropFinding::SeveralDrops {
         at_s: to_s,
         later_s: another.near_s - event.near_s,
         step_m_s: another.velocity_step_m_s.abs(),
         first_step_m_s: event.velocity_step_m_s.abs(),
     };
-    Finding::from(found).span(from_s, to_s)
+    Finding::from(finding).span(from_s, to_s)
 }
 
 #[cfg(test)]
@@ -195,7 +196,7 @@ mod tests {
                 miss_in_u: -9.0,
                 beside_others_in_u: -9.0,
             };
-            let missed = closures::missed(&closure, &drop, &events);
+            let missed = closures::judge_missed(&closure, &drop, &events);
             judge_slowed(vec![missed], &drop, &rests, &events, &Tolerances::default()).remove(0).message
         };
         let said = slowed(0.05, 0.05, false);

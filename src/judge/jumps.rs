@@ -1,49 +1,48 @@
-//! Samples from the first contact to the slap-down to jumps of one channel within a few samples, as an
-//! electric contact makes them and no force behind a recorder's filter.
+//! Finds jumps of one channel within a few samples from the first contact to the slap-down: an electric
+//! contact makes them, and no force after a recorder's filter.
 
 use crate::data::{At, Axis, ChannelFinding, Events, Finding, Signal};
 use crate::numerics::{as_count, as_f64, reduce, robust};
 use std::ops::Range;
 
-/// A jump is above this share of the channel's peak …
+/// A jump exceeds this share of the channel's peak.
 const SHARE_OF_PEAK: f64 = 0.05;
-/// … and this many times the largest step of so many samples on either side. Of 40 simulated sound drops
-/// none is named; of 120 with a cable that breaks once, by turns or for good, 79.
-const ISOLATED: f64 = 8.0;
+/// It is also this many times the largest step of the samples on either side. Of 40 simulated sound drops
+/// none is named; of 120 with a cable that breaks once, repeatedly or permanently, 79.
+const ISOLATED_FACTOR: f64 = 8.0;
 const AROUND: usize = 12;
-/// So much of it is left in the median of as many samples behind it: less is a spike.
-const LASTS: f64 = 0.3;
-/// Another channel whose step then is of this share of it, and this many times the largest beside it, is
-/// struck as well, as all places of a rigid body are.
-const ELSEWHERE: f64 = 0.1;
-const STRUCK: f64 = 1.5;
-/// A jump this near to the separation, over the contact, is the end of the contact; and so is a stop within
-/// the second share.
-const LETS_GO: f64 = 0.1;
-const LEAVES: f64 = 0.25;
-/// A cable that breaks leaves its channel with nothing but noise: in so many samples the channel comes within
-/// the second share of the change of its new level.
+/// Share of a jump that remains in the median of as many samples after it: less is a spike.
+const LASTING_SHARE: f64 = 0.3;
+/// Another channel is struck as well, as all places of a rigid body are, if its step at that time has this
+/// share of the jump and is this many times the largest beside it.
+const OTHER_SHARE: f64 = 0.1;
+const STRUCK_FACTOR: f64 = 1.5;
+/// A jump this near to the separation, as a share of the contact, is the end of the contact; so is a stop
+/// within the second share.
+const RELEASE: f64 = 0.1;
+const STOP: f64 = 0.25;
+/// A cable that breaks leaves nothing but noise in its channel, which comes within the second share of the
+/// change of its new level in this many samples.
 const FALL_SAMPLES: usize = 4;
 const SETTLED_SHARE: f64 = 0.3;
-/// A recorder's filter rings for so many samples behind the break.
+/// Number of samples in which a recorder's filter rings after the break.
 const RING_SAMPLES: usize = 16;
-/// The channel is then still for at least so long, s, and for so many samples. None of 364 simulated sound
-/// beams is so named, and 63 of 115 with a cable that breaks for 1 to 20 ms or for good.
+/// Shortest time, s, and fewest samples in which the channel is then still. None of 364 simulated sound beams
+/// is so named, and 63 of 115 with a cable that breaks for 1 to 20 ms or permanently.
 const STILL_S: f64 = 1e-3;
 const LEAST_STILL: usize = 16;
-/// The break changes the channel by at least so many standard deviations of its noise, and this share of its
-/// peak.
+/// Smallest change of a channel by the break, in standard deviations of its noise and as a share of its peak.
 const LEAST_CHANGE: f64 = 40.0;
 const LEAST_CHANGE_SHARE: f64 = 0.2;
-/// A still channel has at most so many times its noise before the contact, beside the scatter of that many
+/// Largest noise of a still channel over its noise before the contact, beside the scatter of that many
 /// samples.
 const STILL_NOISE: f64 = 1.25;
-/// Looked at from so long before the first contact, and until so long before the slap-down, s.
+/// The search begins this long before the first contact, and ends this long before the slap-down, s.
 const BEFORE_S: f64 = 1e-3;
-/// Where no slap-down is found: so long after the first contact, s.
+/// End of the search after the first contact if no slap-down is found, s.
 const LONGEST_S: f64 = 0.05;
 
-/// The largest jump of each transverse channel that has one.
+/// Reports the largest jump of each transverse channel that has one.
 pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let Some(contact_s) = events.first_contact_s() else { return Vec::new() };
     let to_s = events.slap_down_s().map_or(contact_s + LONGEST_S, |struck_s| struck_s - BEFORE_S);
@@ -51,58 +50,58 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let jumps = across().filter_map(|signal| {
         let within = signal.index_from(contact_s - BEFORE_S)..signal.index_from(to_s);
         let others = || across().filter(|other| other.name != signal.name);
-        let goes_on =
+        let is_inside =
             |at_s: f64, share| !events.separation.is_some_and(|left| is_end(left, at_s, share, contact_s));
         let is_alone =
-            |size, at_s| goes_on(at_s, LETS_GO) && others().all(|other| !is_struck(other, at_s, size));
+            |size, at_s| is_inside(at_s, RELEASE) && others().all(|other| !is_struck(other, at_s, size));
         let jump = || {
             let at = largest_jump(signal, within.clone(), is_alone)?;
             Some((at, signal.force_m_s2[at + 1] - signal.force_m_s2[at]))
         };
-        let stops_alone = |at_s| goes_on(at_s, LEAVES) && others().all(|other| !stops_about(other, at_s));
+        let stops_alone = |at_s| is_inside(at_s, STOP) && others().all(|other| !stops_about(other, at_s));
         let (at, size_m_s2) = jump().or_else(|| first_stop(signal, within.clone(), stops_alone))?;
-        let found = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
-        Some(found.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
+        let finding = ChannelFinding::Jumps { after_s: signal.time_s(at) - contact_s, size_m_s2 };
+        Some(finding.tag(&signal.name).span(signal.time_s(at), signal.time_s(at + 1)))
     });
     jumps.collect()
 }
 
-/// Whether a jump is the end of the contact: a stiff end that keeps nothing lets go within a sample.
+/// True if a jump is the end of the contact: a stiff end without damping releases within a sample.
 fn is_end(left: At, at_s: f64, share: f64, contact_s: f64) -> bool {
     (at_s - left.time_s).abs() < share * (left.time_s - contact_s) + 2.0 * left.u_s
 }
 
-/// The sample before the largest jump within a range, of those whose size and time are `alone`.
+/// Returns the sample before the largest jump in a range, among those whose size and time are `alone`.
 fn largest_jump(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) -> bool) -> Option<usize> {
     let force = &signal.force_m_s2;
     let least = SHARE_OF_PEAK * reduce::peak(force);
     let high = steps_with_sides(force, within).filter(|i| step(force, *i) > least);
     let is_jump = |&i: &usize| {
         let level = |samples: Range<usize>| robust::median(&mut force[samples].to_vec());
-        let left = level(i + 1..i + 1 + AROUND) - level(i + 1 - AROUND..i + 1);
-        is_isolated(force, i, ISOLATED)
-            && left * (force[i + 1] - force[i]).signum() > LASTS * step(force, i)
+        let lasting = level(i + 1..i + 1 + AROUND) - level(i + 1 - AROUND..i + 1);
+        is_isolated(force, i, ISOLATED_FACTOR)
+            && lasting * (force[i + 1] - force[i]).signum() > LASTING_SHARE * step(force, i)
             && !has_lost(signal, (i + 1).saturating_sub(AROUND)..i + AROUND + 1)
             && alone(step(force, i), signal.time_s(i))
     };
     high.filter(is_jump).max_by(|one, other| step(force, *one).total_cmp(&step(force, *other)))
 }
 
-/// Whether a channel jumps, too, about a time at which another one does by `size`.
+/// True if a channel also jumps about a time at which another one jumps by `size`.
 fn is_struck(signal: &Signal, at_s: f64, size: f64) -> bool {
     let force = &signal.force_m_s2;
     let at = signal.index_from(at_s);
     steps_with_sides(force, at.saturating_sub(1)..at + 2)
-        .any(|i| step(force, i) > ELSEWHERE * size && is_isolated(force, i, STRUCK))
+        .any(|i| step(force, i) > OTHER_SHARE * size && is_isolated(force, i, STRUCK_FACTOR))
 }
 
-/// Whether samples of a range are missing or stand at a limit.
+/// True if samples of a range are missing or stand at a limit.
 fn has_lost(signal: &Signal, range: Range<usize>) -> bool {
     signal.gaps.iter().chain(&signal.clipped).any(|span| span.from < range.end && range.start < span.to)
 }
 
-/// Change of a channel behind a sample as it falls to a level and stays there with nothing but noise, m/s²;
-/// none where it does not.
+/// Change of a channel after a sample if it falls to a level and stays there with nothing but noise, m/s²;
+/// else `None`.
 fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
     let (force, noise) = (&signal.force_m_s2, signal.noise_m_s2);
     let count = LEAST_STILL.max(as_count(STILL_S * signal.sample_rate_hz));
@@ -121,7 +120,7 @@ fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
     (settles && variance < most.powi(2) && change.abs() > least).then_some(change)
 }
 
-/// The first sample of a range behind which a channel stops, and by how much it changes, m/s².
+/// First sample of a range after which a channel stops, and the change of the channel, m/s².
 fn first_stop(
     signal: &Signal,
     mut within: Range<usize>,
@@ -134,13 +133,13 @@ fn first_stop(
     })
 }
 
-/// Whether a channel stops about a time, too.
+/// True if a channel also stops about a time.
 fn stops_about(signal: &Signal, at_s: f64) -> bool {
     let at = signal.index_from(at_s);
     first_stop(signal, at.saturating_sub(2 * AROUND)..at + 2 * AROUND, |_| true).is_some()
 }
 
-/// The samples of a range with so many beside them that a step behind them can be isolated.
+/// Limits a range to samples with enough neighbours to decide if a step is isolated.
 fn steps_with_sides(force: &[f64], range: Range<usize>) -> Range<usize> {
     range.start.max(AROUND)..range.end.min(force.len().saturating_sub(AROUND + 1))
 }
@@ -149,8 +148,8 @@ fn step(force: &[f64], i: usize) -> f64 {
     (force[i + 1] - force[i]).abs()
 }
 
-/// Whether the step behind a sample is so many times the largest beside it, without those next to it, which a
-/// filter behind the jump spreads it over.
+/// True if the step after a sample is this many times the largest beside it, except the adjacent ones, to
+/// which a filter spreads the jump.
 fn is_isolated(force: &[f64], i: usize, times: f64) -> bool {
     let beside = (i - AROUND..i - 1).chain(i + 2..i + AROUND);
     step(force, i) > times * beside.map(|i| step(force, i)).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! A flight and a first contact to what struck the cask in them beside the target.
+//! Finds blows on the cask in the flight and in the first contact that do not come from the target.
 
 use crate::data::{
     ChannelFinding, DropFinding, End, Estimate, Events, Finding, FlightFit, Signal, transverse,
@@ -6,67 +6,68 @@ use crate::data::{
 use crate::numerics::as_f64;
 use crate::numerics::reduce::{block_means, block_size, peak};
 
-/// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound
-/// drops none has more, but for steps below [`LEAST_STEP`].
+/// Smallest gain in the Bayesian information criterion by which a step explains a flight: of 2600 simulated
+/// sound drops none has more, but for steps below [`LEAST_STEP`].
 const LEAST_GAIN: f64 = 20.0;
-/// A smaller step changes the slap-down speed by less than its interval, as a share of v0.
+/// Smallest step that matters, as a share of v0: a smaller one changes the slap-down speed by less than its
+/// interval.
 const LEAST_STEP: f64 = 0.01;
 
-/// Force is looked at in means over this rate, Hz: ringing of a sensor's mount is no force.
+/// Rate of the means of the force, Hz: ringing of a sensor's mount is no force.
 const RATE_HZ: f64 = 10_000.0;
-/// Below this share of its peak, or so many standard deviations of the noise, a force rests …
-const RESTS_SHARE: f64 = 0.01;
-const RESTS_NOISE: f64 = 6.0;
-/// … for this share of the contact, and no less than so many means …
-const LEAST_REST: f64 = 0.25;
+/// A force pauses below this share of its peak, or below this many standard deviations of the noise.
+const PAUSE_SHARE: f64 = 0.01;
+const PAUSE_NOISE: f64 = 6.0;
+/// A pause lasts at least this share of the contact, and this many means.
+const LEAST_PAUSE: f64 = 0.25;
 const LEAST_MEANS: usize = 5;
-/// … and is there again with this share of its peak.
-const AGAIN: f64 = 0.05;
+/// After a pause the force returns to at least this share of its peak.
+const RETURN_SHARE: f64 = 0.05;
 
-/// Whether a step in the flight is large enough to matter. What modes leave that no prediction has room for
-/// steps by 0.1 % of v0 at most on 66 simulated drops of elastic bodies.
-pub fn moves_the_cask(step_m_s: f64, v0_m_s: f64) -> bool {
+/// True if a step in the flight is large enough to matter. The residual of modes that a prediction cannot
+/// include makes steps of at most 0.1 % of v0 in 66 simulated drops of elastic bodies.
+pub fn changes_motion(step_m_s: f64, v0_m_s: f64) -> bool {
     step_m_s.abs() > LEAST_STEP * v0_m_s
 }
 
-/// A blow within the flight, which modes and drift bent around; `speed` at slap-down, which a small one moves
-/// by less than its half-width.
+/// Reports a blow within the flight, around which modes and drift were fitted; a small one moves the `speed`
+/// at slap-down by less than its half-width.
 pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64, speed: Option<Estimate>) -> Option<Finding> {
-    let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && moves_the_cask(s.step_m_s, v0_m_s))?;
+    let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && changes_motion(s.step_m_s, v0_m_s))?;
     let (step_m_s, after_s) = (strike.step_m_s.abs(), strike.time_s - flight.from_s);
     let is_small = speed.is_some_and(|speed| step_m_s < speed.u95);
-    let found = if is_small {
+    let finding = if is_small {
         DropFinding::SmallBlow { step_m_s, after_s }
     } else {
         DropFinding::Blow { step_m_s, after_s }
     };
-    Some(Finding::from(found).span(strike.time_s, strike.time_s))
+    Some(Finding::from(finding).span(strike.time_s, strike.time_s))
 }
 
-/// A first end that no force reaches for a part of what was taken for one contact: it left the target before,
-/// and what came then is another blow.
-pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
+/// Reports a first end on which the force pauses during its contact: it left the target before, and the later
+/// force is another blow.
+pub fn judge_force_pause(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = transverse(signals, End::First)?;
     let block = block_size(RATE_HZ, struck.sample_rate_hz);
     let force = struck.force_m_s2.get(struck.index_from(contact_s)..struck.index_from(left_s))?;
     let means = block_means(force, block);
-    let rests = (RESTS_SHARE * peak(&means)).max(RESTS_NOISE * struck.noise_m_s2);
+    let limit = (PAUSE_SHARE * peak(&means)).max(PAUSE_NOISE * struck.noise_m_s2);
     let (mut from, mut longest) = (0, 0..0);
     for (i, mean) in means.iter().enumerate() {
-        if mean.abs() > rests {
+        if mean.abs() > limit {
             from = i + 1;
         } else if i + 1 - from > longest.len() {
             longest = from..i + 1;
         }
     }
-    let again = peak(&means[longest.end..]) > AGAIN * peak(&means);
-    let is_long = as_f64(longest.len()) > LEAST_REST * as_f64(means.len()) && longest.len() >= LEAST_MEANS;
-    (longest.start > 0 && is_long && again).then(|| {
+    let returns = peak(&means[longest.end..]) > RETURN_SHARE * peak(&means);
+    let is_long = as_f64(longest.len()) > LEAST_PAUSE * as_f64(means.len()) && longest.len() >= LEAST_MEANS;
+    (longest.start > 0 && is_long && returns).then(|| {
         let at_s = |mean: usize| contact_s + as_f64(mean * block) / struck.sample_rate_hz;
         let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
-        let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
-        found.tag(&struck.name).span(from_s, to_s)
+        let finding = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
+        finding.tag(&struck.name).span(from_s, to_s)
     })
 }
 
@@ -115,15 +116,15 @@ mod tests {
             ..Events::default()
         };
         let twice = signal(&[(0.01, 3000.0), (0.022, 400.0)]);
-        let found = judge_rest(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
+        let found = judge_force_pause(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
         let are = |from_s: f64, to_s: f64| (from_s - 4e-3).abs() < 1e-4 && (to_s - 12.1e-3).abs() < 1e-4;
         let FindingKind::Channel(ChannelFinding::ForceRests { from_s, to_s }) = found.what else {
             panic!("{found:?}")
         };
         assert!(are(from_s, to_s), "{}", found.message);
-        assert!(judge_rest(&[twice], &events(0.014)).is_none(), "one contact");
+        assert!(judge_force_pause(&[twice], &events(0.014)).is_none(), "one contact");
         // A limiter that yields and then bottoms out never lets go.
         let staged = signal(&[(0.01, 400.0), (0.0125, 400.0), (0.015, 3000.0)]);
-        assert!(judge_rest(&[staged], &events(0.019)).is_none());
+        assert!(judge_force_pause(&[staged], &events(0.019)).is_none());
     }
 }

@@ -1,21 +1,21 @@
-//! What an analysis did not find to what that means: an impact, an end, a slap-down, a flight.
+//! Reports an impact, an end, a slap-down or a flight that the analysis did not find.
 
 use crate::data::{Cask, CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity, Tolerances};
 
-/// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from
-/// 15° takes 65 ms.
+/// Time after L left from which a record is not cut off before the slap-down, s: a cask of 5.5 m takes 65 ms
+/// from 15°.
 const LONG_ENOUGH_S: f64 = 0.3;
 
-/// Fewer samples than this over the longest first pulse, 25 ms, neither show an impact nor that there is
-/// none.
+/// Fewest samples over the longest first pulse, 25 ms, that show an impact or its absence.
 const LEAST_SAMPLES: f64 = 10.0;
 pub(super) const LONGEST_PULSE_S: f64 = 0.025;
 
-/// From this share of the angle on at which the corner lies under the centre of gravity, a cask hardly turns.
+/// Share of the angle at which the corner lies under the centre of gravity; from there on a cask hardly
+/// turns.
 const STEEP_SHARE: f64 = 0.97;
 
-/// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found
-/// so far may say why, or the rate at which the struck end is sampled.
+/// Reports that no channel shows an impact, or none a rise that begins the change of velocity at `event`;
+/// earlier findings may give the reason, or the sample rate of the struck end.
 pub fn judge_no_impact(
     found: &[Finding],
     drop: &Drop,
@@ -32,20 +32,21 @@ pub fn judge_no_impact(
     DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt, without_rise }.into()
 }
 
-/// The second end shows no slap-down in the time that was looked at after the first one left; the record may
-/// end with that time, or the drop is so steep that none is expected.
+/// Reports that the second end shows no slap-down in the interval searched after the first one left; the
+/// record may end there, or the drop may be too steep.
 pub fn judge_no_slap_down(cask: &Cask, drop: &Drop, after_s: f64, is_record_end: bool) -> Finding {
-    let found = if let Some(too_steep) = too_steep(cask, drop) {
+    let finding = if let Some(too_steep) = too_steep(cask, drop) {
         too_steep
     } else if is_record_end && after_s < LONG_ENOUGH_S {
         DropFinding::EndsEarly { after_s }
     } else {
         DropFinding::NoSlapDown { after_s }
     };
-    found.into()
+    finding.into()
 }
 
-/// An impact of L that lasts until R is down, which no impulse of L delays: then no flight lies between both.
+/// Reports an impact of L that lasts until R is down, which no impulse of L delays: no flight lies between
+/// them.
 pub fn judge_overlap(lasts_s: f64, cask: &Cask, drop: &Drop, tolerances: &Tolerances) -> Option<Finding> {
     let down_m_s = drop.impact_velocity_m_s
         + (drop.angular_velocity_rad_s - tolerances.angular_velocity_rad_s) * cask.length_m;
@@ -53,7 +54,7 @@ pub fn judge_overlap(lasts_s: f64, cask: &Cask, drop: &Drop, tolerances: &Tolera
     (down_m_s > 0.0 && lasts_s > strikes_by_s).then(|| DropFinding::Overlap { strikes_by_s, lasts_s }.into())
 }
 
-/// A drop so steep that the second end does not strike.
+/// Reports a drop so steep that the second end does not strike.
 pub(super) fn too_steep(cask: &Cask, drop: &Drop) -> Option<DropFinding> {
     let limit_deg = (2.0 * cask.cog_m / cask.height_m).atan().to_degrees();
     let angle_deg = drop.angle_rad.to_degrees();

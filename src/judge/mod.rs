@@ -1,4 +1,4 @@
-//! Everything found on the way to findings and a verdict: what speaks against the result.
+//! Judges everything that the stages found: findings and a verdict.
 
 mod across;
 mod at_rest;
@@ -21,42 +21,43 @@ mod separation;
 mod silent;
 mod skew;
 mod taps;
-mod turned;
+mod tilt;
 
 pub use across::{judge_across, judge_alone};
 pub use at_rest::{
-    LEAST_BEFORE_S, expected_peaks, judge_chain, judge_levels, judge_record, open_causes, pulse_lengths_s,
+    LEAST_BEFORE_S, expected_peaks, hidden_causes, judge_chain, judge_levels, judge_record, pulse_lengths_s,
 };
 pub use bandwidth::judge_bandwidth;
 pub use blows::{is_sharp, judge_blows};
-pub use channels::{is_cut_off, judge_channels, judge_noise, judge_places, note_what_is_held};
-pub use closures::{MOST_U95_K, MOST_U95_SPEED, judge_closures, judge_strained, tells_lost_steps};
+pub use channels::{downgrade_harmless, is_cut_off, judge_channels, judge_noise, judge_places};
+pub use closures::{MOST_U95_K, MOST_U95_SPEED, determines_lost_steps, judge_closures, judge_strained};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use jumps::judge_jumps;
-pub use late_blow::{judge_late_blow, judge_rest, moves_the_cask};
-pub use limits::beside_limit;
+pub use late_blow::{changes_motion, judge_force_pause, judge_late_blow};
+pub use limits::compare_limit;
 pub use missing::{judge_no_impact, judge_no_slap_down, judge_overlap};
-pub use others::{behind_the_motion, judge_other, judge_rate_level, judge_rotation};
+pub use others::{judge_other, judge_rate_level, judge_rotation, sort_other_channels_last};
 pub use result::{
-    beside, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed, judge_touch,
+    compare_observed, is_restitution, judge_comparison, judge_motion, judge_observed, judge_pressed,
+    judge_touch,
 };
-pub use rigid::{SensorPlace, judge_rigid, places};
+pub use rigid::{SensorPlace, judge_rigid, transverse_places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};
-pub use silent::{judge_silent, judge_torn};
+pub use silent::{judge_at_stop, judge_silent};
 pub use skew::judge_skew;
 pub use taps::judge_taps;
 
 use crate::data::{Events, Finding, Severity, Verdict};
 
-/// Free fall before first contact that the offset may come from, s.
+/// Length of free fall before first contact that may determine the offset, s.
 const OFFSET_WINDOW_S: f64 = 0.25;
-/// Into the slap-down, s: its onset.
+/// Interval after the slap-down that its onset includes, s.
 const ONSET_S: f64 = 2e-3;
 
-/// A local warning far from the drop does not weigh on the result and becomes a note.
+/// Turns a local warning far from the drop into a note, since it does not affect the result.
 pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     let Some(contact_s) = events.first_contact_s() else { return };
     let from_s = contact_s - OFFSET_WINDOW_S;
@@ -70,8 +71,7 @@ pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     }
 }
 
-/// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a
-/// review.
+/// Sorts the findings, errors first, and returns the verdict: any error fails, any warning asks for a review.
 pub fn verdict(findings: &mut [Finding]) -> Verdict {
     findings.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
     match findings.first().map(|f| f.severity) {

@@ -1,6 +1,6 @@
-//! What the channels beside the accelerometers read to what speaks against each of them.
+//! Judges the channels beside the accelerometers.
 
-use super::silent::SILENT;
+use super::silent::SILENT_SPREADS;
 use super::weigh_by_distance;
 use crate::data::{
     AtRest, Channel, ChannelFinding, Effect, Events, Finding, MeasuredRotation, OtherSummary, RestFinding,
@@ -8,24 +8,25 @@ use crate::data::{
 };
 use std::cmp::Reverse;
 
-/// Noise that deserves a note, over the largest deviation from rest: ± 10 % of that.
+/// Noise that is a note, over the largest deviation from rest: ± 10 % of that.
 const NOTABLE_NOISE: f64 = 0.05;
 
-/// Rotation by the first impact below which a sensor is not judged by it, rad/s: a tenth of a slap-down's.
+/// Smallest rotation by the first impact that is used to judge a sensor, rad/s: a tenth of that of a
+/// slap-down.
 const LEAST_RAD_S: f64 = 0.3;
-/// A share of the rotation within this of a cause's is explained by it, a smaller one than the smallest
-/// cause's by none.
-const WITHIN: f64 = 0.2;
+/// A measured share of the rotation within this distance of the share that a cause makes is explained by it;
+/// a share below the smallest one by no signal.
+const CAUSE_SHARE: f64 = 0.2;
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-/// The findings on one channel, of which `issues` are those of reading all: notes, and warnings where it
-/// clips or lacks samples about the impacts.
+/// Lists the findings on one channel, with those of `issues` from reading it: notes, and warnings if it clips
+/// or lacks samples near the impacts.
 ///
-/// They change no number of the motion.
+/// These findings change no number of the motion.
 pub fn judge_other(
     channel: &Channel,
     issues: &[Finding],
-    told: &OtherSummary,
+    summary: &OtherSummary,
     events: &Events,
 ) -> Vec<Finding> {
     let is_own = |found: &&Finding| found.channel.as_ref() == Some(&channel.name);
@@ -34,51 +35,52 @@ pub fn judge_other(
     for finding in &mut findings {
         let is_loss = finding.effect == Effect::LostSamples;
         finding.severity = finding.severity.min(if is_loss { Severity::Warning } else { Severity::Note });
-        // What it takes is no part of the motion.
+        // This effect would concern the motion, in which the channel takes no part.
         finding.effect = if finding.effect == Effect::Motion { Effect::Nothing } else { finding.effect };
     }
-    findings.extend(clipped(channel, told));
-    findings.extend(events.first_contact.and_then(|_| faint(told)).map(|found| found.tag(&channel.name)));
+    findings.extend(judge_clipping(channel, summary));
+    findings.extend(events.first_contact.and_then(|_| judge_noise(summary)).map(|f| f.tag(&channel.name)));
     findings
 }
 
-fn clipped(channel: &Channel, told: &OtherSummary) -> Option<Finding> {
-    let (first, last) = (told.clipped.first()?, told.clipped.last()?);
-    let samples = told.clipped.iter().map(|span| span.to - span.from).sum();
+fn judge_clipping(channel: &Channel, summary: &OtherSummary) -> Option<Finding> {
+    let (first, last) = (summary.clipped.first()?, summary.clipped.last()?);
+    let samples = summary.clipped.iter().map(|span| span.to - span.from).sum();
     let limit = channel.samples.get(first.from);
-    let found = ChannelFinding::OtherClipped { limit, samples, unit: channel.unit.clone() };
-    Some(found.tag(&channel.name).span(channel.time_s(first.from), channel.time_s(last.to)))
+    let finding = ChannelFinding::OtherClipped { limit, samples, unit: channel.unit.clone() };
+    Some(finding.tag(&channel.name).span(channel.time_s(first.from), channel.time_s(last.to)))
 }
 
-/// Nothing but noise, or much of it.
-fn faint(told: &OtherSummary) -> Option<ChannelFinding> {
-    let unit = told.unit.clone();
-    let Some((smallest, largest)) = told.smallest.zip(told.largest) else {
+/// Reports a channel with nothing but noise, or with much of it.
+fn judge_noise(summary: &OtherSummary) -> Option<ChannelFinding> {
+    let unit = summary.unit.clone();
+    let Some((smallest, largest)) = summary.smallest.zip(summary.largest) else {
         return Some(ChannelFinding::OtherStill { farthest: None, unit });
     };
-    let (rest, noise) = told.rest.zip(told.noise)?;
+    let (rest, noise) = summary.rest.zip(summary.noise)?;
     let farthest = (largest.value - rest).max(rest - smallest.value);
-    if farthest <= SILENT * noise {
+    if farthest <= SILENT_SPREADS * noise {
         return Some(ChannelFinding::OtherStill { farthest: Some(farthest), unit });
     }
     let is_noisy = noise > NOTABLE_NOISE * farthest;
     is_noisy.then_some(ChannelFinding::OtherNoise { noise, farthest, unit })
 }
 
-/// Puts the findings on these channels behind the others of their severity: what concerns the numbers first.
-pub fn behind_the_motion(findings: &mut [Finding], others: &[OtherSummary]) {
+/// Sorts the findings on these channels after the others of their severity: findings on the numbers come
+/// first.
+pub fn sort_other_channels_last(findings: &mut [Finding], others: &[OtherSummary]) {
     let is_other = |found: &Finding| others.iter().any(|other| found.channel.as_ref() == Some(&other.name));
     findings.sort_by_key(|found| (Reverse(found.severity), is_other(found)));
 }
 
-/// What is wrong with a sensor by the share of the rotation that it has the first impact give; it takes no
-/// part in the motion then.
+/// Reports the fault of a sensor, from its share of the rotation by the first impact; it then takes no part
+/// in the motion.
 pub fn judge_rotation(read: &MeasuredRotation, gained_rad_s: f64) -> Option<ChannelFinding> {
     if gained_rad_s.abs() < LEAST_RAD_S {
         return None;
     }
     let share = read.gained.rad_s / gained_rad_s;
-    let is_near = |of: f64| (share.abs() / of - 1.0).abs() < WITHIN;
+    let is_near = |factor: f64| (share.abs() / factor - 1.0).abs() < CAUSE_SHARE;
     let cause = match () {
         () if is_near(DEGREES) || is_near(1.0 / DEGREES) => RotationCause::Unit,
         () if share.abs() < 1.0 / DEGREES => RotationCause::Nothing,
@@ -88,14 +90,15 @@ pub fn judge_rotation(read: &MeasuredRotation, gained_rad_s: f64) -> Option<Chan
     Some(ChannelFinding::OtherRotation { share, cause })
 }
 
-/// What an angular-rate sensor reads at rest, where it must read 0; `unit_rad_s` is that of its level.
+/// Reports the level of an angular-rate sensor at rest, which must be 0; `unit_rad_s` is the unit of its
+/// level.
 pub fn judge_rate_level(channel: &Channel, rest: AtRest, unit_rad_s: f64) -> Finding {
-    let found = match () {
+    let finding = match () {
         () if rest.least_step_m_s2 == 0.0 => RestFinding::OneValue,
         () if !rest.is_still => RestFinding::Turning,
         () => RestFinding::Rate { reads_deg_s: DEGREES * unit_rad_s * rest.level_m_s2 },
     };
-    found.tag(&channel.name)
+    finding.tag(&channel.name)
 }
 
 #[cfg(test)]
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
     use crate::data::{At, Extreme, IssueCode, Span, TimesFinding, example};
 
-    fn told(noise: f64, farthest: f64) -> OtherSummary {
+    fn summary(noise: f64, farthest: f64) -> OtherSummary {
         let extreme = |value| Some(Extreme { value, time_s: 0.0 });
         OtherSummary {
             unit: "µm/m".into(),
@@ -116,9 +119,9 @@ mod tests {
     }
 
     /// Codes and severities of what is found.
-    fn judged(issues: &[Finding], told: &OtherSummary) -> Vec<(IssueCode, Severity)> {
+    fn judged(issues: &[Finding], summary: &OtherSummary) -> Vec<(IssueCode, Severity)> {
         let events = Events { first_contact: Some(At::exact(1.0)), ..Events::default() };
-        judge_other(&example::other(vec![20.0; 8]), issues, told, &events)
+        judge_other(&example::other(vec![20.0; 8]), issues, summary, &events)
             .iter()
             .map(|found| (found.code, found.severity))
             .collect()
@@ -127,13 +130,13 @@ mod tests {
     #[test]
     fn still_noisy_and_sound_channels_are_told_apart() {
         let note = |code| [(code, Severity::Note)];
-        assert_eq!(judged(&[], &told(1.0, 8.0)), note(IssueCode::DeadChannel));
-        assert_eq!(judged(&[], &told(0.0, 0.0)), note(IssueCode::DeadChannel));
+        assert_eq!(judged(&[], &summary(1.0, 8.0)), note(IssueCode::DeadChannel));
+        assert_eq!(judged(&[], &summary(0.0, 0.0)), note(IssueCode::DeadChannel));
         assert_eq!(judged(&[], &OtherSummary::default()), note(IssueCode::DeadChannel));
-        assert_eq!(judged(&[], &told(1.0, 19.0)), note(IssueCode::Noise));
-        assert_eq!(judged(&[], &told(1.0, 21.0)), []);
+        assert_eq!(judged(&[], &summary(1.0, 19.0)), note(IssueCode::Noise));
+        assert_eq!(judged(&[], &summary(1.0, 21.0)), []);
         let without_impact = Events::default();
-        assert!(judge_other(&example::other(vec![]), &[], &told(0.0, 0.0), &without_impact).is_empty());
+        assert!(judge_other(&example::other(vec![]), &[], &summary(0.0, 0.0), &without_impact).is_empty());
     }
 
     #[test]
@@ -144,7 +147,7 @@ mod tests {
         };
         let clock = Finding::from(TimesFinding::FewBlocks { stamps_hz: 1.0, taken_hz: 2.0 });
         let issues = [gap(1.0), gap(0.1), clock.clone().tag("S1"), clock.tag("T1")];
-        let clipped = OtherSummary { clipped: vec![Span { from: 2, to: 5 }], ..told(1.0, 100.0) };
+        let clipped = OtherSummary { clipped: vec![Span { from: 2, to: 5 }], ..summary(1.0, 100.0) };
         assert_eq!(
             judged(&issues, &clipped),
             [
@@ -161,7 +164,7 @@ mod tests {
         let other = OtherSummary { name: "S1".into(), ..OtherSummary::default() };
         let on = |name: &str| ChannelFinding::Polarity.tag(name);
         let mut findings = [on(&other.name), on("A1")];
-        behind_the_motion(&mut findings, &[other]);
+        sort_other_channels_last(&mut findings, &[other]);
         assert_eq!(findings[0].channel.as_deref(), Some("A1"));
     }
 }

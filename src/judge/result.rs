@@ -1,7 +1,7 @@
-//! A reconstructed motion to what speaks against it.
+//! Judges the reconstructed motion.
 
 use super::missing::{LONGEST_PULSE_S, too_steep};
-use super::turned::turned_m_s2;
+use super::tilt::tilt_m_s2;
 use crate::data::{
     Axis, Cask, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate,
     Finding, FlightFit, GRAZE_SHARE, IssueCode, Motion, Observed, ObservedBeside, Plateau, Quantities,
@@ -9,48 +9,52 @@ use crate::data::{
 };
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// k this far outside 0 to 1 is an error whatever its interval.
-const FAR_OUTSIDE: f64 = 0.25;
-/// A sensor on the skin with its block sits no farther off the axis than this, in half sections.
+/// A k this far outside 0 to 1 is an error whatever its interval.
+const MOST_OUTSIDE: f64 = 0.25;
+/// Largest distance from the axis of a sensor on the skin with its block, in half sections.
 const ON_SKIN: f64 = 1.2;
-/// Zero shifts whose effect on the velocity over the contact is below this, m/s, 0.5 % of a slap-down, or
-/// below a share of the speed's half-width and of v0 are a note.
+/// Zero shifts are a note if their effect on the velocity over the contact is below this, m/s, 0.5 % of a
+/// slap-down, or below these shares of the speed's half-width and of v0.
 const SMALL_SHIFT_M_S: f64 = 0.1;
 const SMALL_SHIFT_SHARES: [f64; 2] = [0.5, 0.03];
-/// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well
-/// as of the sensor, m/s.
+/// This limit in a flight that does not show a period of each mode, m/s: there a drift is partly a mode and
+/// partly the sensor.
 const SMALL_BEND_M_S: f64 = 0.5;
-/// What bending makes an axial channel read is known to this share: the slope of a uniform beam's shape.
-const TURNED_SHARE: f64 = 0.2;
-/// Velocity gained late in a flight beyond this share of v0 is another contact.
+/// Standard uncertainty of an axial channel's reading from bending, as a share: the slope of a uniform beam's
+/// shape.
+const U_TILT_SHARE: f64 = 0.2;
+/// Velocity gained late in a flight, as a share of v0, from which it is another contact.
 const LATE_SHARE: f64 = 0.03;
-/// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
+/// Sliding below this counts as sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
-/// A contact that lasts through what was taken for a flight looks like less than so many periods of a mode
-/// that is slower than a cask bends. Of 16 simulated drops with such contacts 10 do.
+/// Largest number of periods of a mode slower than bending that indicates a contact through the apparent
+/// flight. Of 16 simulated drops with such contacts 10 are below it.
 const PRESSED_PERIODS: f64 = 1.3;
-/// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
-/// to which corner and target are even.
+/// Depth of L below the place it left, as a share of the cask's length, from which it is on the target again:
+/// 5 mm of 5 m, the flatness of corner and target.
 const TOUCHED_SHARE: f64 = 0.001;
-/// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
+/// Residual RMS of a flight fit above which the channel is not explained, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
-/// The same limit as a share of v0 for a flight too short to tell its modes apart: three modes may fit a
-/// flight that still holds a part of the contact.
+/// This limit as a share of v0 for a flight too short to separate its modes: three modes may fit a flight
+/// that still contains a part of the contact.
 const LARGE_RESIDUAL_SHORT: f64 = 0.015;
-/// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
+/// Deviation of the velocity from its flight before R strikes from which it is another contact, m/s: 1 % of a
+/// slap-down.
 const LARGE_MISMATCH_M_S: f64 = 0.2;
-/// Chance passes an E_n of 1 in one comparison of twenty, and this in one of 400.
+/// E_n that chance exceeds in one comparison of 400; it exceeds 1 in one of twenty.
 const CHANCE_E_N: f64 = 1.5;
-/// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
+/// Standard uncertainty of a velocity step, as a share of v0, above which it says little: 4 ± 2.7 m/s of 13.3
+/// m/s.
 const LARGE_U_SHARE: f64 = 0.1;
-/// A bend of one channel's plateau below this share of v0 changes the speed by less than its interval.
+/// Bend of one channel's plateau, as a share of v0, below which it changes the speed by less than its
+/// interval.
 const LARGE_BEND: f64 = 0.01;
-/// A swing that a flight shows for fewer periods must be larger by as much: a fit bends around a little of
-/// anything there. Of 118 simulated sound drops of elastic bodies two had 0.7 and 0.9 periods of a mode of
-/// 1.1 and 1.5 % of v0; an amplifier that recovers left 0.6 periods of 1.8 %, with k 2.4 half-widths off.
+/// Number of periods below which a swing must be larger in proportion: a fit adapts to any small part of a
+/// period. Of 118 simulated sound drops of elastic bodies two had 0.7 and 0.9 periods of a mode of 1.1 and
+/// 1.5 % of v0; an amplifier that recovers left 0.6 periods of 1.8 %, with k 2.4 half-widths off.
 const SWING_PERIODS: f64 = 1.0;
 
-/// Checks the motion against what a dropped cask can do.
+/// Compares the motion with what a dropped cask can do.
 pub fn judge_motion(
     cask_file: &CaskFile,
     signals: &[Signal],
@@ -58,29 +62,29 @@ pub fn judge_motion(
     motion: &Motion,
     quantities: &Quantities,
 ) -> Vec<Finding> {
-    let mut findings = signs(signals, flight);
+    let mut findings = judge_signs(signals, flight);
     let Tolerances { position_m, cog_m, .. } = cask_file.tolerances;
     // Half of a 95 % half-width is a standard uncertainty.
     let u_place_m = position_m.hypot(cog_m) / 2.0;
     let rotation_rad2_s2 = motion.separation.angular_velocity_rad_s.powi(2);
     let pull = Pull { rotation_rad2_s2, u_place_m };
-    findings.extend(of_flight(signals, flight, quantities, &cask_file.cask, &pull));
+    findings.extend(judge_flight(signals, flight, quantities, &cask_file.cask, &pull));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let lasts_s =
         motion.curve.time_s.last().zip(motion.curve.time_s.first()).map_or(0.0, |(to, from)| to - from);
     if !is_restitution(k) {
-        let is_as_one = quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S;
-        let as_one = DropFinding::StrikeTogether { apart_s: lasts_s };
-        add(if is_as_one { as_one } else { DropFinding::Restitution { k } });
+        let is_together = quantities.speed.is_some() && k.value < 0.0 && lasts_s < LONGEST_PULSE_S;
+        let together = DropFinding::StrikeTogether { apart_s: lasts_s };
+        add(if is_together { together } else { DropFinding::Restitution { k } });
     } else if k.value < 0.0 {
         add(DropFinding::RestitutionDoubted { k, strained: None });
     }
     if quantities.angular_velocity.value <= 0.0 {
         match too_steep(&cask_file.cask, &cask_file.drop) {
-            // Said with the slap-down that was not found.
+            // This is reported with the slap-down that was not found.
             Some(_) if quantities.speed.is_none() => {}
-            found => add(found.unwrap_or(DropFinding::TurnsTheWrongWay)),
+            steep => add(steep.unwrap_or(DropFinding::TurnsTheWrongWay)),
         }
     }
     let slip = quantities.slip_velocity;
@@ -98,29 +102,29 @@ pub fn judge_motion(
     findings
 }
 
-/// True if a k lies within 0 to 1 by its interval, and says something.
+/// True if the interval of k overlaps 0 to 1 and is useful.
 pub fn is_restitution(k: Estimate) -> bool {
     let is_beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
-    !is_beyond && (-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) && k.u95 <= 1.0
+    !is_beyond && (-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&k.value) && k.u95 <= 1.0
 }
 
-/// A first end that is still pressed on the target as the second one strikes: what was taken for a flight
-/// bends more slowly than a cask, and what it says of the motion is contradicted.
-pub fn judge_pressed(flight: &FlightFit, of_motion: &[Finding]) -> Option<Finding> {
+/// Reports a first end that is still pressed on the target when the second one strikes: the apparent flight
+/// then bends more slowly than a cask, and its motion is contradicted.
+pub fn judge_pressed(flight: &FlightFit, motion_findings: &[Finding]) -> Option<Finding> {
     let periods = flight.periods();
     let frequency_hz = periods / (flight.to_s - flight.from_s);
     let is_contradicted =
-        of_motion.iter().any(|f| f.severity > Severity::Note && f.code != IssueCode::Swings);
-    let found = DropFinding::Pressed { frequency_hz, periods };
+        motion_findings.iter().any(|f| f.severity > Severity::Note && f.code != IssueCode::Swings);
+    let finding = DropFinding::Pressed { frequency_hz, periods };
     (is_contradicted && frequency_hz < SLOWEST_BENDING_HZ && periods < PRESSED_PERIODS)
-        .then(|| Finding::from(found).span(flight.from_s, flight.to_s))
+        .then(|| Finding::from(finding).span(flight.from_s, flight.to_s))
 }
 
-/// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the
+/// Reports touches of L that the flight omits: `effect_m_s` is their effect on the slap-down speed in the
 /// prediction with the measured k.
 ///
-/// A touch so slow that it shows in no channel still carries the cask: L rests on the target. One shortly
-/// before R strikes drowns in the ringing: there the height of L by the motion has to exclude it.
+/// A touch too slow for any channel still carries the cask: L rests on the target. One shortly before R
+/// strikes is hidden by the ringing: there the height of L in the motion has to exclude it.
 pub fn judge_touch(
     motion: &Motion,
     quantities: &Quantities,
@@ -131,7 +135,8 @@ pub fn judge_touch(
     let depth_m = -motion.lowest_first_end_m;
     let down_m_s = -motion.curve.first_end_vertical_m_s.last().copied().unwrap_or(0.0);
     let by_landing_m_s = share_of_landing(motion, cask) * (1.0 + quantities.k.value) * down_m_s.max(0.0);
-    // R is at the target then: beside it L is as high as the angle tells, whatever is open of the rebound.
+    // R is then at the target, and the height of L relative to it follows from the angle, whatever the
+    // uncertainty of the rebound.
     let above_m = motion.last_first_end_m - motion.second_end_height_m.unwrap_or(0.0);
     let u_m = quantities.angle.map_or(0.0, |angle| angle.u95.to_radians()) * cask.length_m / 2.0;
     if depth_m > TOUCHED_SHARE * cask.length_m && effect_m_s > interval_m_s {
@@ -145,7 +150,7 @@ pub fn judge_touch(
     }
 }
 
-/// What the vertical velocity of R's corner changes by where that of L's does as R strikes   (2), (5)
+/// Change of the vertical velocity of R's corner per change of that of L's when R strikes   (2), (5)
 fn share_of_landing(motion: &Motion, cask: &Cask) -> f64 {
     let angle = motion.slap_down.map_or(0.0, |at| at.angle_rad).sin_cos();
     let [a_m, behind_m] =
@@ -154,15 +159,15 @@ fn share_of_landing(motion: &Motion, cask: &Cask) -> f64 {
     ((square_m2 + a_m * behind_m) / (square_m2 + a_m * a_m)).abs()
 }
 
-/// What rebound and angle may be off lets L sink by as much more, m: a 95 % half-width.
+/// Additional depth of L that the uncertainty of rebound and angle allows, m: a 95 % half-width.
 fn open_height_m(quantities: &Quantities, cog_m: f64) -> f64 {
-    let flown_s = quantities.flight_time.map_or(0.0, |t| t.value);
+    let flight_s = quantities.flight_time.map_or(0.0, |t| t.value);
     let turned_rad = quantities.angle.map_or(0.0, |a| a.u95.to_radians());
-    quantities.rebound_velocity.u95 * flown_s + turned_rad * cog_m
+    quantities.rebound_velocity.u95 * flight_s + turned_rad * cog_m
 }
 
-/// Each end's own impact pushes it away from the target.
-fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
+/// Reports a first end whose impact seems to pull it towards the target.
+fn judge_signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
     signals
         .iter()
         .filter(|s| s.end == End::First && s.axis == Axis::Transverse)
@@ -171,7 +176,7 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .collect()
 }
 
-/// What the rotation of the flight pulls at a sensor.
+/// Centrifugal pull of the flight's rotation at a sensor.
 struct Pull {
     /// Square of the angular velocity.
     rotation_rad2_s2: f64,
@@ -180,8 +185,8 @@ struct Pull {
 }
 
 impl Pull {
-    /// The stated offset of a transverse channel, and the one that a shift of its level would show: −ω² η,
-    /// (14); `None` beyond the cask.
+    /// Returns the stated offset of a transverse channel, and the one that a shift of its level would show:
+    /// −ω² η, (14); `None` if that lies off the cask.
     fn offsets_m(&self, signal: &Signal, shift_m_s2: f64, section_m: f64) -> Option<[f64; 2]> {
         let explains_m = signal.offset_m - shift_m_s2 / self.rotation_rad2_s2;
         let is_on_cask = signal.axis == Axis::Transverse && explains_m.abs() < ON_SKIN * section_m / 2.0;
@@ -189,7 +194,7 @@ impl Pull {
     }
 }
 
-fn of_flight(
+fn judge_flight(
     signals: &[Signal],
     flight: &FlightFit,
     quantities: &Quantities,
@@ -197,17 +202,17 @@ fn of_flight(
     pull: &Pull,
 ) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
-    let mut findings = bends(flight, signals, v0_m_s);
-    findings.extend(swings(flight, signals, v0_m_s, cask));
+    let mut findings = judge_bends(flight, signals, v0_m_s);
+    findings.extend(judge_swings(flight, signals, v0_m_s, cask));
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
         if let Some(signal) = signals.iter().find(|s| s.name == plateau.channel) {
-            let turned_m_s2 = turned_m_s2(signal, signals, flight, cask);
+            let tilt_m_s2 = tilt_m_s2(signal, signals, flight, cask);
             let offsets_m = pull.offsets_m(signal, plateau.zero_shift_m_s2, cask.height_m);
             let u_pulled_m_s2 = pull.rotation_rad2_s2 * pull.u_place_m;
-            let shifted = shifted(flight, plateau, [turned_m_s2, u_pulled_m_s2], quantities, offsets_m);
-            findings.extend(shifted);
+            let shift = judge_shift(flight, plateau, [tilt_m_s2, u_pulled_m_s2], quantities, offsets_m);
+            findings.extend(shift);
         }
         let late_m_s = LARGE_MISMATCH_M_S.min(LATE_SHARE * v0_m_s);
         let mismatch_m_s = plateau.late_mismatch_m_s.filter(|m| m.abs() > late_m_s);
@@ -216,42 +221,42 @@ fn of_flight(
         let short_m_s = if flight.can_rank_fits() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
         let &Plateau { slow_residual_m_s: residual_m_s, u_m_s, .. } = plateau;
         if residual_m_s > LARGE_RESIDUAL_M_S.min(short_m_s) || u_m_s > LARGE_U_SHARE * v0_m_s {
-            let found = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
-            findings.push(found.tag(&plateau.channel).span(flight.from_s, flight.to_s));
+            let finding = ChannelFinding::Unexplained { modes: flight.modes.len(), residual_m_s, u_m_s };
+            findings.push(finding.tag(&plateau.channel).span(flight.from_s, flight.to_s));
         }
     }
     findings
 }
 
-/// A zero shift that was taken off, beyond what bending makes and what the rotation pulls at an uncertain
-/// place, with what it does to the velocity over the contact.
-fn shifted(
+/// Reports a zero shift that was removed, beyond the effects of bending and of the rotation at an uncertain
+/// place, with its effect on the velocity over the contact.
+fn judge_shift(
     flight: &FlightFit,
     plateau: &Plateau,
-    [turned_m_s2, u_pulled_m_s2]: [f64; 2],
+    [tilt_m_s2, u_pulled_m_s2]: [f64; 2],
     quantities: &Quantities,
     offsets_m: Option<[f64; 2]>,
 ) -> Option<Finding> {
     let &Plateau { zero_shift_m_s2: shift_m_s2, u_zero_shift_m_s2: u_m_s2, .. } = plateau;
-    // A sensor on a stiff block turns by less than its place.
-    let by_bending_m_s2 = shift_m_s2.clamp(turned_m_s2.min(0.0), turned_m_s2.max(0.0));
+    // A sensor on a stiff block tilts less than its place.
+    let by_bending_m_s2 = shift_m_s2.clamp(tilt_m_s2.min(0.0), tilt_m_s2.max(0.0));
     let beyond_m_s2 = (shift_m_s2 - by_bending_m_s2).abs();
     let effect_m_s = beyond_m_s2 * quantities.duration.value;
     let least_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
-    let [of_speed, of_v0] = SMALL_SHIFT_SHARES;
-    let most_m_s = of_v0 * quantities.impact_velocity.value;
-    let held_m_s = quantities.speed.map_or(0.0, |speed| (of_speed * speed.u95).min(most_m_s));
+    let [speed_share, v0_share] = SMALL_SHIFT_SHARES;
+    let most_m_s = v0_share * quantities.impact_velocity.value;
+    let held_m_s = quantities.speed.map_or(0.0, |speed| (speed_share * speed.u95).min(most_m_s));
     let small_m_s = held_m_s.max(least_m_s);
     let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
-    let found = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
-    let u_all_m_s2 = u_m_s2.hypot(TURNED_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
+    let finding = ChannelFinding::ZeroShift { shift_m_s2, u_m_s2, effect_m_s, offsets_m, severity };
+    let u_all_m_s2 = u_m_s2.hypot(U_TILT_SHARE * by_bending_m_s2).hypot(u_pulled_m_s2);
     (flight.drift && beyond_m_s2 > 3.0 * u_all_m_s2)
-        .then(|| found.tag(&plateau.channel).span(flight.from_s, flight.to_s))
+        .then(|| finding.tag(&plateau.channel).span(flight.from_s, flight.to_s))
 }
 
-/// Modes that are none, each on the channel that shows it most.
-fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
-    let of_mode = |i: usize| {
+/// Reports modes that are fit artefacts, each on the channel that shows it most.
+fn judge_bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
+    let judge_mode = |i: usize| {
         let size_m_s = |p: &Plateau| p.ringing_m_s.get(i).map_or(0.0, |(a, b)| a.hypot(*b));
         let on = flight.plateaus.iter().max_by(|a, b| size_m_s(a).total_cmp(&size_m_s(b)))?;
         let found =
@@ -259,16 +264,16 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
         (size_m_s(on) > LARGE_BEND * v0_m_s && flight.is_fit_artefact(i, signals))
             .then(|| found.tag(&on.channel).span(flight.from_s, flight.to_s))
     };
-    (0..flight.modes.len()).filter_map(of_mode).collect()
+    (0..flight.modes.len()).filter_map(judge_mode).collect()
 }
 
-/// The slowest mode where a cask that bends has none, and both ends go along.
-fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> Option<Finding> {
+/// Reports the slowest mode if it is slower than bending and moves both ends together.
+fn judge_swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> Option<Finding> {
     let size_m_s = |mode| flight.size_m_s(mode, signals);
     let swinging = flight.rigid_modes(signals, cask);
     let mut modes = (0..swinging).filter(|mode| !flight.is_fit_artefact(*mode, signals));
     let length_s = flight.to_s - flight.from_s;
-    // What integrated noise walks by looks like an oscillation as slow as the flight is long.
+    // Integrated noise resembles an oscillation as slow as the flight is long.
     let walk_m_s = |s: &Signal| integral_uncertainty_by(&s.noise_spectrum, s.free_fall_s, length_s);
     let walks_m_s = signals.iter().map(walk_m_s).fold(0.0, f64::max);
     let is_large = |mode: &usize| {
@@ -281,10 +286,10 @@ fn swings(flight: &FlightFit, signals: &[Signal], v0_m_s: f64, cask: &Cask) -> O
     Some(Finding::from(found).span(flight.from_s, flight.to_s))
 }
 
-/// What was observed otherwise beside the same of a result.
-pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
+/// Compares an independent observation with the result.
+pub fn compare_observed(seen: &Observed, result: &DropResult) -> ObservedBeside {
     let (first, second) = (&result.first_impact, &result.slap_down);
-    let (of, unit) = match seen.name {
+    let (quantity, unit) = match seen.name {
         "slap_down_speed_m_s" => (second.speed, "m/s"),
         "local_speed_m_s" => (second.local_speed, "m/s"),
         "angular_velocity_rad_s" => (first.angular_velocity, "rad/s"),
@@ -297,13 +302,13 @@ pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
         name: seen.name,
         observed: Estimate::new(seen.value, seen.u95, unit),
         by: seen.by.clone(),
-        result: of,
-        e_n: of.map(|of| (of.value - seen.value) / of.u95.hypot(seen.u95)),
+        result: quantity,
+        e_n: quantity.map(|q| (q.value - seen.value) / q.u95.hypot(seen.u95)),
     }
 }
 
-/// What was observed otherwise and lies apart from the result, which chance alone makes a warning once in
-/// three hundred.
+/// Reports independent observations that differ from the result; chance alone makes a warning once in three
+/// hundred.
 pub fn judge_observed(observed: &[ObservedBeside]) -> impl Iterator<Item = Finding> {
     let apart = |beside: &ObservedBeside| {
         let e_n = beside.e_n.map(f64::abs).filter(|e_n| *e_n > 1.0)?;
@@ -313,7 +318,7 @@ pub fn judge_observed(observed: &[ObservedBeside]) -> impl Iterator<Item = Findi
     observed.iter().filter_map(apart)
 }
 
-/// What a comparison that does not agree amounts to.
+/// Reports a comparison that does not agree.
 pub fn judge_comparison(comparison: &Comparison) -> Option<Finding> {
     let &Comparison { predicted, predicted_u95, measured, measured_u95, .. } = comparison;
     let e_n = (measured - predicted).abs() / measured_u95.hypot(predicted_u95);
@@ -339,7 +344,7 @@ mod tests {
     fn what_moves_more_slowly_than_a_cask_bends_swings() {
         let found = |frequency_hz, v0_m_s| {
             let (flight, signals) = flight(frequency_hz);
-            swings(&flight, &signals, v0_m_s, &example::cask(1.0, 5.0, 0.0)).map(|f| f.code)
+            judge_swings(&flight, &signals, v0_m_s, &example::cask(1.0, 5.0, 0.0)).map(|f| f.code)
         };
         assert_eq!(found(15.0, 13.3), Some(IssueCode::Swings));
         assert_eq!(found(30.0, 13.3), None);

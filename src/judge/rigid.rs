@@ -1,22 +1,20 @@
-//! The velocity steps of three and more transverse channels to whether one rigid body can have them.
+//! Decides if one rigid body can have the velocity steps of three and more transverse channels.
 
 use crate::data::{Axis, ChannelFinding, Drop, Events, Finding, FlightFit, Signal, Tolerances};
 
-/// A velocity step this many standard uncertainties off the line through the other channels' steps speaks
-/// against one rigid body: of three or four channels chance puts the farthest one nearer.
-const SURE: f64 = 4.0;
-/// The step must be this far off too, m/s: 0.5 % of a slap-down, which a mode that was not fitted leaves of a
-/// step.
+/// Smallest deviation of a step from the line through the others, in standard uncertainties, that contradicts
+/// a rigid body: chance keeps even the farthest of three or four channels nearer.
+const LEAST_DEVIATION_U: f64 = 4.0;
+/// Smallest such deviation, m/s: 0.5 % of a slap-down, the effect of a mode that was not fitted.
 const LEAST_M_S: f64 = 0.1;
 
-/// Mean of Ω² in a contact over Ω² of the flight, where the force is a half sine, and its standard
-/// uncertainty.
-const TURNING_SHARE: f64 = 0.375;
-const U_TURNING_SHARE: f64 = 0.1;
+/// Mean of Ω² in a contact over Ω² of the flight for a half sine of force, and its standard uncertainty.
+const ROTATION_SHARE: f64 = 0.375;
+const U_ROTATION_SHARE: f64 = 0.1;
 /// Slope of a free beam's first bending shape at its end, times the length, over the deflection there.
 const END_SLOPE: f64 = 4.65;
 
-/// Where a transverse channel sits.
+/// Place of a transverse channel.
 pub struct SensorPlace<'a> {
     /// The channel's name.
     pub name: &'a str,
@@ -26,8 +24,8 @@ pub struct SensorPlace<'a> {
     pub offset_m: f64,
 }
 
-/// The places of the transverse signals.
-pub fn places(signals: &[Signal]) -> impl Iterator<Item = SensorPlace<'_>> {
+/// Lists the places of the transverse signals.
+pub fn transverse_places(signals: &[Signal]) -> impl Iterator<Item = SensorPlace<'_>> {
     signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| SensorPlace {
         name: &s.name,
         position_m: s.position_m,
@@ -43,10 +41,11 @@ struct Reading<'a> {
     u_m_s: f64,
 }
 
-/// Holds the velocity steps against the line over positions that a rigid body gives   (16)
+/// Compares the velocity steps with the line over positions that a rigid body gives   (16)
 ///
-/// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
-/// named. A channel off the axis also reads −Ω² η from first contact on, with Ω of its section   (14)
+/// Each channel is compared with the line through the others; the one with the largest deviation, in its
+/// uncertainties, is named. A channel off the axis also reads −Ω² η from first contact on, with Ω of its
+/// section   (14)
 pub fn judge_rigid<'a>(
     transverse: impl Iterator<Item = SensorPlace<'a>>,
     flight: &FlightFit,
@@ -57,27 +56,27 @@ pub fn judge_rigid<'a>(
     let places: Vec<SensorPlace> = transverse.collect();
     let left_s = events.separation_s().unwrap_or(flight.from_s);
     let contact_s = (left_s - events.first_contact_s()?).max(0.0);
-    let flown_s = (flight.from_s - left_s).max(0.0);
+    let flight_s = (flight.from_s - left_s).max(0.0);
     let bending_m2_s2: f64 =
         flight.modes.iter().map(|mode| (END_SLOPE * mode.amplitude_m_s).powi(2) / 2.0).sum();
-    // The axial velocity changes by about this much: where L sticks, its corner is thrown straight up.
+    // The axial velocity changes by about this much: if L sticks, its corner rebounds vertically.
     let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
     let axial_m_s = first_m_s * drop.angle_rad.tan();
-    let turning_rad_s = turning_rad_s(&places, flight);
-    // Bending grows in the contact as the rotation does.
-    let bending_rad2_s2 = TURNING_SHARE * bending_m2_s2 / span_m(&places).max(f64::MIN_POSITIVE).powi(2);
+    let rotation_rad_s = rotation_rad_s(&places, flight);
+    // Bending grows in the contact like the rotation.
+    let bending_rad2_s2 = ROTATION_SHARE * bending_m2_s2 / span_m(&places).max(f64::MIN_POSITIVE).powi(2);
     let steps: Vec<Reading> = places
         .iter()
         .filter_map(|&SensorPlace { name, position_m, offset_m }| {
             let plateau = flight.plateau(name)?;
-            let pulled_m_s2 = offset_m * turning_rad_s.powi(2);
-            let step_m_s = plateau.velocity_step_m_s + pulled_m_s2 * (TURNING_SHARE * contact_s + flown_s);
-            let u_bent_m_s = offset_m * bending_rad2_s2 * (contact_s + flown_s);
-            let u_offset_m_s = (U_TURNING_SHARE * pulled_m_s2 * contact_s).hypot(u_bent_m_s);
+            let pulled_m_s2 = offset_m * rotation_rad_s.powi(2);
+            let step_m_s = plateau.velocity_step_m_s + pulled_m_s2 * (ROTATION_SHARE * contact_s + flight_s);
+            let u_bent_m_s = offset_m * bending_rad2_s2 * (contact_s + flight_s);
+            let u_offset_m_s = (U_ROTATION_SHARE * pulled_m_s2 * contact_s).hypot(u_bent_m_s);
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s =
                 (tolerances.calibration * step_m_s).hypot(tolerances.cross_axis * axial_m_s) / 2.0;
-            let u_place_m_s = tolerances.position_m / 2.0 * turning_rad_s;
+            let u_place_m_s = tolerances.position_m / 2.0 * rotation_rad_s;
             let u_m_s = plateau.u_m_s.hypot(u_scale_m_s).hypot(u_place_m_s).hypot(u_offset_m_s);
             Some(Reading { name, position_m, step_m_s, u_m_s })
         })
@@ -88,18 +87,18 @@ pub fn judge_rigid<'a>(
         .filter_map(|(i, step)| {
             let others: Vec<&Reading> =
                 steps.iter().enumerate().filter(|(j, _)| *j != i).map(|s| s.1).collect();
-            let (expected_m_s, u_m_s) = line(&others, step.position_m)?;
+            let (expected_m_s, u_m_s) = fit_line(&others, step.position_m)?;
             Some((step, step.step_m_s - expected_m_s, u_m_s.hypot(step.u_m_s)))
         })
         .max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
-    let found = ChannelFinding::OffLine { off_m_s, u_m_s };
-    (off_m_s.abs() > SURE * u_m_s && off_m_s.abs() > LEAST_M_S)
-        .then(|| found.tag(worst.name).span(flight.from_s, flight.to_s))
+    let finding = ChannelFinding::OffLine { off_m_s, u_m_s };
+    (off_m_s.abs() > LEAST_DEVIATION_U * u_m_s && off_m_s.abs() > LEAST_M_S)
+        .then(|| finding.tag(worst.name).span(flight.from_s, flight.to_s))
 }
 
-/// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10
-/// mm off its stated place reads 0.06 m/s more or less.
-fn turning_rad_s(places: &[SensorPlace], flight: &FlightFit) -> f64 {
+/// Change of the step along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10 mm off its
+/// stated place reads 0.06 m/s more or less.
+fn rotation_rad_s(places: &[SensorPlace], flight: &FlightFit) -> f64 {
     let step =
         |place: &SensorPlace| flight.plateau(place.name).map(|p| (place.position_m, p.velocity_step_m_s));
     let mut steps: Vec<(f64, f64)> = places.iter().filter_map(step).collect();
@@ -108,15 +107,15 @@ fn turning_rad_s(places: &[SensorPlace], flight: &FlightFit) -> f64 {
     ends.map_or(0.0, |(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs())
 }
 
-/// How far apart the outermost channels sit along the cask, m.
+/// Distance of the outermost channels along the cask, m.
 fn span_m(places: &[SensorPlace]) -> f64 {
     let at_m = |place: &SensorPlace| place.position_m;
     places.iter().map(at_m).fold(0.0, f64::max) - places.iter().map(at_m).fold(f64::INFINITY, f64::min)
 }
 
-/// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a
-/// millimetre apart.
-fn line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
+/// Value of the least-squares line through steps at a position, and its standard uncertainty; `None` without
+/// two places a millimetre apart.
+fn fit_line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
     let weight = |s: &Reading| 1.0 / (s.u_m_s * s.u_m_s).max(1e-12);
     let total: f64 = steps.iter().map(|s| weight(s)).sum();
     let middle_m = steps.iter().map(|s| weight(s) * s.position_m).sum::<f64>() / total;
@@ -162,7 +161,8 @@ mod tests {
         let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
         let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, angle_rad) };
         let events = example::events(0.0, 0.1);
-        judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events).and_then(|i| i.channel)
+        judge_rigid(transverse_places(&signals), &flight, &Tolerances::default(), &drop, &events)
+            .and_then(|i| i.channel)
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
             let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::from_height(9.0, 0.26) };
             let left = Some(At::exact(0.024));
             let events = Events { separation: left, ..example::events(0.0, 0.1) };
-            judge_rigid(places(&signals), &flight, &Tolerances::default(), &drop, &events)
+            judge_rigid(transverse_places(&signals), &flight, &Tolerances::default(), &drop, &events)
         };
         // ∫Ω² of an Ω that rises to 6 rad/s in 24 of 30 ms is 36 (3/8 · 0.024 + 0.006) = 0.54 rad²/s.
         assert!(named(0.4 * 0.54).is_none(), "{:?}", named(0.4 * 0.54));

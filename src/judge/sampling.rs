@@ -1,4 +1,4 @@
-//! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
+//! Judges if sample rate and anti-alias filter suited the first pulse.
 
 use crate::data::{ChannelFinding, End, Events, Finding, Signal, transverse};
 use crate::numerics::spectrum::magnitude;
@@ -7,32 +7,34 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Fewest samples over a first pulse for its area to be right within 1 %: the trapezoid over a half sine of N
-/// is off by π²/12 N².
+/// Fewest samples over a first pulse for an error of its area below 1 %: that of the trapezoid over a half
+/// sine of N is π²/12 N².
 const LEAST_SAMPLES: f64 = 10.0;
-/// Shares of its peak at which the pulse's width is taken, and of a half sine's length that lies above each:
-/// 1 − 2 asin(share)/π. A force plateau is as wide at half its height as at its foot, a pulse that goes over
-/// into ringing is not: the less counts.
+/// Shares of its peak at which a pulse's width is determined, each with the share of a half sine's length
+/// that lies above it: 1 − 2 asin(share)/π. A force plateau is as wide at half its height as at its base, a
+/// pulse that continues as ringing is not: the smaller length counts.
 const FLANKS: [(f64, f64); 2] = [(0.15, 0.904), (0.5, 2.0 / 3.0)];
-/// The pulse is the first run past the flank that reaches this share of the stretch's peak: ringing after it
+/// The pulse is the first run above the flank that reaches this share of the interval's peak: later ringing
 /// may be higher.
-const REACHED: f64 = 0.5;
-/// The flank stands this many standard deviations of the noise above zero.
+const REACHED_SHARE: f64 = 0.5;
+/// The flank lies this many standard deviations of the noise above zero.
 const NOISE_FACTOR: f64 = 6.0;
-/// Frequencies from this share of the sample rate up to half of it hold nothing if a filter stood before the
-/// sampling.
-const BAND: f64 = 0.4;
-/// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of
-/// 25 samples and more that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
+/// Start of the band, as a share of the sample rate, in which an anti-alias filter leaves no content; it ends
+/// at half the rate.
+const BAND_SHARE: f64 = 0.4;
+/// Largest content of the band over the maximum of the spectrum: 0.05 aliases to 2.5 % of the velocity step.
+/// Drawn pulses of 25 samples and more that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin
+/// at 0.14.
 const MOST_CONTENT: f64 = 0.05;
-/// Content below this share there shows a filter: the trapezoid then misses less than that of a pulse's area.
+/// Content below this share shows a filter: the trapezoid then misses less than that share of a pulse's area.
 const LEAST_CONTENT: f64 = 0.01;
-/// Content of less than this many times the noise in the band is noise.
-const OVER_NOISE: f64 = 3.0;
-/// Longest contact whose pulse is sought, s.
+/// Content below this many times the noise in the band is noise.
+const NOISE_CONTENT: f64 = 3.0;
+/// Longest contact whose pulse is searched, s.
 const LONGEST_S: f64 = 0.05;
 
-/// Checks how each channel samples the first impact: enough samples, and nothing up to half the sample rate.
+/// Judges how each channel samples the first impact: enough samples, and no content up to half the sample
+/// rate.
 ///
 /// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
 pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Finding> {
@@ -40,34 +42,35 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
         return Vec::new();
     };
     let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
-    let Some((pulse_s, Sampled { length_s, share })) = pulse(struck, contact_s..to_s) else {
+    let Some((pulse_s, SampledPulse { length_s, share })) = find_pulse(struck, contact_s..to_s) else {
         return Vec::new();
     };
-    let contents: Vec<Option<BandContent>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
-    let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
-    let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
+    let contents: Vec<Option<BandContent>> = signals.par_iter().map(|s| band_content(s, pulse_s)).collect();
+    let struck_content = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
+    let largest = struck_content.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut findings = Vec::new();
     for (signal, content) in signals.iter().zip(contents) {
         let is_filtered = content.as_ref().is_some_and(|found| found.in_band < LEAST_CONTENT * largest);
         let low = low_rate(&signal.name, signal.sample_rate_hz, length_s, share).filter(|_| !is_filtered);
         findings.extend(low.map(|found| found.span(pulse_s.0, pulse_s.1)));
         if !disturbed.contains(&signal.name.as_str()) {
-            findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
+            findings.extend(content.and_then(|found| judge_aliasing(signal, pulse_s, &found, largest)));
         }
     }
     findings
 }
 
 /// A pulse as it was sampled.
-struct Sampled {
-    /// Of a half sine as wide, s.
+struct SampledPulse {
+    /// Length of a half sine of this width, s.
     length_s: f64,
-    /// What it has of the contact's change of velocity.
+    /// Share of the contact's change of velocity.
     share: f64,
 }
 
-/// Where the force of the first pulse passes the lower flank and falls below it, s, and how it was sampled.
-fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), Sampled)> {
+/// Finds where the force of the first pulse exceeds the lower flank and falls below it, s, and how it was
+/// sampled.
+fn find_pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), SampledPulse)> {
     let from = signal.index_from(contact_s.start).saturating_sub(1);
     let force = signal.force_m_s2.get(from..)?;
     let within = force.get(..signal.index_from(contact_s.end).saturating_sub(from) + 2).unwrap_or(force);
@@ -79,11 +82,11 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), Sampled)
         None => (force, within, noise),
     };
     let peak = largest(within);
-    let reached = within.iter().position(|f| *f > REACHED * peak)?;
+    let reached = within.iter().position(|f| *f > REACHED_SHARE * peak)?;
     let [foot, shoulder] = FLANKS.map(|(share, _)| (share * peak).max(noise));
     let low = (0..reached).rev().find(|&i| force[i] <= foot)?;
     let high = (reached..force.len()).find(|&i| force[i] <= foot)?;
-    // Dips of ringing on the pulse do not end its upper half.
+    // Dips from ringing do not end the upper half of the pulse.
     let high_half = (reached..high).rev().find(|&i| force[i] > shoulder)? + 1;
     let rise = |i: usize, level: f64| as_f64(i) + (level - force[i]) / (force[i + 1] - force[i]);
     let fall = |i: usize, level: f64| as_f64(i) - (level - force[i]) / (force[i - 1] - force[i]);
@@ -92,29 +95,29 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), Sampled)
     let samples = ((whole.1 - whole.0) / FLANKS[0].1).min(half / FLANKS[1].1);
     let at_s = |position: f64| signal.time_s(from) + position / signal.sample_rate_hz;
     let share = (reduce::sum(&force[low..high]) / reduce::sum(within)).clamp(0.0, 1.0);
-    let sampled = Sampled { length_s: samples / signal.sample_rate_hz, share };
+    let sampled = SampledPulse { length_s: samples / signal.sample_rate_hz, share };
     (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), sampled))
 }
 
-/// A sample rate that a pulse of this length asks for, Hz: twice the least, which leaves 0.2 % of its area.
+/// Sample rate for a pulse of this length, Hz: twice the least, which leaves an error of 0.2 % of its area.
 pub fn fit_rate_hz(length_s: f64) -> f64 {
     2.0 * LEAST_SAMPLES / length_s
 }
 
-/// From which frequency on a filter before the sampling leaves nothing, Hz.
+/// Frequency above which an anti-alias filter leaves no content, Hz.
 pub fn nothing_from_hz(sample_rate_hz: f64) -> f64 {
-    BAND * sample_rate_hz
+    BAND_SHARE * sample_rate_hz
 }
 
-/// Too few samples over a pulse of this length that makes a `share` of the velocity step.
+/// Reports too few samples over a pulse of this length that makes a `share` of the velocity step.
 pub(super) fn low_rate(name: &str, sample_rate_hz: f64, length_s: f64, share: f64) -> Option<Finding> {
     let samples = length_s * sample_rate_hz;
     (samples / share.sqrt() < LEAST_SAMPLES).then(|| {
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
         let off_percent = 100.0 * share * PI * PI / 12.0 / (samples * samples);
         let least_hz = fit_rate_hz(length_s);
-        let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
-        found.tag(name)
+        let finding = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
+        finding.tag(name)
     })
 }
 
@@ -124,12 +127,13 @@ struct BandContent {
     in_band: f64,
     /// Largest magnitude.
     largest: f64,
-    /// What the noise has in the band.
+    /// Noise in the band.
     noise: f64,
 }
 
-/// The stretch reaches a pulse's length beyond it on both sides, where it is led to zero as half a cosine.
-fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
+/// Analyses the interval that extends a pulse's length beyond it on both sides, tapered to zero by half a
+/// cosine.
+fn band_content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
     let margin_s = (pulse_s.1 - pulse_s.0).max(4.0 / signal.sample_rate_hz);
     let (from, to) = (signal.index_from(pulse_s.0 - margin_s), signal.index_from(pulse_s.1 + margin_s));
     let mut force = signal.force_m_s2.get(from..to)?.to_vec();
@@ -140,10 +144,10 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
         force[i] *= weight;
         force[count - 1 - i] *= weight;
     }
-    // Zeros behind a short stretch only make the lines of its spectrum denser.
+    // Zeros after a short interval only interpolate its spectrum.
     force.resize(count.max(512), 0.0);
     let (frequency_hz, size) = magnitude(force.into_iter(), signal.sample_rate_hz);
-    let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
+    let band = &size[frequency_hz.partition_point(|f| *f < BAND_SHARE * signal.sample_rate_hz)..];
     Some(BandContent {
         in_band: (band.iter().map(|m| m * m).sum::<f64>() / as_f64(band.len().max(1))).sqrt(),
         largest: size.iter().fold(0.0, |m, s| s.max(m)),
@@ -151,14 +155,14 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
     })
 }
 
-fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &BandContent, largest: f64) -> Option<Finding> {
+fn judge_aliasing(signal: &Signal, pulse_s: (f64, f64), band: &BandContent, most: f64) -> Option<Finding> {
     if signal.overlaps(&signal.gaps, pulse_s.0, pulse_s.1) {
         return None;
     }
-    let share = found.in_band / largest;
-    let said = ChannelFinding::Aliasing { share, sample_rate_hz: signal.sample_rate_hz };
-    (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise)
-        .then(|| said.tag(&signal.name).span(pulse_s.0, pulse_s.1))
+    let share = band.in_band / most;
+    let finding = ChannelFinding::Aliasing { share, sample_rate_hz: signal.sample_rate_hz };
+    (share > MOST_CONTENT && band.in_band > NOISE_CONTENT * band.noise)
+        .then(|| finding.tag(&signal.name).span(pulse_s.0, pulse_s.1))
 }
 
 #[cfg(test)]

@@ -1,34 +1,36 @@
-//! A flight carried back to the separation to what a channel lost between that and the flight's fit.
+//! Extrapolates a flight back to the separation, and finds what a channel lost between that and the flight's
+//! fit.
 
 use crate::data::{ChannelFinding, DropFinding, Finding, FlightFit};
 
-/// A velocity this far off its flight at the separation is not the flight's, m/s: 2 % of a slap-down. Of 118
-/// simulated sound drops one was off by 0.27 m/s; a cable that broke contact by 1.9.
+/// Deviation of a velocity from its flight at the separation that is not the flight's, m/s: 2 % of a
+/// slap-down. Of 118 simulated sound drops one was off by 0.27 m/s; a cable that broke contact by 1.9.
 const LARGE_MISMATCH_M_S: f64 = 0.4;
-/// … and by so many times what the fit leaves of the flight: a sound drop with a residual of 0.11 m/s was
-/// off by 3 of them.
+/// Such a deviation also exceeds the residual of the fit by this factor: a sound drop with a residual of 0.11
+/// m/s was off by 3 of them.
 const RESIDUALS: f64 = 5.0;
 
-/// The one channel that the flight's fit does not meet from the separation at `left_s` on: what several
-/// channels miss is a force or a mode that fades, and no cable.
+/// Reports the one channel whose velocity deviates from the flight's fit after the separation at `left_s`: a
+/// deviation of several channels is a force or a decaying mode, and no cable.
 pub fn judge_separation(flight: &FlightFit, left_s: f64) -> Option<Finding> {
     let mut missed = flight.plateaus.iter().filter_map(|plateau| {
         let most_m_s = LARGE_MISMATCH_M_S.max(RESIDUALS * plateau.residual_m_s);
         let mismatch_m_s = plateau.early_mismatch_m_s.filter(|off_m_s| off_m_s.abs() > most_m_s)?;
-        let found = ChannelFinding::EarlyMismatch { mismatch_m_s }.tag(&plateau.channel);
-        Some(found.span(left_s, flight.from_s))
+        let finding = ChannelFinding::EarlyMismatch { mismatch_m_s }.tag(&plateau.channel);
+        Some(finding.span(left_s, flight.from_s))
     });
     missed.next().filter(|_| missed.next().is_none())
 }
 
-/// Modes that the flight is too short to tell from one another, or from a contact whose force has
-/// `two_maxima`: of 4 drawn drops with less than a period behind those, one passed with ω 3 half-widths off.
+/// Reports modes that the flight is too short to separate from one another, or from a contact whose force has
+/// `two_maxima`: of 4 drawn drops with less than a period after those, one was accepted with ω 3 half-widths
+/// off.
 pub fn judge_unresolved(flight: &FlightFit, two_maxima: Option<Finding>) -> Option<Finding> {
     let flight_s = flight.to_s - flight.from_s;
     let is_open = two_maxima.is_some_and(|_| flight.first_bending_hz(flight_s) * flight_s < 1.0);
     let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
-    let found = DropFinding::Unresolved { flight_s, modes_hz };
-    (is_open || !flight.resolves_modes()).then(|| Finding::from(found).span(flight.from_s, flight.to_s))
+    let finding = DropFinding::Unresolved { flight_s, modes_hz };
+    (is_open || !flight.resolves_modes()).then(|| Finding::from(finding).span(flight.from_s, flight.to_s))
 }
 
 #[cfg(test)]

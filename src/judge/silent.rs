@@ -1,35 +1,35 @@
-//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum;
-//! and to those that stand at their stop from some time to their end.
+//! Finds channels that show nothing: unplugged, stuck, or with nothing but noise and hum; and channels that
+//! stand at their stop from some time to their end.
 
 use crate::data::{Axis, Channel, ChannelFinding, Finding, of_either};
 use crate::numerics::{as_count, reduce, robust};
 use rayon::prelude::*;
 
-/// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise
-/// stay within 5.5, a sine within 1.4.
-pub(super) const SILENT: f64 = 8.0;
-/// Another channel that leaves its spread by this shows that there was something to say.
-const LOUD: f64 = 50.0;
-/// A channel this far below the loudest says nothing either: even at the centre of percussion more arrives.
+/// A channel that never deviates by more than this many of its spreads shows nothing: 10⁷ samples of normal
+/// noise stay within 5.5, a sine within 1.4.
+pub(super) const SILENT_SPREADS: f64 = 8.0;
+/// Another channel that deviates by this many spreads proves that there was a signal.
+const LOUD_SPREADS: f64 = 50.0;
+/// Smallest deviation of a channel, as a share of the largest one: even at the centre of percussion more
+/// arrives.
 const SHARE: f64 = 1e-3;
-/// The spread is that of the quietest of this many stretches: ringing after the impact is no noise.
+/// Number of intervals of which the quietest determines the spread: ringing after the impact is no noise.
 const STRETCHES: usize = 20;
-/// Samples of a stretch that its spread is taken from: known to 5 %.
+/// Samples of an interval that determine its spread, to 5 %.
 const SAMPLED: usize = 500;
 
-/// A channel that stands at its stop to its end does so for at least so long, s, and for so many samples.
+/// Shortest time, s, and fewest samples for which a channel stands at its stop to its end.
 const AT_STOP_S: f64 = 0.01;
 const LEAST_AT_STOP: usize = 64;
-/// Those samples lie within so many spreads and this share of the level.
+/// Those samples lie within this many spreads, plus this share of the level.
 const WITHIN_SPREADS: f64 = 6.0;
 const WITHIN_SHARE: f64 = 1e-3;
-/// No reading exceeds the stop by more than this share: the level at rest after a drop is far below the
-/// impact.
+/// Largest share by which a reading exceeds the stop: the level at rest after a drop is far below the impact.
 const BEYOND_STOP: f64 = 0.1;
 
-/// Returns the first of the samples that stand at the channel's stop to its end, and the finding that says
-/// so; `all` are the recording's channels.
-pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
+/// Returns the first of the samples that stand at the channel's stop to its end, with the finding; `all` are
+/// the recording's channels.
+pub fn judge_at_stop(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
     let count = channel.samples.len();
     let last = count.checked_sub(LEAST_AT_STOP.max(as_count(AT_STOP_S * channel.sample_rate_hz)))?;
     let end: Vec<f64> = (count - LEAST_AT_STOP..count).map(|i| channel.samples.get(i)).collect();
@@ -38,15 +38,16 @@ pub fn judge_torn(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)
     let stands = |i: &usize| (channel.samples.get(*i) - level).abs() <= within;
     let from = (0..count).rev().take_while(stands).last().filter(|from| (1..=last).contains(from))?;
     let [low, high] = channel.extremes()?.map(|extreme| extreme.value);
-    let is_stop = high.max(-low) < (1.0 + BEYOND_STOP) * level.abs() && level.abs() > SILENT * within;
+    let is_stop = high.max(-low) < (1.0 + BEYOND_STOP) * level.abs() && level.abs() > SILENT_SPREADS * within;
     let is_like = |o: &&Channel| (o.end, o.axis) == (channel.end, channel.axis) && o.name != channel.name;
     let is_beside_others = all.iter().any(|other| is_like(&other));
-    let found = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
+    let finding = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
     let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
-    is_stop.then(|| (from, found.tag(&channel.name).span(from_s, to_s)))
+    is_stop.then(|| (from, finding.tag(&channel.name).span(from_s, to_s)))
 }
 
-/// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².
+/// Largest deviation of a channel from its median, m/s², and the spread of its samples where it is quietest,
+/// m/s².
 struct Excursion {
     farthest: f64,
     spread: f64,
@@ -54,25 +55,26 @@ struct Excursion {
 
 /// Names each channel that stays within its noise over the whole recording while another does not.
 pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
-    let of_channel = |c: &&Channel| of_either!(&c.samples, v => reach(v, c.scale_m_s2.abs()));
-    let reaches: Vec<Excursion> = channels.par_iter().map(of_channel).collect();
-    let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;
-    let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
-    let is_silent = |r: &Excursion| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
-    let all: Vec<_> = channels.iter().zip(&reaches).collect();
+    let excursion = |c: &&Channel| of_either!(&c.samples, v => measure_excursion(v, c.scale_m_s2.abs()));
+    let excursions: Vec<Excursion> = channels.par_iter().map(excursion).collect();
+    let is_loud = |r: &Excursion| r.farthest > LOUD_SPREADS * r.spread && r.farthest > 0.0;
+    let loudest = excursions.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
+    let is_silent = |r: &Excursion| r.farthest <= SILENT_SPREADS * r.spread || r.farthest < SHARE * loudest;
+    let all: Vec<_> = channels.iter().zip(&excursions).collect();
     let (silent, heard): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, r)| loudest > 0.0 && is_silent(r));
     let is_beside = |channel: &Channel| {
-        let is_as_it = |other: &Channel| other.end == channel.end && other.axis == channel.axis;
-        channel.axis == Axis::Axial || heard.iter().any(|(other, _)| is_as_it(other))
+        let is_like = |other: &Channel| other.end == channel.end && other.axis == channel.axis;
+        channel.axis == Axis::Axial || heard.iter().any(|(other, _)| is_like(other))
     };
-    let dead = |(channel, r): &(&&Channel, &Excursion)| {
-        let found = ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
-        found.tag(&channel.name)
+    let judge_dead = |(channel, r): &(&&Channel, &Excursion)| {
+        let finding =
+            ChannelFinding::Dead { farthest_m_s2: r.farthest, is_beside_others: is_beside(channel) };
+        finding.tag(&channel.name)
     };
-    silent.iter().map(dead).collect()
+    silent.iter().map(judge_dead).collect()
 }
 
-fn reach<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
+fn measure_excursion<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
     let value = |x: &T| -> f64 { (*x).into() };
     let stretches: Vec<Vec<f64>> = samples
         .chunks((samples.len() / STRETCHES).max(1))
@@ -84,7 +86,7 @@ fn reach<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
         .collect();
     let middle = robust::median(&mut stretches.concat());
     let spread = stretches.iter().map(|part| robust::spread(part)).fold(f64::INFINITY, f64::min);
-    // Two running extremes instead of distances: comparisons alone keep up with the reading.
+    // Running extremes replace distances: comparisons alone keep up with the reading.
     let (low, high) = reduce::extremes(samples, middle);
     if stretches.is_empty() {
         return Excursion { farthest: 0.0, spread: 0.0 };
@@ -149,7 +151,7 @@ mod tests {
                 if (6000..until).contains(&i) { level + example::noise(i, 5) } else { pulse(300.0)(i) }
             };
             let all = [channel("A1", pulse(300.0)), channel("A2", reads)];
-            judge_torn(&all[1], &all).map(|(from, _)| from)
+            judge_at_stop(&all[1], &all).map(|(from, _)| from)
         };
         assert_eq!(torn(-320.0, 20_000), Some(6000));
         // A plateau that ends, rest after a drop, and a level below what the channel reads.

@@ -1,15 +1,15 @@
-//! The delay of a channel's answer to the first impact to what speaks against its clock.
+//! Judges a channel's clock from the delay of its answer to the first impact.
 
 use crate::data::{ChannelFinding, Finding, Onset, Signal};
 
-/// A delay of up to this many samples beside its uncertainty counts as none: first contact itself lies
-/// between two samples.
+/// Delay in samples, beside its uncertainty, that counts as none: first contact itself lies between two
+/// samples.
 const SAMPLES: f64 = 1.5;
-/// A late answer that a wave could explain is worth a note beyond this, s.
+/// Delay explained by a wave from which it is a note, s.
 const NOTABLE_S: f64 = 3e-4;
 
-/// Holds a delay against what a body can do: answer at once, or as late as a bending wave, which takes up to
-/// `wave_s`, never before it is struck; but the struck end's own sensor may be late by `lag_s`.
+/// Compares a delay with what a body can do: it answers at once, or as late as a bending wave, which takes up
+/// to `wave_s`, but never before it is struck; only the struck end's own sensor may be late by `lag_s`.
 pub fn judge_skew(
     onset: &Onset,
     signals: &[Signal],
@@ -19,7 +19,7 @@ pub fn judge_skew(
     let &Onset { delay_s, u_s, .. } = onset;
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);
     let slack_s = 2.0 * u_s + SAMPLES / rate_hz;
-    let found = if delay_s < -slack_s - lag_s {
+    let finding = if delay_s < -slack_s - lag_s {
         ChannelFinding::AnswersEarly { delay_s, u_s, is_shifted }
     } else if delay_s > wave_s + slack_s {
         ChannelFinding::AnswersLate { delay_s, u_s, wave_s, is_shifted }
@@ -28,7 +28,7 @@ pub fn judge_skew(
     } else {
         return None;
     };
-    Some(found.tag(&onset.channel))
+    Some(finding.tag(&onset.channel))
 }
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
-//! The answers of the channels to one blow on each end to whether ends, signs and clocks are as stated.
+//! Judges ends, signs and clocks from the channels' answers to one blow on each end.
 
 use crate::data::{Channel, End, Finding, RestFinding, TapAnswer};
 
-/// Samples by which two channels must tell the ends apart.
+/// Difference in samples by which two channels must distinguish the ends.
 const SAMPLES: f64 = 2.0;
-/// Clocks are apart beyond this, s: so far a blow by hand takes to rise, and a bending wave another way.
+/// Difference from which clocks are apart, s: the rise of a manual blow, and the delay of a bending wave.
 const APART_S: f64 = 1e-3;
 
-/// Holds the answers of each transverse channel against a blow on the first end, then one on the second,
-/// both from below.
+/// Compares the answers of each transverse channel with a blow on the first end, then one on the second, both
+/// from below.
 ///
-/// A channel of the first end answers the first blow early and the second late, so that the time between
-/// them is longest there, whatever its clock. What two channels are apart by both blows alike is their
+/// A channel of the first end answers the first blow early and the second late, so that the time between them
+/// is longest there, whatever its clock. An equal difference of two channels in both blows is that of their
 /// clocks.
 pub fn judge_taps(felt: &[(&Channel, Vec<TapAnswer>)]) -> Vec<Finding> {
     if let Some((_, blows)) = felt.iter().find(|(_, blows)| blows.len() != 2) {

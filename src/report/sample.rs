@@ -23,7 +23,7 @@ pub(super) fn analysis() -> Analysis {
         cask_file: cask_file(),
         curves: LazyCurves::new(Box::new(curves)),
         start_unix_ns: Some(1_700_000_000_000_000_000),
-        openings: vec![],
+        opened_inputs: vec![],
     }
 }
 

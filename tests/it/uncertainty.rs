@@ -19,7 +19,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let event = stages::Changes::new(&recording.channels)
         .locate(file.drop.transverse_velocity_m_s())
         .expect("an impact");
-    let reach = stages::Reach::of(&file.cask, &file.drop);
+    let reach = stages::Reach::for_drop(&file.cask, &file.drop);
     let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
     let setup = stages::sticking(&file);
     let measured = stages::FitData {

@@ -1,9 +1,9 @@
-//! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a
-//! manifest to fill in.
+//! Reads the tests that a manifest lists, a CSV with a row per recording; writes a manifest to fill in for a
+//! folder of recordings.
 
 use super::super::output::note;
-use super::paths::{in_folder, stem};
-use super::planned::{PlannedTest, cask_of};
+use super::paths::{recordings_in, stem};
+use super::planned::{PlannedTest, find_cask_file};
 use crate::ingest::cask_file::{delimiter, key_of_column};
 use crate::ingest::{bytes_of, in_utf8};
 use crate::report::records::records;
@@ -11,12 +11,12 @@ use miette::{ensure, miette};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// What the columns of a manifest are named that say what to analyse.
+/// Columns of a manifest that state what to analyse.
 const ID: &str = "id";
 const RECORDING: &str = "recording";
 const CASK: &str = "cask";
 
-/// The tests of a manifest; `cask` is the cask file of rows that name none and have none beside their
+/// Reads the tests of a manifest; `cask` is the cask file of rows that name none and have none beside their
 /// recording.
 pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
     let name = path.display();
@@ -31,7 +31,7 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
     let fault = |error: csv::Error| miette!("{name}: {error}");
     let heads: Vec<String> =
         reader.headers().map_err(fault)?.iter().map(|head| head.trim().to_owned()).collect();
-    check(&heads, path)?;
+    check_heads(&heads, path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut tests, mut lines) = (Vec::new(), HashMap::new());
     for row in reader.records() {
@@ -44,7 +44,7 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
         ensure!(cells <= all, help = mend, "{name}, line {line}: {cells} cells, and there are {all} columns");
         let cells: Vec<(&str, &str)> =
             heads.iter().map(String::as_str).zip(row.iter().map(str::trim)).collect();
-        let test = test(&cells, folder, cask)
+        let test = parse_row(&cells, folder, cask)
             .ok_or_else(|| miette!("{name}, line {line}: the cell of `recording` is empty"))?;
         let has_id = cells.iter().any(|(head, cell)| *head == ID && !cell.is_empty());
         if let Some(first) = lines.insert(test.id.clone(), line).filter(|_| has_id) {
@@ -57,15 +57,15 @@ pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>
     Ok(tests)
 }
 
-fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<PlannedTest> {
+fn parse_row(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<PlannedTest> {
     let cell =
         |name| cells.iter().find(|(head, cell)| *head == name && !cell.is_empty()).map(|(_, cell)| *cell);
     let shown = cell(RECORDING)?.to_owned();
     let recording = folder.join(&shown);
-    let (cask_shown, cask) = if let Some(own) = cell(CASK) {
-        (Some(own.to_owned()), Some(folder.join(own)))
+    let (cask_shown, cask) = if let Some(stated) = cell(CASK) {
+        (Some(stated.to_owned()), Some(folder.join(stated)))
     } else {
-        let found = cask_of(&recording, cask);
+        let found = find_cask_file(&recording, cask);
         let shown = |found: &PathBuf| {
             let is_beside = Some(found.as_path()) != cask;
             if is_beside { Path::new(&shown).with_extension("toml") } else { found.clone() }
@@ -92,16 +92,16 @@ fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<Pl
     Some(test)
 }
 
-/// Refuses heads that cannot be meant.
-fn check(heads: &[String], path: &Path) -> miette::Result<()> {
+/// Refuses column heads that are missing, repeated or unknown.
+fn check_heads(heads: &[String], path: &Path) -> miette::Result<()> {
     let name = path.display();
     let is_there = heads.iter().any(|head| head == RECORDING);
     let mend = "the first line names the columns: id, recording, cask, and what you like; `dropcheck init \
                 FOLDER` writes one";
     ensure!(is_there, help = mend, "{name}, line 1: there is no column `recording`");
-    let mut before = HashSet::new();
+    let mut seen = HashSet::new();
     for head in heads {
-        let is_new = head.is_empty() || before.insert(head);
+        let is_new = head.is_empty() || seen.insert(head);
         ensure!(is_new, help = "rename one of them", "{name}, line 1: two columns are named {head}");
         let mend = "a column that is only to be carried into the tables needs a name without that table's \
                     word and a point";
@@ -110,18 +110,18 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
     Ok(())
 }
 
-/// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs
-/// most.
+/// Writes a manifest of the recordings in a folder, each with the cask file beside it, and columns for the
+/// values that most often differ.
 pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     let mut rows = vec![[ID, RECORDING, CASK, "drop.angle_deg", "test.date"].map(str::to_owned)];
-    // A shell makes the file first into which the manifest goes.
+    // A shell has already created the output file.
     let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
-    for recording in in_folder(folder)? {
+    for recording in recordings_in(folder)? {
         if is_empty(&recording) {
             note(&format!("note: {} is empty and was left out", recording.display()));
             continue;
         }
-        let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());
+        let cask = find_cask_file(&recording, None).map(|cask| cask.display().to_string());
         let shown = recording.display().to_string();
         rows.push([stem(&recording), shown, cask.unwrap_or_default(), String::new(), String::new()]);
     }

@@ -1,80 +1,80 @@
-//! Paths, folders and patterns to the recordings that they stand for.
+//! Expands paths, folders and patterns into the recordings that they name.
 
-use super::super::output::{head, note};
+use super::super::output::{note, read_head};
 use crate::ingest;
 use crate::report::Batch;
 use miette::{ensure, miette};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// What a file of a folder is named where it is taken for a recording.
+/// File name endings of the recordings in a folder.
 const RECORDING_ENDINGS: [&str; 6] = ["mcap", "h5", "hdf5", "hdf", "csv", "zip"];
-/// The same where a reader of other formats is there.
-const FOREIGN_ENDINGS: [&str; 8] = ["tdms", "mf4", "mdf", "uff", "unv", "uf", "mat", "ide"];
+/// Further endings, if a reader of other formats is installed.
+const CONVERTED_ENDINGS: [&str; 8] = ["tdms", "mf4", "mdf", "uff", "unv", "uf", "mat", "ide"];
 
-/// The recordings, folders replaced by the files in them, by name, and patterns by what they match.
+/// Lists the recordings: a folder stands for its files, sorted by name, and a pattern for its matches.
 pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut recordings = Vec::new();
     for path in paths {
         if path.is_dir() && !ingest::is_recording_folder(path) {
-            recordings.extend(in_folder(path)?);
+            recordings.extend(recordings_in(path)?);
         } else if is_pattern(path) {
             let pattern = path.display().to_string();
             let found = glob::glob(&pattern).map_err(|fault| miette!("{pattern} is no pattern: {fault}"))?;
             let before = recordings.len();
-            recordings.extend(found.flatten().filter(|path| is_one(path) && !is_summary(path)));
+            recordings.extend(found.flatten().filter(|path| is_recording(path) && !is_summary(path)));
             ensure!(recordings.len() > before, "no file is named like {pattern}");
         } else {
             recordings.push(path.clone());
         }
     }
-    // One named twice, or once by itself and once by its folder, is one test all the same.
+    // A recording that is named twice, or by itself and by its folder, is one test.
     let mut seen = HashSet::new();
     recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
     Ok(recordings)
 }
 
-/// Whether it may be one recording: a file, or a folder in ISO-MME.
-fn is_one(path: &Path) -> bool {
+/// True if the path may be one recording: a file, or a folder in ISO-MME.
+fn is_recording(path: &Path) -> bool {
     path.is_file() || ingest::is_recording_folder(path)
 }
 
-/// Whether no shell has replaced it yet.
+/// True if the path is a pattern that no shell has expanded.
 fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(['*', '?', '[']) && std::fs::symlink_metadata(path).is_err()
 }
 
-/// The recordings of a folder by their endings, by name.
-pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
+/// Lists the recordings of a folder by their endings, sorted by name.
+pub fn recordings_in(path: &Path) -> miette::Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(path)
         .map_err(|source| miette!("the folder {} cannot be read: {source}", path.display()))?;
     let mut files: Vec<PathBuf> =
-        entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|path| is_one(path)).collect();
+        entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|path| is_recording(path)).collect();
     files.sort();
-    let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
+    let (recordings, others): (Vec<PathBuf>, Vec<PathBuf>) =
         files.into_iter().filter(|p| !is_summary(p)).partition(|p| p.is_dir() || has_ending(p));
-    tell_left_out(path, &others);
+    note_skipped_files(path, &others);
     let mend = "name the recordings themselves: their content, not their name, tells the format";
     let none = "holds no .mcap, .h5, .hdf5, .hdf, .csv or .zip file, nor a folder in ISO-MME";
-    ensure!(!found.is_empty(), help = mend, "the folder {} {none}", path.display());
-    Ok(found)
+    ensure!(!recordings.is_empty(), help = mend, "the folder {} {none}", path.display());
+    Ok(recordings)
 }
 
-/// A recording's name without its folder and ending.
+/// Returns a recording's name without folder and ending.
 pub fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn has_ending(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let foreign = FOREIGN_ENDINGS.iter().filter(|_| ingest::foreign::has_reader());
+    let foreign = CONVERTED_ENDINGS.iter().filter(|_| ingest::foreign::has_reader());
     let mut known = RECORDING_ENDINGS.iter().chain(foreign);
     ending.is_some_and(|ending| known.any(|known| *known == ending))
 }
 
-/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files
-/// and truths lie beside them.
-fn tell_left_out(folder: &Path, others: &[PathBuf]) {
+/// Notes on standard error which files of a folder were skipped, by their endings; cask files and truths are
+/// expected there.
+fn note_skipped_files(folder: &Path, others: &[PathBuf]) {
     let endings = others.iter().filter_map(|path| path.extension()?.to_str());
     let mut endings: Vec<&str> =
         endings.filter(|ending| !["toml", "json", "jsonl"].contains(ending)).collect();
@@ -88,12 +88,13 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
     }
 }
 
-/// Whether a file is a manifest or the table of an earlier campaign; a recording may have its name.
+/// True if a file is a manifest or the table of an earlier campaign, which may have the ending of a
+/// recording.
 fn is_summary(path: &Path) -> bool {
-    head(path, 256).is_ok_and(|head| Batch::begins(&head) || begins_manifest(&head))
+    read_head(path, 256).is_ok_and(|head| Batch::begins(&head) || begins_manifest(&head))
 }
 
-/// Whether a file that begins so has the heads of a manifest.
+/// True if the beginning of a file has the heads of a manifest.
 fn begins_manifest(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);
     let first = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();

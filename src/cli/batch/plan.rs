@@ -1,10 +1,10 @@
-//! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in
-//! which the campaign has them.
+//! Plans a campaign from a manifest, or from paths and a cask file: one entry per recording, in the order of
+//! the campaign.
 
 use super::super::lines;
 use super::manifest;
 use super::paths::{recordings, stem};
-use super::planned::{PlannedTest, cask_of};
+use super::planned::{PlannedTest, find_cask_file};
 use crate::ingest::{bytes_of, hexadecimal};
 use crate::report::folder_name;
 use miette::miette;
@@ -13,28 +13,28 @@ use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// What every line of a shard says it is: `campaign.schema`.
+/// Schema of a shard, in every line as `campaign.schema`.
 pub const SHARD_SCHEMA: &str = "dropcheck.batch-shard/1";
 
-/// Files of the campaign's folder that no report's folder may be named like.
+/// Files of the campaign's folder, whose names no report's folder may have.
 pub const SUMMARY: [&str; 4] = ["campaign.json", "campaign.csv", "campaign.html", "results.jsonl"];
 
-/// The whole campaign, of which a run may do a part.
+/// The whole campaign; a run may do a part of it.
 #[derive(Debug)]
 pub struct CampaignPlan {
     /// The manifest or the cask file.
     pub source: String,
     pub tests: Vec<PlannedTest>,
-    /// A hash of all that says what is to be done: shards of one campaign have the same.
-    of: String,
-    /// The part of this run: every so many-th from a first.
+    /// Hash of everything that determines the work: shards of one campaign have the same.
+    hash: String,
+    /// Part of this run: index and number of shards.
     pub shard: (usize, usize),
 }
 
 impl CampaignPlan {
-    /// Of a manifest, or of paths, with the cask file of those that have none, and the corrections that are
-    /// switched off.
-    pub fn of(
+    /// Plans a manifest or paths, with the cask file of recordings that have none, and the disabled
+    /// corrections.
+    pub fn new(
         paths: &[PathBuf],
         manifest: Option<&Path>,
         cask: Option<&Path>,
@@ -42,34 +42,34 @@ impl CampaignPlan {
     ) -> miette::Result<Self> {
         let shown = |path: &Path| path.display().to_string();
         let (mut tests, source) = if let Some(path) = manifest {
-            // Other machines may have it in another place.
+            // Other machines may have it in another folder.
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             (manifest::read(path, cask)?, name)
         } else {
             let source = cask.map_or_else(|| "cask files beside the recordings".to_owned(), shown);
-            (of_paths(paths, cask)?, source)
+            (plan_paths(paths, cask)?, source)
         };
-        name_apart(&mut tests);
+        assign_unique_names(&mut tests);
         let mut hash = Sha256::new();
         hash.update(cask.and_then(|cask| bytes_of(cask, 16).ok()).unwrap_or_default());
         hash.update(without.join(","));
         for test in &tests {
             hash.update(json!([test.id, test.shown, test.cask_shown, test.stated, test.carried]).to_string());
         }
-        Ok(Self { source, tests, of: hexadecimal(&hash.finalize()), shard: (0, 1) })
+        Ok(Self { source, tests, hash: hexadecimal(&hash.finalize()), shard: (0, 1) })
     }
 
-    /// The numbers of the tests that are this run's.
-    pub fn own(&self) -> Vec<usize> {
+    /// Lists the numbers of the tests in this run.
+    pub fn numbers(&self) -> Vec<usize> {
         (self.shard.0..self.tests.len()).step_by(self.shard.1).collect()
     }
 
-    /// Whether this run does all of it.
+    /// True if this run does the whole campaign.
     pub fn is_whole(&self) -> bool {
         self.shard.1 == 1
     }
 
-    /// The name of the record in `--out`.
+    /// File name of the record in `--out`.
     pub fn record_name(&self) -> String {
         if self.is_whole() {
             SUMMARY[3].to_owned()
@@ -78,21 +78,21 @@ impl CampaignPlan {
         }
     }
 
-    /// What a line says of its place in the campaign, as JSON.
+    /// Returns a line's place in the campaign as JSON.
     pub fn place(&self, number: usize) -> String {
         let test = &self.tests[number];
         let object = |pairs: &[(String, String)]| pairs.iter().cloned().collect::<BTreeMap<String, String>>();
         let place = json!({
-            "of": self.of, "source": self.source, "number": number, "count": self.tests.len(),
+            "of": self.hash, "source": self.source, "number": number, "count": self.tests.len(),
             "shard": [self.shard.0, self.shard.1],
             "recording": test.shown, "cask": test.cask_shown, "report": test.folder,
             "stated": object(&test.stated), "carried": object(&test.carried),
         });
-        lines::place(SHARD_SCHEMA, place)
+        lines::place_json(SHARD_SCHEMA, place)
     }
 
-    /// Refuses a folder for the reports in which a recording would be overwritten.
-    pub fn spares_recordings(&self, out: &Path) -> miette::Result<()> {
+    /// Refuses an output folder in which a report would overwrite a recording.
+    pub fn refuse_overwriting(&self, out: &Path) -> miette::Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
         let folders: HashSet<PathBuf> =
             self.tests.iter().filter_map(|test| real(&out.join(&test.folder))).collect();
@@ -108,9 +108,9 @@ impl CampaignPlan {
     }
 }
 
-fn of_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
+fn plan_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
     let test = |recording: PathBuf| {
-        let cask = cask_of(&recording, cask);
+        let cask = find_cask_file(&recording, cask);
         PlannedTest {
             id: stem(&recording),
             shown: recording.display().to_string(),
@@ -123,28 +123,28 @@ fn of_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<Planne
     Ok(recordings(paths)?.into_iter().map(test).collect())
 }
 
-/// Gives equal names a number, and each test a folder that leads nowhere else.
-fn name_apart(tests: &mut [PlannedTest]) {
+/// Appends numbers to equal names, and gives each test a safe folder name.
+fn assign_unique_names(tests: &mut [PlannedTest]) {
     let mut ids: HashSet<String> = HashSet::new();
     let mut folders: HashSet<String> = SUMMARY.iter().map(|name| (*name).to_owned()).collect();
-    let [mut of_ids, mut of_folders] = [HashMap::new(), HashMap::new()];
+    let [mut id_counts, mut folder_counts] = [HashMap::new(), HashMap::new()];
     for test in tests {
-        test.id = free(&test.id, &ids, &mut of_ids);
+        test.id = unused_name(&test.id, &ids, &mut id_counts);
         ids.insert(test.id.clone());
-        // Where capitals are no difference two folders would be one.
-        test.folder = free(&folder_name(&test.id), &folders, &mut of_folders);
+        // On a file system that ignores case two folders would be one.
+        test.folder = unused_name(&folder_name(&test.id), &folders, &mut folder_counts);
         folders.insert(test.folder.to_lowercase());
     }
 }
 
-/// The name, or the name with the first number with which it is not taken; `tried` has the last number of
-/// each name.
-fn free(name: &str, taken: &HashSet<String>, tried: &mut HashMap<String, u64>) -> String {
-    let tried = tried.entry(name.to_owned()).or_default();
+/// Returns the name, or the name with the first number that makes it unused; `counts` holds the last number
+/// of each name.
+fn unused_name(name: &str, used: &HashSet<String>, counts: &mut HashMap<String, u64>) -> String {
+    let count = counts.entry(name.to_owned()).or_default();
     loop {
-        *tried += 1;
-        let numbered = if *tried == 1 { name.to_owned() } else { format!("{name}-{tried}") };
-        if !taken.contains(&numbered) && !taken.contains(&numbered.to_lowercase()) {
+        *count += 1;
+        let numbered = if *count == 1 { name.to_owned() } else { format!("{name}-{count}") };
+        if !used.contains(&numbered) && !used.contains(&numbered.to_lowercase()) {
             return numbered;
         }
     }
@@ -157,7 +157,7 @@ mod tests {
     fn folders(ids: &[&str]) -> Vec<String> {
         let mut tests: Vec<PlannedTest> =
             ids.iter().map(|id| PlannedTest { id: (*id).into(), ..PlannedTest::default() }).collect();
-        name_apart(&mut tests);
+        assign_unique_names(&mut tests);
         tests.into_iter().map(|test| test.folder).collect()
     }
 

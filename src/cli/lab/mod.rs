@@ -1,4 +1,4 @@
-//! The commands of the laboratory: `synth` and `validate`.
+//! Commands of the laboratory: `synth` and `validate`.
 
 pub mod campaign;
 pub mod synth;

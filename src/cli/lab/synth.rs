@@ -1,4 +1,4 @@
-//! `synth`: a scene file to a synthetic recording, the cask file to analyse it with, and its truth.
+//! `synth`: simulates the recording of a scene file, and writes it with its cask file and its truth.
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
@@ -11,7 +11,7 @@ use clap::Args;
 use miette::{ensure, miette};
 use std::path::{Path, PathBuf};
 
-/// Behind the stem of the scene's name, so that its cask file is not taken for the scene.
+/// Suffix of the recording after the scene's name, so that its cask file does not replace the scene file.
 const SUFFIX: &str = "-synth.mcap";
 
 #[derive(Args)]
@@ -34,7 +34,7 @@ const PROTOBUF: &str = "protobuf";
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let before = paths(arguments).map(|file| file.exists());
-    let (files, recording) = written(arguments)?;
+    let (files, recording) = write_recording(arguments)?;
     let shown = |(file, was_there): (&PathBuf, bool)| {
         let replaced = if was_there { " (replaced)" } else { "" };
         report::sanitize(&file.display().to_string()) + replaced
@@ -44,22 +44,22 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     Ok(Ending::Clear)
 }
 
-/// Where recording, cask file and truth go.
+/// Paths of recording, cask file and truth.
 fn paths(arguments: &Arguments) -> [PathBuf; 3] {
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     lab::report::synthetic_names(&name).map(|name| out.with_file_name(name))
 }
 
-/// Makes the recording and writes its files: recording, cask file, truth.
-pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], SyntheticRecording)> {
+/// Simulates the recording and writes its files: recording, cask file, truth.
+pub fn write_recording(arguments: &Arguments) -> miette::Result<([PathBuf; 3], SyntheticRecording)> {
     let files = paths(arguments);
     let format = format(&files[0], arguments.encoding.as_deref())?;
     let names = files.each_ref().map(|file| file.file_name().unwrap_or_default().to_string_lossy());
     let place = parent_of(&files[0]);
-    // Whoever names a file may reach it by a link; the folder itself must be none.
+    // A file may be named through a link; the folder itself must not be one.
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
-    let folder = Folder::checked(&place, &names.each_ref().map(|name| &**name), &[&arguments.scene])?;
+    let folder = Folder::prepare(&place, &names.each_ref().map(|name| &**name), &[&arguments.scene])?;
 
     let mut scene_file = lab::scene_file::read(&arguments.scene)?;
     if let Some(seed) = arguments.seed {
@@ -94,7 +94,7 @@ fn format(out: &Path, encoding: Option<&str>) -> miette::Result<SyntheticFormat>
     Ok(format)
 }
 
-/// The truth that is asked for first; all of it is in its file.
+/// The most important true values; all are in the file.
 fn summary(recording: &SyntheticRecording) -> String {
     let Truth { k, speed, .. } = recording.truth;
     let (seed, k, speed) = (recording.seed, optional_fixed(k, 4), optional_fixed(speed, 3));

@@ -1,4 +1,5 @@
-//! `validate` without a campaign: ways of working and damages to what is accepted, with page and pictures.
+//! `validate` without a campaign: compares the methods, damages the recordings, and decides on acceptance;
+//! with page and pictures.
 
 use super::super::Ending;
 use super::super::output::{Folder, columns, print};
@@ -11,10 +12,10 @@ use crate::lab::report::{TRIAL_NAMES, trial_files, trial_outcome};
 use crate::report;
 use std::path::Path;
 
-/// Writes the trial into the folder `out`; ends with what is accepted, a site's own reference recordings in
-/// the folder `site` among it.
+/// Runs the trial and writes it into the folder `out`; the outcome is acceptance, including a site's own
+/// reference recordings in the folder `site`.
 pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> miette::Result<Ending> {
-    let folder = out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
+    let folder = out.map(|out| Folder::prepare(out, &TRIAL_NAMES, &[])).transpose()?;
     let site = site.map(References::read).transpose()?;
     let trial =
         with_progress("trial", |progress| methods::trial(request, machine(), site.as_ref(), progress));
@@ -28,7 +29,7 @@ pub fn run(request: TrialRequest, site: Option<&Path>, out: Option<&Path>) -> mi
     Ok(if trial.is_accepted() { Ending::Clear } else { Ending::NeedsALook })
 }
 
-/// What this program runs on.
+/// Describes the machine and the build.
 fn machine() -> TrialMachine {
     TrialMachine {
         program_sha256: program_sha256().unwrap_or_default(),
@@ -41,11 +42,11 @@ fn machine() -> TrialMachine {
     }
 }
 
-/// Its name where the system tells it: Linux in a file, Windows in the environment.
+/// Name of the processor, if the system states it: Linux in a file, Windows in the environment.
 fn processor() -> Option<String> {
-    let told = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+    let from_file = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let name = text.lines().find_map(|line| line.strip_prefix("model name"))?;
         Some(name.trim_start_matches([' ', '\t', ':']).trim().to_owned())
     });
-    told.or_else(|| std::env::var("PROCESSOR_IDENTIFIER").ok()).filter(|name| !name.is_empty())
+    from_file.or_else(|| std::env::var("PROCESSOR_IDENTIFIER").ok()).filter(|name| !name.is_empty())
 }

@@ -1,5 +1,5 @@
-//! `validate`: the acceptance of the program; or a campaign of random scenes with known truth to tables of
-//! how far off the analysis is.
+//! `validate`: runs the acceptance of the program, or a campaign of random scenes with known truth into
+//! tables of the analysis's errors.
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    parts: campaign::Parts,
+    parts: campaign::CampaignParts,
 }
 
 fn kinds() -> PossibleValuesParser {
@@ -51,7 +51,7 @@ fn kinds() -> PossibleValuesParser {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
-        (Some(number), Some(out), _) => one(arguments, number, out),
+        (Some(number), Some(out), _) => write_scene(arguments, number, out),
         (_, out, Some(scenes)) => {
             let kinds = arguments.kinds.iter().cloned().collect();
             let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
@@ -65,12 +65,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 }
 
 /// Writes the files of one scene.
-fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result<Ending> {
+fn write_scene(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result<Ending> {
     let name = format!("{number}.mcap");
     let names = lab::report::synthetic_names(&name);
-    let folder = Folder::checked(out, &names.each_ref().map(String::as_str), &[])?;
+    let folder = Folder::prepare(out, &names.each_ref().map(String::as_str), &[])?;
     let (scene, recording) = lab::campaign::scene(arguments.seed, number, arguments.exact);
-    // Protobuf, unlike JSON, holds samples that are infinite.
+    // Protobuf, unlike JSON, can hold infinite samples.
     folder.write(&lab::report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
     let files = names.each_ref().map(|name| report::sanitize(&folder.file(name)));
     print(&format!("Written: {}\n", files.join(", ")))?;

@@ -1,7 +1,7 @@
-//! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is
-//! done stays done.
+//! Writes lines of JSON to a file that grows by one line at a time, and reads such files: finished work is
+//! never lost.
 
-use super::super::output::{JsonTarget, head, replace_by};
+use super::super::output::{JsonTarget, read_head, replace_in_pieces};
 use crate::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr, ensure, miette};
 use serde_json::Value;
@@ -11,7 +11,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where a line is: which file, from which byte, how many.
+/// Place of a line: its file, first byte and length in bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct LinePlace {
     file: usize,
@@ -19,7 +19,7 @@ pub struct LinePlace {
     length: usize,
 }
 
-/// Lines of one or several files by their numbers in the campaign.
+/// Lines of one or several files, by their numbers in the campaign.
 #[derive(Debug, Default, Clone)]
 pub struct LineFiles {
     files: Vec<PathBuf>,
@@ -27,8 +27,8 @@ pub struct LineFiles {
 }
 
 impl LineFiles {
-    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says its
-    /// number in the campaign; the last may be no whole one.
+    /// Adds the lines of a file. `take` gets the lines before, the count from 1 and the text of each, and
+    /// returns its number in the campaign; the last line may be incomplete.
     pub fn add(
         &mut self,
         path: &Path,
@@ -51,17 +51,17 @@ impl LineFiles {
         }
     }
 
-    /// The numbers that have a line.
+    /// Lists the numbers that have a line.
     pub fn numbers(&self) -> impl Iterator<Item = usize> {
         self.places.keys().copied()
     }
 
-    /// Which of the files has a line.
-    pub fn home(&self, number: usize) -> Option<usize> {
+    /// Index of the file that holds a line.
+    pub fn file_index(&self, number: usize) -> Option<usize> {
         self.places.get(&number).map(|place| place.file)
     }
 
-    /// A line, with its end.
+    /// Reads a line, with its line end.
     pub fn text(&self, number: usize) -> Option<String> {
         let place = self.places.get(&number)?;
         let mut file = File::open(&self.files[place.file]).ok()?;
@@ -71,13 +71,13 @@ impl LineFiles {
         String::from_utf8(line).ok()
     }
 
-    /// What a line says.
+    /// Parses a line.
     pub fn line(&self, number: usize) -> Option<Value> {
         serde_json::from_str(&self.text(number)?).ok()
     }
 
-    /// Hands over all lines by number.
-    pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
+    /// Hands over all lines, sorted by number.
+    pub fn for_each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
         for number in self.numbers() {
             let line = self.text(number).ok_or_else(|| miette!("the lines were changed meanwhile"))?;
             take(line.as_bytes())?;
@@ -86,47 +86,47 @@ impl LineFiles {
     }
 }
 
-/// A file of lines that this run writes.
+/// File of lines that this run writes.
 #[derive(Debug)]
 pub struct LineRecord {
     path: PathBuf,
-    /// None once it is put in order.
+    /// `None` after the lines were put in order.
     file: Option<File>,
     end: u64,
-    /// What is in it.
+    /// Lines in the file.
     pub lines: LineFiles,
 }
 
 impl LineRecord {
-    /// Begins the file, or goes on with what is there: `is_own` says its number in this campaign; `None` for
-    /// a line that is to be made anew.
+    /// Begins the file, or continues an existing one: `number_of` returns the number of a line in this
+    /// campaign, `None` if the line must be made again.
     pub fn open(
         path: &Path,
         resume: bool,
         inputs: &[&Path],
-        is_own: impl Fn(&Value) -> miette::Result<Option<usize>>,
+        number_of: impl Fn(&Value) -> miette::Result<Option<usize>>,
     ) -> miette::Result<Self> {
-        let mut file = held(path, inputs)?;
+        let mut file = open_locked(path, inputs)?;
         let (mut lines, mut end) = (LineFiles::default(), 0);
         if resume {
             lines.add(path, |_, _, line| {
-                // The run was stopped in the middle of the last one.
+                // The run was stopped while it wrote this last line.
                 if !line.ends_with(b"\n") {
                     return Ok(None);
                 }
                 end += line.len() as u64;
-                is_own(&serde_json::from_slice(line).unwrap_or_default())
+                number_of(&serde_json::from_slice(line).unwrap_or_default())
             })?;
         } else {
             lines.files.push(path.to_path_buf());
         }
-        let kept = file.set_len(end).and_then(|()| file.seek(SeekFrom::Start(end)));
-        kept.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+        let prepared = file.set_len(end).and_then(|()| file.seek(SeekFrom::Start(end)));
+        prepared.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))?;
         Ok(Self { path: path.to_path_buf(), file: Some(file), end, lines })
     }
 
-    /// Writes one line at its end.
-    pub fn put(&mut self, number: usize, line: &[u8]) -> miette::Result<()> {
+    /// Appends one line.
+    pub fn append(&mut self, number: usize, line: &[u8]) -> miette::Result<()> {
         let file = self.file.as_mut().ok_or_else(|| io::Error::other("it was closed"));
         let written = file.and_then(|file| file.write_all(line)).into_diagnostic();
         written.wrap_err_with(|| format!("{} could not be written", self.path.display()))?;
@@ -135,7 +135,7 @@ impl LineRecord {
         Ok(())
     }
 
-    /// Puts the lines in order, where a run that was stopped has left them in another, or others among them.
+    /// Sorts the lines and drops others, if a run that was stopped left them so.
     pub fn finish(&mut self) -> miette::Result<()> {
         let mut due = 0;
         let is_next = |place: &LinePlace| {
@@ -146,9 +146,9 @@ impl LineRecord {
         if self.lines.places.values().all(is_next) && due == self.end {
             return Ok(());
         }
-        replace_by(&self.path, |put| {
-            self.lines.each(put)?;
-            // Windows replaces no file that is open.
+        replace_in_pieces(&self.path, |write| {
+            self.lines.for_each(write)?;
+            // Windows does not replace an open file.
             self.file = None;
             Ok(())
         })?;
@@ -157,31 +157,31 @@ impl LineRecord {
     }
 }
 
-/// How often, and after how long, a file that another run holds is tried again.
+/// Number of attempts to open a file that another run holds, and the time between them.
 const TRIES: u32 = 20;
-const AGAIN: Duration = Duration::from_millis(100);
+const RETRY_AFTER: Duration = Duration::from_millis(100);
 
-/// How every line begins that `--jsonl` writes: the key `campaign` comes first, its `schema` first in it.
+/// Beginning of every line that `--jsonl` writes: the key `campaign` is first, and its `schema` first in it.
 const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
 
-/// Whether a file holds such lines; the first may have been cut short.
-pub fn is_own(path: &Path) -> bool {
-    head(path, MARK.len() as u64).is_ok_and(|head| MARK.starts_with(&head))
+/// True if a file holds such lines; the first may have been cut short.
+pub fn is_line_file(path: &Path) -> bool {
+    read_head(path, MARK.len() as u64).is_ok_and(|head| MARK.starts_with(&head))
 }
 
-/// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program
-/// is looked at as any target is.
-fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
-    if path.is_symlink() || !is_own(path) {
-        JsonTarget::checked(Some(path), inputs)?;
+/// Opens and locks the file, to append lines. A file not written by dropcheck is treated like any other
+/// output target.
+fn open_locked(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
+    if path.is_symlink() || !is_line_file(path) {
+        JsonTarget::prepare(Some(path), inputs)?;
     }
-    // What a killed run had begun to start may hold it for a moment longer.
+    // A process that a killed run had started may hold it for a moment longer.
     let is_held = |file: &io::Result<File>| file.as_ref().is_err_and(|e| e.kind() == ErrorKind::WouldBlock);
-    let mut file = opened_alone(path);
+    let mut file = open_exclusively(path);
     for _ in 0..TRIES {
         if is_held(&file) {
-            std::thread::sleep(AGAIN);
-            file = opened_alone(path);
+            std::thread::sleep(RETRY_AFTER);
+            file = open_exclusively(path);
         }
     }
     ensure!(!is_held(&file), help = "wait for it, or end it", "another run is writing {}", path.display());
@@ -192,14 +192,14 @@ fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     Ok(file)
 }
 
-/// The file for nobody else to write, as long as it is open; `WouldBlock` while another run has it.
-fn opened_alone(path: &Path) -> io::Result<File> {
+/// Opens the file so that no other run can write it meanwhile; `WouldBlock` if another run has it.
+fn open_exclusively(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
-    // Not to append, for Windows does not cut such a file.
+    // The file is not opened for appending, since Windows cannot shorten such a file.
     options.read(true).write(true).create(true).truncate(false);
     #[cfg(windows)]
     {
-        // To read and to replace. A lock would keep this run from reading it by another handle, too.
+        // Others may read and replace it. A lock would prevent this run from reading it by another handle.
         const SHARED: u32 = 0x1 | 0x4;
         const SHARING_VIOLATION: i32 = 32;
         std::os::windows::fs::OpenOptionsExt::share_mode(&mut options, SHARED);
@@ -209,16 +209,16 @@ fn opened_alone(path: &Path) -> io::Result<File> {
     #[cfg(not(windows))]
     {
         let file = options.open(path)?;
-        // Where the file system knows locks.
+        // This works if the file system supports locks.
         let is_held = matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock));
         if is_held { Err(ErrorKind::WouldBlock.into()) } else { Ok(file) }
     }
 }
 
-/// A longer line is none of a result.
+/// Longest line of a result, bytes.
 const MOST_LINE_BYTES: u64 = 32 << 20;
 
-/// Puts the next line into `line`, with its end, and says how long it is: 0 where there is none.
+/// Reads the next line into `line`, with its line end, and returns its length: 0 at the end of the file.
 pub(super) fn next_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<usize> {
     line.clear();
     let length = reader.take(MOST_LINE_BYTES).read_until(b'\n', line)?;
@@ -246,7 +246,7 @@ mod tests {
         let path = folder.path().join("results.jsonl");
         let mut record = LineRecord::open(&path, false, &[], own).unwrap();
         for number in [0, 3] {
-            record.put(number, &line(number, "first")).unwrap();
+            record.append(number, &line(number, "first")).unwrap();
         }
         assert!(LineRecord::open(&path, true, &[], own).is_err(), "two runs write one file");
         drop(record);
@@ -255,7 +255,7 @@ mod tests {
         let mut record = LineRecord::open(&path, true, &[], own).unwrap();
         assert!(record.lines.line(3).is_some() && record.lines.line(1).is_none());
         for number in [1, 2, 3] {
-            record.put(number, &line(number, "again")).unwrap();
+            record.append(number, &line(number, "again")).unwrap();
         }
         record.finish().unwrap();
         let expected = [line(0, "first"), line(1, "again"), line(2, "again"), line(3, "again")].concat();

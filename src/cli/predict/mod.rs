@@ -1,5 +1,5 @@
-//! `predict`: the analytical prediction at one angle or over sweeps, and the critical angles, to a table and
-//! a report.
+//! `predict`: predicts the slap-down analytically at one angle or over sweeps, with the critical angles;
+//! prints a table and writes a report.
 
 mod request;
 mod sweep;
@@ -42,7 +42,7 @@ pub struct Arguments {
     /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m);
     /// several times for every combination
     #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true,
-        value_parser = sweep::sweep)]
+        value_parser = sweep::parse)]
     sweep: Vec<Sweep>,
     /// An angle is critical where the slap-down comes within this of its largest, percent
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, default_value = "5",
@@ -81,8 +81,8 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// The cask file that is named, and what is asked of it.
-pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
+/// Reads the cask file and the request of the study.
+pub fn read_request(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
     let mut file = crate::ingest::cask_file::parse(&arguments.cask)?;
     if let Some(lasts_s) = arguments.duration {
         (file.contact_duration_s, file.drop.contact_duration_s) = (Some(lasts_s), lasts_s);
@@ -93,11 +93,11 @@ pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> 
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [arguments.cask.as_path()];
-    let (file, request) = asked(arguments)?;
+    let (file, request) = read_request(arguments)?;
     let names = report::study_file_names(&request);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
-    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+    let folder = arguments.out.as_deref().map(|dir| Folder::prepare(dir, &names, &inputs)).transpose()?;
+    let json = JsonTarget::prepare(arguments.json.as_deref(), &inputs)?;
 
     let study = crate::analysis::study(&file, &request);
 

@@ -1,4 +1,4 @@
-//! The options of `predict` and a cask file to what a study is asked.
+//! Turns the options of `predict` and a cask file into the request of a study.
 
 use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name};
@@ -7,20 +7,20 @@ use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncerta
 use crate::predict;
 use miette::{ensure, miette};
 
-/// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
+/// Largest step of the curves: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
 
-/// A sweep of fewer angles asks for a few points, not for another range of the curves.
+/// Fewest swept angles that set the range of the curves; fewer are single points.
 const LEAST_CURVE_ANGLES: usize = 10;
 
-/// More angles than this are closer than a picture's dots.
+/// Most steps of a curve: more are closer than the dots of a picture.
 const MOST_CURVE_STEPS: f64 = 1800.0;
 
-/// What is asked, with the cask file's values where no option says otherwise.
+/// Returns the request, with the cask file's values unless an option states others.
 pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<StudyRequest> {
     let sweeps = &arguments.sweep;
-    each_once(arguments)?;
-    lengths_hold_the_section(sweeps, file)?;
+    check_sweeps(arguments)?;
+    check_lengths(sweeps, file)?;
     let usual = predict::usual_request(file);
     let (contacts, ks) = cases(arguments, file, &usual);
     let request = StudyRequest {
@@ -28,27 +28,27 @@ pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<StudyRe
         ks,
         angle_deg: arguments.angle.unwrap_or(usual.angle_deg),
         sweeps: sweeps.clone(),
-        angles_deg: swept(sweeps, SweepVariable::Angle)
+        angles_deg: swept_values(sweeps, SweepVariable::Angle)
             .and_then(curve_angles_deg)
             .unwrap_or(usual.angles_deg),
         band_percent: arguments.band,
         uncertain: uncertain(arguments, usual.uncertain),
     };
-    few_enough(&request, file)?;
+    check_count(&request, file)?;
     Ok(request)
 }
 
-fn swept(sweeps: &[Sweep], variable: SweepVariable) -> Option<&[f64]> {
+fn swept_values(sweeps: &[Sweep], variable: SweepVariable) -> Option<&[f64]> {
     sweeps.iter().find(|sweep| sweep.variable == variable).map(|sweep| sweep.values.as_slice())
 }
 
-/// Lowest and highest value of a sweep.
-fn ends(values: &[f64]) -> Option<(f64, f64)> {
+/// Returns the lowest and highest value of a sweep.
+fn span(values: &[f64]) -> Option<(f64, f64)> {
     Some((*values.first()?, *values.last()?))
 }
 
-/// A variable is swept once, or set by its option, not both.
-fn each_once(arguments: &Arguments) -> miette::Result<()> {
+/// Refuses a variable that is swept twice, or swept and set by its option.
+fn check_sweeps(arguments: &Arguments) -> miette::Result<()> {
     let sweeps = &arguments.sweep;
     for (i, sweep) in sweeps.iter().enumerate() {
         let called = name(sweep.variable);
@@ -69,10 +69,10 @@ fn each_once(arguments: &Arguments) -> miette::Result<()> {
     Ok(())
 }
 
-/// A section longer than the cask is refused here as in the cask file.
-fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result<()> {
+/// Refuses a section longer than the cask, as in the cask file.
+fn check_lengths(sweeps: &[Sweep], file: &CaskFile) -> miette::Result<()> {
     let section_m = file.cask.height_m;
-    let shortest_m = swept(sweeps, SweepVariable::Length).and_then(ends).map(|(from_m, _)| from_m);
+    let shortest_m = swept_values(sweeps, SweepVariable::Length).and_then(span).map(|(from_m, _)| from_m);
     let Some(shortest_m) = shortest_m.filter(|from_m| *from_m < section_m) else { return Ok(()) };
     let path = file.path.display();
     Err(miette!(
@@ -84,40 +84,40 @@ fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result
     ))
 }
 
-/// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
+/// Lists contact laws and ks: both ends of their sweeps, else as given, else the four borderline cases.
 fn cases(arguments: &Arguments, file: &CaskFile, usual: &StudyRequest) -> (Vec<Contact>, Vec<f64>) {
-    let both = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
-    let swept = |variable| swept(&arguments.sweep, variable).and_then(ends).map(both);
-    let rubbed = |coefficients: Vec<f64>| coefficients.into_iter().map(Contact::Coulomb).collect();
+    let distinct = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
+    let swept = |variable| swept_values(&arguments.sweep, variable).and_then(span).map(distinct);
+    let to_contacts = |coefficients: Vec<f64>| coefficients.into_iter().map(Contact::Coulomb).collect();
     let ks = arguments.k.map(|k| vec![k]).or_else(|| swept(SweepVariable::K));
     let contacts = arguments.contact.map(|contact| vec![contact]);
-    match (contacts.or_else(|| swept(SweepVariable::Friction).map(rubbed)), ks) {
+    match (contacts.or_else(|| swept(SweepVariable::Friction).map(to_contacts)), ks) {
         (Some(contacts), Some(ks)) => (contacts, ks),
         (Some(contacts), None) => (contacts, usual.ks.clone()),
-        // A prediction needs one: the borderline case that the paper found.
+        // A prediction needs a contact law: this is the borderline case that the paper found.
         (None, Some(ks)) if file.contact == Contact::Unknown => (vec![Contact::Rough], ks),
         (None, Some(ks)) => (vec![file.contact], ks),
         (None, None) => (usual.contacts.clone(), usual.ks.clone()),
     }
 }
 
-/// The angles of a sweep that is more than a few points, those between filled in to half a degree.
+/// Angles for the curves of a sweep that is more than a few points, in steps of at most half a degree.
 fn curve_angles_deg(swept: &[f64]) -> Option<Vec<f64>> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
-    let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
+    let divide_evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
         let steps = steps.min(MOST_CURVE_STEPS).ceil() as u32;
         (0..=steps).map(|i| round_off(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
     };
-    let (from, to) = ends(swept).filter(|_| swept.len() >= LEAST_CURVE_ANGLES)?;
+    let (from, to) = span(swept).filter(|_| swept.len() >= LEAST_CURVE_ANGLES)?;
     let step = swept[1] - swept[0];
-    // Every step of the sweep in equal parts, so that its own angles stay among the curve's.
-    Some(evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil()))
+    // Every step of the sweep is divided equally, so that its angles are among those of the curve.
+    Some(divide_evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil()))
 }
 
-/// What Monte Carlo draws from: what the cask file says, each replaced by what the options say of it.
+/// Distributions for Monte Carlo: those of the cask file, each replaced by the options if they state it.
 fn uncertain(arguments: &Arguments, usual: Uncertain) -> Uncertain {
     let geometry = arguments.geometry_tolerance.map(|percent| percent / 100.0);
-    let swept = |variable| swept(&arguments.sweep, variable).and_then(ends);
+    let swept = |variable| swept_values(&arguments.sweep, variable).and_then(span);
     Uncertain {
         k: arguments.k_range.or(arguments.k.map(|k| (k, k))).or(swept(SweepVariable::K)).unwrap_or(usual.k),
         friction: arguments
@@ -134,9 +134,9 @@ fn uncertain(arguments: &Arguments, usual: Uncertain) -> Uncertain {
     }
 }
 
-/// Whether the table stays one that can be written and read.
-fn few_enough(request: &StudyRequest, file: &CaskFile) -> miette::Result<()> {
-    let is_swept = |variable| swept(&request.sweeps, variable).is_some();
+/// Refuses a table that is too long to be written and read.
+fn check_count(request: &StudyRequest, file: &CaskFile) -> miette::Result<()> {
+    let is_swept = |variable| swept_values(&request.sweeps, variable).is_some();
     let mut factors: Vec<(usize, String)> =
         request.sweeps.iter().map(|s| (s.values.len(), name(s.variable).to_owned())).collect();
     if !is_swept(SweepVariable::Friction) {

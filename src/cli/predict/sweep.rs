@@ -1,25 +1,25 @@
-//! `[VARIABLE=]FROM:TO:STEP` to the values of a sweep.
+//! Parses `[VARIABLE=]FROM:TO:STEP` into the values of a sweep.
 
-use super::words::{ascending, number};
+use super::words::{check_order, number};
 use crate::data::SweepVariable::{Angle, DropHeight, Friction, K, Length};
 use crate::data::shown::round_off;
 use crate::data::{Sweep, SweepVariable};
 
-/// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds
-/// of megabytes.
+/// Most predictions of one run, and so values of one sweep: nobody reads a longer table, and it fills
+/// hundreds of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
 
-/// What can be swept, and what a person may call it.
-struct Known {
+/// A variable that can be swept, with its names on the command line.
+struct Sweepable {
     variable: SweepVariable,
     names: &'static [&'static str],
-    /// Least and largest value, and where they lie, as a sentence goes on.
+    /// Smallest and largest value, and the end of the sentence that states the range.
     range: (f64, f64),
     lies: &'static str,
     example: &'static str,
 }
 
-impl Known {
+impl Sweepable {
     const fn new(
         variable: SweepVariable,
         names: &'static [&'static str],
@@ -37,48 +37,48 @@ const HEIGHTS: &str = "lies between 0.001 and 1000 m: it is the height of the dr
 const FRICTIONS: &[&str] = &["friction", "contact", "mu", "μ", "µ"];
 const DROPS: &[&str] = &["height", "drop_height", "drop_height_m"];
 
-const KNOWN: [Known; 5] = [
-    Known::new(Angle, &["angle", "angle_deg", "phi", "φ"], (0.0, 90.0), DEGREES, "5:45:5"),
-    Known::new(K, &["k", "restitution"], (0.0, 1.0), "lies between 0 and 1", "k=0:1:0.1"),
-    Known::new(Friction, FRICTIONS, (0.0, f64::INFINITY), "is 0 or more", "friction=0:1:0.1"),
-    Known::new(Length, &["length", "length_m"], (0.01, 100.0), LENGTHS, "length=4:6:0.1"),
-    Known::new(DropHeight, DROPS, (0.001, 1000.0), HEIGHTS, "height=1:9:0.5"),
+const SWEEPABLE: [Sweepable; 5] = [
+    Sweepable::new(Angle, &["angle", "angle_deg", "phi", "φ"], (0.0, 90.0), DEGREES, "5:45:5"),
+    Sweepable::new(K, &["k", "restitution"], (0.0, 1.0), "lies between 0 and 1", "k=0:1:0.1"),
+    Sweepable::new(Friction, FRICTIONS, (0.0, f64::INFINITY), "is 0 or more", "friction=0:1:0.1"),
+    Sweepable::new(Length, &["length", "length_m"], (0.01, 100.0), LENGTHS, "length=4:6:0.1"),
+    Sweepable::new(DropHeight, DROPS, (0.001, 1000.0), HEIGHTS, "height=1:9:0.5"),
 ];
 
-/// What the variable is called on the command line.
+/// Returns the name of the variable on the command line.
 pub fn name(variable: SweepVariable) -> &'static str {
-    KNOWN.iter().find(|known| known.variable == variable).map_or("", |known| known.names[0])
+    SWEEPABLE.iter().find(|entry| entry.variable == variable).map_or("", |entry| entry.names[0])
 }
 
-pub fn sweep(text: &str) -> Result<Sweep, String> {
-    let (known, values) = match text.split_once('=') {
+pub fn parse(text: &str) -> Result<Sweep, String> {
+    let (entry, values) = match text.split_once('=') {
         Some((word, values)) if word.contains(':') || values.contains('=') => {
             return Err("give --sweep once for each variable".into());
         }
         Some((word, values)) => (find(word)?, values),
-        None => (called(text).unwrap_or(&KNOWN[0]), text),
+        None => (lookup(text).unwrap_or(&SWEEPABLE[0]), text),
     };
     let parts: Vec<&str> = values.split(':').collect();
     let [from, to, step] = parts[..] else {
-        let unit = if known.variable == Angle { ", in degrees" } else { "" };
-        return Err(format!("give FROM:TO:STEP{unit}, such as --sweep {}", known.example));
+        let unit = if entry.variable == Angle { ", in degrees" } else { "" };
+        return Err(format!("give FROM:TO:STEP{unit}, such as --sweep {}", entry.example));
     };
     let (from, to, step) = (number(from)?, number(to)?, number(step)?);
     for (word, value) in [("FROM", from), ("TO", to)] {
-        let inside = (known.range.0..=known.range.1).contains(&value);
+        let inside = (entry.range.0..=entry.range.1).contains(&value);
         if !inside {
-            return Err(format!("{word} is {value}: {} {}", known.names[0], known.lies));
+            return Err(format!("{word} is {value}: {} {}", entry.names[0], entry.lies));
         }
     }
-    ascending(from, to)?;
+    check_order(from, to)?;
     if step <= 0.0 {
         return Err(format!("STEP is {step}: it must be above 0"));
     }
-    Ok(Sweep { variable: known.variable, values: values_of(from, to, step)? })
+    Ok(Sweep { variable: entry.variable, values: values_of(from, to, step)? })
 }
 
 fn values_of(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
-    // A step that ends a rounding short of TO still includes it.
+    // A step that misses TO by a rounding error still includes it.
     let count = ((to - from) / step + 1e-9).floor() + 1.0;
     #[allow(clippy::cast_precision_loss, reason = "200 000 is exact")]
     if count > MOST_PREDICTIONS as f64 {
@@ -89,14 +89,14 @@ fn values_of(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
     Ok((0..count).map(|i| round_off(from + f64::from(i) * step).min(to)).collect())
 }
 
-fn called(word: &str) -> Option<&'static Known> {
+fn lookup(word: &str) -> Option<&'static Sweepable> {
     let word = word.trim().to_lowercase();
-    KNOWN.iter().find(|known| known.names.contains(&word.as_str()))
+    SWEEPABLE.iter().find(|entry| entry.names.contains(&word.as_str()))
 }
 
-fn find(word: &str) -> Result<&'static Known, String> {
-    let all = KNOWN.map(|known| known.names[0]).join(", ");
-    called(word).ok_or_else(|| format!("no variable {word}: known are {all} (of the drop)"))
+fn find(word: &str) -> Result<&'static Sweepable, String> {
+    let all = SWEEPABLE.map(|entry| entry.names[0]).join(", ");
+    lookup(word).ok_or_else(|| format!("no variable {word}: known are {all} (of the drop)"))
 }
 
 #[cfg(test)]
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     fn values(text: &str) -> Vec<f64> {
-        sweep(text).unwrap().values
+        parse(text).unwrap().values
     }
 
     #[test]
@@ -134,9 +134,9 @@ mod tests {
             ("length=4:6:0.5", SweepVariable::Length),
             ("height=1:9:1", SweepVariable::DropHeight),
         ] {
-            let swept = sweep(text).unwrap();
+            let swept = parse(text).unwrap();
             assert_eq!(swept.variable, variable, "{text}");
-            assert!(sweep(&format!("{}=0.5:0.6:0.1", name(variable))).is_ok(), "{text}");
+            assert!(parse(&format!("{}=0.5:0.6:0.1", name(variable))).is_ok(), "{text}");
         }
         assert_eq!(values("k=0,1:0,9:0,1").len(), 9);
     }
@@ -168,7 +168,7 @@ mod tests {
             ("0:90:5,k=0:1:0.1", "once for each variable"),
             ("k=0:1:0.1,angle=0:90:1", "once for each variable"),
         ] {
-            let told = sweep(text).unwrap_err();
+            let told = parse(text).unwrap_err();
             assert!(told.contains(words), "{text}: {told}");
         }
     }

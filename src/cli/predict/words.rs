@@ -1,16 +1,14 @@
-//! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to
-//! mend it.
+//! Parses the value of an option into a number, a range or a contact law; each error says how to correct it.
 
 use crate::data::{Contact, LONGEST_CONTACT_S, SHORTEST_CONTACT_S};
 
-/// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and
-/// percent.
+/// Largest half-width of angle and geometry, in degrees and percent: a larger one would draw another cask.
 const LARGEST_TOLERANCE: f64 = 20.0;
 
-/// A million draws take minutes and move no quantile that a person reads.
+/// Most draws: a million take minutes, and more change no quantile that a person reads.
 const MOST_DRAWS: u32 = 1_000_000;
 
-/// A finite number, with a decimal point or a decimal comma: no list is written with commas here.
+/// Parses a finite number with a decimal point or comma: no list is written with commas here.
 pub fn number(text: &str) -> Result<f64, String> {
     let text = text.trim();
     match text.replace(',', ".").parse::<f64>() {
@@ -55,12 +53,12 @@ fn friction(value: f64) -> Result<f64, String> {
     if value >= 0.0 { Ok(value) } else { Err(range.into()) }
 }
 
-/// FROM:TO within 0 to 1.
+/// Parses FROM:TO within 0 to 1.
 pub fn restitution_range(text: &str) -> Result<(f64, f64), String> {
     range(text, "0.3:0.7", restitution)
 }
 
-/// FROM:TO of friction coefficients.
+/// Parses FROM:TO of friction coefficients.
 pub fn friction_range(text: &str) -> Result<(f64, f64), String> {
     range(text, "0.2:0.6", |end| friction(number(end)?))
 }
@@ -70,27 +68,27 @@ fn range(text: &str, example: &str, end: impl Fn(&str) -> Result<f64, String>) -
         return Err(format!("give FROM:TO, such as {example}"));
     };
     let (from, to) = (end(from)?, end(to)?);
-    ascending(from, to)?;
+    check_order(from, to)?;
     Ok((from, to))
 }
 
-/// Whether TO does not lie below FROM.
-pub fn ascending(from: f64, to: f64) -> Result<(), String> {
+/// Refuses a TO below FROM.
+pub fn check_order(from: f64, to: f64) -> Result<(), String> {
     if to < from { Err(format!("TO ({to}) lies below FROM ({from}): exchange them")) } else { Ok(()) }
 }
 
-/// The width of a band, percent.
+/// Parses the width of a band, percent.
 pub fn band(text: &str) -> Result<f64, String> {
     let (percent, range) = (number(text)?, "the band is above 0 and at most 50 percent wide; 5 is usual");
     if percent > 0.0 && percent <= 50.0 { Ok(percent) } else { Err(range.into()) }
 }
 
-/// The half-width of the angle, degrees.
+/// Parses the half-width of the angle, degrees.
 pub fn angle_tolerance(text: &str) -> Result<f64, String> {
     within(text, 0.0, LARGEST_TOLERANCE, "the tolerance of the angle lies between 0 and 20 degrees")
 }
 
-/// The half-width of the geometry, percent.
+/// Parses the half-width of the geometry, percent.
 pub fn geometry_tolerance(text: &str) -> Result<f64, String> {
     within(text, 0.0, LARGEST_TOLERANCE, "the tolerance of the geometry lies between 0 and 20 percent")
 }

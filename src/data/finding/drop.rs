@@ -4,7 +4,7 @@ use super::{Finding, IssueCode as Code, Severity};
 use crate::data::keys::quantity_words;
 use crate::data::shown::digits;
 use crate::data::{
-    CheckKind, CoarseEvent, Comparison, Consistency, Cure, Drop, End, Estimate, ObservedBeside,
+    CheckKind, CoarseEvent, Comparison, Consistency, Drop, End, Estimate, ObservedBeside, Remedy,
 };
 
 findings! {
@@ -214,14 +214,14 @@ pub enum DropFinding of Drop {
          join(closures, |c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.largest_residual()), ", "));
     /// With the correction of a likely mistake everything is consistent; or with either of two, and nothing
     /// decides between them.
-    UsualSlip { cures: Vec<Cure>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
-        ("{}: check this first; it has not been applied", join(cures, cure_words, "; "));
+    UsualMistake { remedies: Vec<Remedy>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
+        ("{}: check this first; it has not been applied", join(remedies, remedy_words, "; "));
     /// With one of these numbers in place of the stated one everything is consistent.
-    OneNumber { cures: Vec<Cure>, severity: Severity } => (Code::Geometry, *severity, Hint),
-        ("if all else is as stated, {}: check this first; it has not been applied", join(cures, cure_words, "; "));
+    OneNumber { remedies: Vec<Remedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
+        ("if all else is as stated, {}: check this first; it has not been applied", join(remedies, remedy_words, "; "));
     /// More than two causes explain it as well.
-    SeveralCauses { cures: Vec<Cure>, severity: Severity } => (Code::Geometry, *severity, Hint),
-        ("several mistakes would explain it, each alone: {}: check these", join(cures, Cure::keys, "; "));
+    SeveralCauses { remedies: Vec<Remedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
+        ("several mistakes would explain it, each alone: {}: check these", join(remedies, Remedy::keys, "; "));
 }
 }
 
@@ -234,9 +234,9 @@ fn closure_code(closure: CheckKind) -> Code {
 }
 
 /// Formats "with `drop.height_m` in ft everything is consistent, at 20.49 ± 0.11 m/s and k = 0.56 ± 0.01".
-fn cure_words(cure: &Cure) -> String {
-    let (speed, k) = cure.causes.first().map_or((None, None), |cause| (cause.speed, cause.k));
-    format!("with {} everything is consistent, at {}", cure.keys(), numbers(speed, k))
+fn remedy_words(remedy: &Remedy) -> String {
+    let (speed, k) = remedy.causes.first().map_or((None, None), |cause| (cause.speed, cause.k));
+    format!("with {} everything is consistent, at {}", remedy.keys(), numbers(speed, k))
 }
 
 fn join<T>(all: &[T], words: impl Fn(&T) -> String, between: &str) -> String {

@@ -31,10 +31,7 @@ fn pair() -> [Signal; 2] {
 
 fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
     let events = Events { separation: Some(At::exact(0.025)), ..example::events(0.02, 0.09) };
-    judge_by_themselves(signals, &events, None, &cask_file())
-        .into_iter()
-        .map(|i| (i.code, i.channel))
-        .collect()
+    judge_singly(signals, &events, None, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
 }
 
 #[test]
@@ -49,7 +46,7 @@ fn noise_that_moves_the_velocity_is_named() {
     // note; 0.69 for 10, above 3 %.
     let severity = |noisy: &[Signal]| {
         let events = example::events(0.02, 0.09);
-        judge_by_themselves(noisy, &events, None, &cask_file()).first().map(|i| (i.code, i.severity))
+        judge_singly(noisy, &events, None, &cask_file()).first().map(|i| (i.code, i.severity))
     };
     noisy[0].noise_spectrum = vec![(10.0, 0.04), (5000.0, 0.04)];
     assert_eq!(severity(&noisy), None);
@@ -73,7 +70,7 @@ fn what_the_numbers_are_known_to_holds_noise_and_a_coarse_step() {
     let severities = |k_u95: f64, speed_u95: f64| {
         let mut found = [noise.clone().tag("A1"), coarse.clone().tag("A1")];
         let (k, speed) = (Estimate::new(0.5, k_u95, "1"), Estimate::new(20.0, speed_u95, "m/s"));
-        note_what_is_held(&mut found, k, Some(speed));
+        downgrade_harmless(&mut found, k, Some(speed));
         found.map(|found| found.severity)
     };
     assert_eq!(severities(0.05, 0.5), [Severity::Note, Severity::Note]);
@@ -110,7 +107,7 @@ fn a_record_that_begins_in_the_impact_is_named() {
         let mut events =
             Events { first_contact: Some(At::exact(late[0].start_s.max(0.02))), ..Events::default() };
         events.separation = Some(At::exact(0.025));
-        let findings = judge_by_themselves(&late, &events, None, &cask_file());
+        let findings = judge_singly(&late, &events, None, &cask_file());
         assert_eq!(findings.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{findings:?}");
     }
 }

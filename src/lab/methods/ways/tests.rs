@@ -25,7 +25,7 @@ fn prepared(class: &DropClass, count: u64) -> Vec<Prepared> {
         let (recording, file) = (drop.read(&written).expect("a recording that is read"), &drop.stated);
         let velocity_m_s = file.drop.transverse_velocity_m_s();
         let coarse = events::Changes::new(&recording.channels).locate(velocity_m_s).expect("an impact");
-        let reach = condition::Reach::of(&file.cask, &file.drop);
+        let reach = condition::Reach::for_drop(&file.cask, &file.drop);
         let (signals, _) = condition::condition(&recording, &coarse, &reach, file.corrections);
         Prepared { contact_s: written.first_contact_s, signals, coarse, drop }
     };
