@@ -242,6 +242,7 @@ fn analyse_once(recording: &Recording, file: &CaskFile, effort: SearchEffort) ->
     findings.extend(channel_findings);
     let (cutoff_hz, _) = motion::cutoff_hz(file.filter, file.cask.mass_kg);
     findings.extend(judge::judge_jumps(impact.recorded(), events));
+    findings.extend(judge::judge_quiet(impact.recorded(), events));
     let narrow = judge::judge_bandwidth(impact.recorded(), events, cutoff_hz, &findings);
     findings.extend(narrow);
     let across = [&impact.across, impact.recorded()];

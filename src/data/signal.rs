@@ -12,7 +12,7 @@ pub const MOST_LOST_M_S: f64 = 0.27;
 const CLEAR_OF_NOISE: f64 = 6.0;
 
 /// Fewest samples of a flank that the chain limits.
-pub const LEAST_FLANK: usize = 12;
+pub const LEAST_FLANK: usize = 8;
 /// A limited level changes by less than this share, a limited flank by more; noise lets a flank exceed its
 /// first sample by less than this factor.
 const LEVEL_SHARE: f64 = 0.2;

@@ -46,7 +46,7 @@ pub use result::{
 pub use rigid::{SensorPlace, judge_rigid, transverse_places};
 pub use sampling::{fit_rate_hz, nothing_from_hz};
 pub use separation::{judge_separation, judge_unresolved};
-pub use silent::{judge_at_stop, judge_silent};
+pub use silent::{judge_at_stop, judge_quiet, judge_silent};
 pub use skew::judge_skew;
 pub use taps::judge_taps;
 

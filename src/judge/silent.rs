@@ -1,7 +1,7 @@
 //! Finds channels that show nothing: unplugged, stuck, or with nothing but noise and hum; and channels that
 //! stand at their stop from some time to their end.
 
-use crate::data::{Axis, Channel, ChannelFinding, Finding, of_either};
+use crate::data::{Axis, Channel, ChannelFinding, End, Events, Finding, Signal, of_either};
 use crate::numerics::{as_count, reduce, robust};
 use rayon::prelude::*;
 
@@ -21,6 +21,8 @@ const SAMPLED: usize = 500;
 /// Shortest time, s, and fewest samples for which a channel stands at its stop to its end.
 const AT_STOP_S: f64 = 0.01;
 const LEAST_AT_STOP: usize = 64;
+/// The second end strikes within this time, s, after its slap-down is found.
+const STRIKES_S: f64 = 0.02;
 /// Those samples lie within this many spreads, plus this share of the level.
 const WITHIN_SPREADS: f64 = 6.0;
 const WITHIN_SHARE: f64 = 1e-3;
@@ -44,6 +46,29 @@ pub fn judge_at_stop(channel: &Channel, all: &[Channel]) -> Option<(usize, Findi
     let finding = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
     let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
     is_stop.then(|| (from, finding.tag(&channel.name).span(from_s, to_s)))
+}
+
+/// Reports each transverse channel of the second end that reads nothing but noise as that end strikes, while
+/// another channel is struck.
+pub fn judge_quiet(signals: &[Signal], events: &Events) -> Vec<Finding> {
+    let Some((contact_s, struck_s)) = events.first_contact_s().zip(events.slap_down_s()) else {
+        return Vec::new();
+    };
+    let excursions = signals.iter().filter(|s| s.axis == Axis::Transverse).filter_map(|signal| {
+        let (from, to) = (signal.index_from(struck_s), signal.index_from(struck_s + STRIKES_S));
+        let is_lost = signal.overlaps(&signal.gaps, struck_s, struck_s + STRIKES_S);
+        let within = signal.force_m_s2.get(from..to).filter(|within| within.len() >= LEAST_AT_STOP && !is_lost)?;
+        let (low, high) = reduce::extremes(within, robust::median(&mut within.to_vec()));
+        Some((signal, high - low))
+    });
+    let excursions: Vec<(&Signal, f64)> = excursions.collect();
+    let loudest = excursions.iter().filter(|(signal, range)| *range > LOUD_SPREADS * signal.noise_m_s2);
+    let Some(loudest_m_s2) = loudest.map(|(_, range)| *range).reduce(f64::max) else { return Vec::new() };
+    let is_quiet = |(signal, range): &&(&Signal, f64)| {
+        signal.end == End::Second && *range < 2.0 * SILENT_SPREADS * signal.noise_m_s2
+    };
+    let finding = ChannelFinding::Quiet { after_s: struck_s - contact_s, others_m_s2: loudest_m_s2 };
+    excursions.iter().filter(is_quiet).map(|(signal, _)| finding.clone().tag(&signal.name)).collect()
 }
 
 /// Largest deviation of a channel from its median, m/s², and the spread of its samples where it is quietest,
