@@ -21,6 +21,8 @@ const STRUCK_FACTOR: f64 = 1.5;
 /// within the second share.
 const RELEASE: f64 = 0.1;
 const STOP: f64 = 0.25;
+/// A jump within this many samples after the first contact is its beginning.
+const ONSET_SAMPLES: f64 = 3.0;
 /// A cable that breaks leaves nothing but noise in its channel, which comes within the second share of the
 /// change of its new level in this many samples.
 const FALL_SAMPLES: usize = 4;
@@ -52,10 +54,15 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
         let others = || across().filter(|other| other.name != signal.name);
         let is_inside =
             |at_s: f64, share| !events.separation.is_some_and(|left| is_end(left, at_s, share, contact_s));
-        let is_alone =
-            |size, at_s| is_inside(at_s, RELEASE) && others().all(|other| !is_struck(other, at_s, size));
+        let is_alone = |size, at_s| others().all(|other| !is_struck(other, at_s, size));
         let jump = || {
-            let at = largest_jump(signal, within.clone(), is_alone)?;
+            let jumps = find_jumps(signal, within.clone(), is_alone);
+            // A contact begins and ends once.
+            let begins_s = contact_s + ONSET_SAMPLES / signal.sample_rate_hz;
+            let is_between = |at_s| at_s > begins_s && is_inside(at_s, RELEASE);
+            let is_break = |at: &&usize| jumps.len() > 1 || is_between(signal.time_s(**at));
+            let size = |at: usize| step(&signal.force_m_s2, at);
+            let at = *jumps.iter().filter(is_break).max_by(|a, b| size(**a).total_cmp(&size(**b)))?;
             Some((at, signal.force_m_s2[at + 1] - signal.force_m_s2[at]))
         };
         let stops_alone = |at_s| is_inside(at_s, STOP) && others().all(|other| !stops_about(other, at_s));
@@ -71,20 +78,20 @@ fn is_end(left: At, at_s: f64, share: f64, contact_s: f64) -> bool {
     (at_s - left.time_s).abs() < share * (left.time_s - contact_s) + 2.0 * left.u_s
 }
 
-/// Returns the sample before the largest jump in a range, among those whose size and time are `alone`.
-fn largest_jump(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) -> bool) -> Option<usize> {
+/// Returns the samples before the jumps in a range whose size and time are `alone`.
+fn find_jumps(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) -> bool) -> Vec<usize> {
     let force = &signal.force_m_s2;
     let least = SHARE_OF_PEAK * reduce::peak(force);
     let high = steps_with_sides(force, within).filter(|i| step(force, *i) > least);
     let is_jump = |&i: &usize| {
         let level = |samples: Range<usize>| robust::median(&mut force[samples].to_vec());
         let lasting = level(i + 1..i + 1 + AROUND) - level(i + 1 - AROUND..i + 1);
-        is_isolated(force, i, ISOLATED_FACTOR)
+        is_isolated(force, i, ISOLATED_FACTOR, 1)
             && lasting * (force[i + 1] - force[i]).signum() > LASTING_SHARE * step(force, i)
             && !has_lost(signal, (i + 1).saturating_sub(AROUND)..i + AROUND + 1)
             && alone(step(force, i), signal.time_s(i))
     };
-    high.filter(is_jump).max_by(|one, other| step(force, *one).total_cmp(&step(force, *other)))
+    high.filter(is_jump).collect()
 }
 
 /// True if a channel also jumps about a time at which another one jumps by `size`.
@@ -92,7 +99,7 @@ fn is_struck(signal: &Signal, at_s: f64, size: f64) -> bool {
     let force = &signal.force_m_s2;
     let at = signal.index_from(at_s);
     steps_with_sides(force, at.saturating_sub(1)..at + 2)
-        .any(|i| step(force, i) > OTHER_SHARE * size && is_isolated(force, i, STRUCK_FACTOR))
+        .any(|i| step(force, i) > OTHER_SHARE * size && is_isolated(force, i, STRUCK_FACTOR, 0))
 }
 
 /// True if samples of a range are missing or stand at a limit.
@@ -149,10 +156,10 @@ fn step(force: &[f64], i: usize) -> f64 {
 }
 
 /// True if the step after a sample is this many times the largest beside it, except the adjacent ones, to
-/// which a filter spreads the jump.
-fn is_isolated(force: &[f64], i: usize, times: f64) -> bool {
+/// which a filter spreads the jump, and except `others`: a short break jumps back.
+fn is_isolated(force: &[f64], i: usize, times: f64, others: usize) -> bool {
     let beside = (i - AROUND..i - 1).chain(i + 2..i + AROUND);
-    step(force, i) > times * beside.map(|i| step(force, i)).fold(0.0, f64::max)
+    beside.filter(|beside| step(force, i) <= times * step(force, *beside)).count() <= others
 }
 
 #[cfg(test)]
