@@ -25,7 +25,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let layout = Layout::of(&text).ok_or_else(|| no_table(path))?;
     let clocks = clocks(&layout);
     let plans = plans(&layout, &clocks);
-    let wanted = Wanted::all(&clocks, &layout);
+    let wanted = Wanted::of(&plans, &layout, true);
     let mut table = Table::new(&layout, &plans, &wanted).for_listing();
     let mut issues = Vec::from_iter(table.read(text, request)?.map(Finding::from));
     let blank = table.drop_blank();
