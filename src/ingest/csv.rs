@@ -43,7 +43,7 @@ pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawReco
         plan.map_err(|refusal| error::of_channel(path, &spec.name, refusal))
     };
     let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
-    let wanted = Wanted::of(&plans, &layout);
+    let wanted = Wanted::of(&plans, &layout, false);
     let mut table = Table::new(&layout, &plans, &wanted);
     let mut issues = Vec::from_iter(table.read(text, request)?.map(Finding::from));
     table.drop_blank().map_err(|refusal| error::of_file(path, refusal.at("the rows")))?;

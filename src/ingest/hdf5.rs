@@ -1,6 +1,7 @@
 //! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own
 //! times.
 
+mod account;
 mod answer;
 mod attributes;
 mod channel;
@@ -40,12 +41,9 @@ use super::{RawChannel, RawRecording, ReadRequest};
 use super::{error, error::IngestError};
 use crate::data::{CaskFile, ChannelSpec, Source};
 use crate::numerics::as_f64;
-use channel::DatasetChannel;
-use clocks::Clocks;
-use column::DatasetColumn;
+use account::Account;
+use channel::{Based, DatasetChannel};
 use room::File;
-use starts::Start;
-use std::collections::HashMap;
 #[cfg(all(unix, feature = "native"))]
 use std::ffi::OsString;
 use std::rc::Rc;
@@ -118,94 +116,47 @@ fn begin_without_variables(program: &Path) {
 /// A damaged file, a source that is not there or holds no numbers, times that are none.
 pub(super) fn read(request: ReadRequest, cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
     let file = File::open(request.file, request.limits)?;
-    let clocks = Clocks::default();
-    let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);
-    let (mut channels, mut starts) = (Vec::with_capacity(count), Vec::new());
+    let (mut channels, mut account) = (Vec::with_capacity(count), Account::default());
     for (index, spec) in cask_file.channels.iter().enumerate() {
-        let channel = read_channel(&mut room, spec, cask_file.time.as_deref());
+        let channel = read_channel(&file, spec, cask_file.time_source(spec), &mut account);
         // A library that broke off gives no answers, which is not what is wrong with the channel.
         file.whole()?;
-        let (channel, start) = channel?;
-        channels.push(channel);
-        starts.push((spec.source.to_string(), start));
-        let is_common = starts::require_common(&starts);
+        channels.push(channel?);
+        let is_common = account.require_common_start();
         is_common.map_err(|fault| error::of_channel(request.file.path, &spec.name, fault))?;
         (request.progress)(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
-/// What of the memory is taken, and what is unpacked for it.
-struct MemoryTaken<'a> {
-    file: &'a Rc<File>,
-    held_bytes: u64,
-    /// Of all chunks of each dataset.
-    unpacked_bytes: HashMap<String, u64>,
-    clocks: Clocks,
-}
-
-impl MemoryTaken<'_> {
-    /// Takes room for a column before it is read.
-    fn take(&mut self, column: &DatasetColumn) -> Result<(), IngestError> {
-        let File { limits, path, .. } = &**self.file;
-        self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
-        let (source, unpacked) = (&column.source, limits.unpacked_bytes(self.file.bytes));
-        self.unpacked_bytes.insert(column.path.clone(), column.dataset.unpacked_bytes());
-        let unpacked_bytes = self.unpacked_bytes.values().fold(0, |all: u64, own| all.saturating_add(*own));
-        let idle_bytes = column.dataset.idle_bytes();
-        let bounds = [
-            (column.part_bytes(), limits.part_bytes(), format!("a block of {source} takes")),
-            (idle_bytes, limits.idle_bytes(), format!("a chunk of {source} is wider than its dataset by")),
-            (self.held_bytes, unpacked, "the samples of the channels read unpack to".into()),
-            (unpacked_bytes, unpacked, format!("the chunks of {source} and of those before unpack to")),
-            (self.held_bytes, limits.samples_bytes(), "the samples of the channels read take".into()),
-        ];
-        bounds.iter().try_for_each(|(bytes, most, what)| limits.hold(path, what, *bytes, *most))
-    }
-
-    /// Whether there is room for a column that is not kept.
-    fn has_for_a_while(&mut self, column: &DatasetColumn) -> bool {
-        let held_bytes = self.held_bytes;
-        let has_room = self.take(column).is_ok();
-        self.held_bytes = held_bytes;
-        has_room
-    }
-}
-
 fn read_channel(
-    room: &mut MemoryTaken,
+    file: &Rc<File>,
     spec: &ChannelSpec,
     time: Option<&str>,
-) -> Result<(RawChannel, Start), IngestError> {
-    let path = &room.file.path;
-    let refused = |fault: Refusal| error::of_channel(path, &spec.name, fault);
+    account: &mut Account,
+) -> Result<RawChannel, IngestError> {
+    let refused = |fault: Refusal| error::of_channel(&file.path, &spec.name, fault);
     let Source::Path(source) = &spec.source else {
         return Err(refused(Refusal::new(
             "source gives a topic and a field, but this recording is HDF5",
             "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column",
         )));
     };
-    let column = find::locate(room.file, source).map_err(refused)?;
-    room.take(&column)?;
-    let channel = DatasetChannel::of(
-        column,
-        (spec.sample_rate_hz, spec.scale.is_some()),
-        spec.time.as_deref().or(time),
-        &mut room.clocks,
-    );
-    let mut channel = channel.map_err(refused)?;
-    channel.pick(spec.rows.as_ref(), |ids| room.has_for_a_while(ids)).map_err(refused)?;
-    channel.count_rows(|counter| room.has_for_a_while(counter));
-    channel.times.first().map_or(Ok(()), |time| room.take(time))?;
+    let column = find::locate(file, source).map_err(refused)?;
+    account.take(&column)?;
+    let sensors = channel::sensors_of(&column, spec.rows.as_ref(), account).map_err(refused)?;
+    let channel = DatasetChannel::of(column, spec, time, sensors.as_ref(), account).map_err(refused)?;
+    channel.times.first().map_or(Ok(()), |time| account.take(time))?;
     let samples = channel.samples().map_err(refused)?;
-    let based = channel.on_base(samples, |other| room.has_for_a_while(other)).map_err(refused)?;
-    let (mut uniform, attributes) = (based.uniform, channel.attributes);
+    let Based { mut uniform, start } = channel.on_base(samples, account).map_err(refused)?;
+    let attributes = channel.attributes;
     uniform.issues.extend(attributes.issues);
+    account.begin(&spec.source.to_string(), start);
     match attributes.two_units {
         // The cask file's goes before all.
         Some(two) if spec.unit.is_none() => Err(refused(two.at(source))),
-        _ => Ok((RawChannel { uniform, unit: attributes.unit, factors: attributes.factors }, based.start)),
+        _ => Ok(RawChannel { uniform, unit: attributes.unit, factors: attributes.factors }),
     }
 }
 

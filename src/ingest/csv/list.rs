@@ -5,7 +5,7 @@ use super::columns::HeldColumn;
 use super::complaint::no_table;
 use super::layout::Layout;
 use super::plan::ColumnPlan;
-use super::table::{Table, picked};
+use super::table::{CommonRows, Table, own_rows, picked};
 use super::wanted::Wanted;
 use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
@@ -25,7 +25,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     let layout = Layout::of(&text).ok_or_else(|| no_table(path))?;
     let clocks = clocks(&layout);
     let plans = plans(&layout, &clocks);
-    let wanted = Wanted::all(&clocks, &layout);
+    let wanted = Wanted::of(&plans, &layout, true);
     let mut table = Table::new(&layout, &plans, &wanted).for_listing();
     let mut issues = Vec::from_iter(table.read(text, request)?.map(Finding::from));
     let blank = table.drop_blank();
@@ -33,7 +33,8 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     // Times are listed as they stand there, before they are turned into s.
     let several = clocks.iter().flatten().filter(|_| clocks.len() > 1);
     let names: BTreeMap<usize, String> = several.map(|&time| (time, layout.unique_name(time))).collect();
-    let of_column = |plan: &ColumnPlan| column(&table, plan, &names);
+    let common = table.common_rows();
+    let of_column = |plan: &ColumnPlan| column(&table, plan, &common, &names);
     let mut channels: Vec<ListedChannel> = plans.par_iter().map(of_column).collect();
     let with_missing = blank.and_then(|()| place(&mut table, &mut channels, &mut issues));
     let with_missing = with_missing.unwrap_or_else(|refusal| {
@@ -90,15 +91,18 @@ fn plans(layout: &Layout, clocks: &[Option<usize>]) -> Vec<ColumnPlan> {
 }
 
 /// Lists a channel but for its clock; `clocks` are the names of the columns of times where there are several.
-fn column(table: &Table, plan: &ColumnPlan, clocks: &BTreeMap<usize, String>) -> ListedChannel {
+fn column(
+    table: &Table,
+    plan: &ColumnPlan,
+    common: &CommonRows,
+    clocks: &BTreeMap<usize, String>,
+) -> ListedChannel {
     let (layout, rows) = (table.layout, table.rows());
     let column = &layout.columns[plan.column];
     let values = table.values(plan.column);
-    let own = match table.rows_of(plan, &values) {
-        Ok(None) => values,
-        Ok(Some(is_own)) => picked(&values, &is_own).into(),
-        Err(_) => Vec::new().into(),
-    };
+    let common = common[&plan.common_key()].as_ref().map_or(Some(&[][..]), Option::as_deref);
+    let own = own_rows(plan, &values, common);
+    let own = own.as_deref().or(common).map_or_else(|| values.clone(), |rows| picked(&values, rows).into());
     let range = ListedChannel::value_range(own.iter().copied());
     let words = &table.words[plan.column];
     let tells_sensors = layout.tells_sensors(plan.column);

@@ -36,7 +36,8 @@ fn input(rows: &[u8], ahead: usize) -> Text {
 
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
-    let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
+    let plans = [1, 2].map(|column| ColumnPlan::of_column(column, Some(0), layout));
+    let wanted = Wanted::of(&plans, layout, false);
     let empty = || Table::new(layout, &[], &wanted);
     let mut table = empty();
     let end = read(input(rows, ahead), (layout, &wanted), &mut table, sizes, &|_| ());
@@ -158,7 +159,8 @@ impl std::io::Read for Broken {
 #[test]
 fn rows_before_a_failure_to_read_are_looked_at_first() {
     let layout = layout(".0");
-    let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
+    let plans = [1, 2].map(|column| ColumnPlan::of_column(column, Some(0), &layout));
+    let wanted = Wanted::of(&plans, &layout, false);
     let sizes = Sizes { piece_bytes: 64, batch_bytes: 256, ..IN_ORDER };
     let good = "1,2,3\n".repeat(42);
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {

@@ -5,7 +5,7 @@ use super::cells::Delimiter;
 use super::header::{header_cells, name_and_unit};
 use crate::data::{Finding, TableFinding};
 use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};
-use crate::ingest::{factors, statement::Statement, statement::number_and_unit};
+use crate::ingest::{factors, number, statement::Statement, statement::number_and_unit};
 
 /// What closes the header of LabVIEW's measurement files, and that of the first segment in it.
 const END_OF_HEADER: &str = "***End_of_Header***";
@@ -126,7 +126,9 @@ fn entry(line: &str, delimiter: Delimiter) -> Option<(String, String)> {
     let values: Vec<String> =
         values.filter(|value| !value.is_empty()).map(|value| value.replace(',', ".")).collect();
     let (first, rest) = values.split_first()?;
-    if value.split_whitespace().next().is_some_and(may_have_thousands) {
+    // `10,000` is ten thousand, or ten with three decimals.
+    let is_open = |number: &str| !number.starts_with('0') && number::is_grouped(number, Some(b'.'));
+    if value.split_whitespace().next().is_some_and(is_open) {
         return None;
     }
     let is_number = |value: &String| value.parse::<f64>().is_ok();
@@ -135,17 +137,6 @@ fn entry(line: &str, delimiter: Delimiter) -> Option<(String, String)> {
     let value =
         if is_number(first) { format!("{first} {}", unit.unwrap_or_default()) } else { first.clone() };
     is_one.then(|| (name.to_owned(), value.trim().to_owned()))
-}
-
-/// Whether a number is ten thousand, or ten with three decimals: `10,000`.
-fn may_have_thousands(number: &str) -> bool {
-    let mut groups = number.split(',');
-    let is_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
-    let leads = groups
-        .next()
-        .is_some_and(|first| (1..=3).contains(&first.len()) && !first.starts_with('0') && is_digits(first));
-    let mut groups = groups.peekable();
-    leads && groups.peek().is_some() && groups.all(|group| group.len() == 3 && is_digits(group))
 }
 
 /// What a line says that may be a factor of the samples: `Scale factor;0,9;0,8`, `1 LSB = 0.9 g`, `# gain 2`.

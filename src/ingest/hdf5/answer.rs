@@ -279,6 +279,12 @@ impl Dataset {
     }
 }
 
+/// How long an answer is in a frame.
+#[cfg(any(not(feature = "native"), test, fuzzing))]
+pub(super) fn frame_bytes(answer: &Reply) -> io::Result<usize> {
+    postcard::to_stdvec(answer).map(|bytes| bytes.len()).map_err(Error::other)
+}
+
 /// Sends a request or an answer.
 pub(super) fn send(to: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(Error::other)?;

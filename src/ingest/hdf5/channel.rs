@@ -1,13 +1,14 @@
 //! A source to a channel as it is taken: its column, what is said of it, its times, its samples on one base.
-//! ReadRequest and listing share it.
+//! Reading and listing share it.
 
+use super::account::Account;
 use super::attributes::Attributes;
-use super::clocks::{self, Clocks};
+use super::clocks;
 use super::column::DatasetColumn;
 use super::find;
 use super::sensors::RecordSensors;
 use super::starts::{LATEST_S, Start};
-use crate::data::{RowsOf, Samples};
+use crate::data::{ChannelSpec, RowsOf, Samples};
 use crate::ingest::clock::Claims;
 use crate::ingest::counting::{RowCounter, with_missing};
 use crate::ingest::refusal::Refusal;
@@ -35,20 +36,21 @@ pub(super) struct Based {
 }
 
 impl DatasetChannel {
-    /// With the times of the name that the cask file gives, else those beside the samples that have a usual
-    /// one; `cask_hz` is its rate, and
-    /// `is_settled` where the file states its scale.
+    /// As `spec` asks for it, with the times of the name that the cask file gives, else those beside the
+    /// samples that have a usual one; `sensors` are those by which its samples are told apart.
     ///
     /// # Errors
-    /// Attributes that contradict each other, times that are none.
+    /// Attributes that contradict each other, times that are none, no sensor picked of several.
     pub(super) fn of(
         column: DatasetColumn,
-        (cask_hz, is_settled): (Option<f64>, bool),
+        spec: &ChannelSpec,
         time: Option<&str>,
-        clocks: &mut Clocks,
+        sensors: Option<&RecordSensors>,
+        account: &mut Account,
     ) -> Result<Self, Refusal> {
-        let mut attributes =
-            Attributes::of(&column, is_settled).map_err(|refusal| refusal.at(&column.source))?;
+        let at = |fault: Refusal| fault.at(&column.source);
+        let mut attributes = Attributes::of(&column, spec.scale.is_some()).map_err(at)?;
+        let clocks = &mut account.clocks;
         if let Some(since_s) = &mut attributes.start.since_s {
             *since_s -= *clocks.zero_s.get_or_insert(*since_s);
         }
@@ -59,37 +61,16 @@ impl DatasetChannel {
             times.insert(0, named);
         }
         let stated = std::mem::take(&mut attributes.stated);
-        let claims = Claims { cask_hz, are_times_named: time.is_some(), stated };
-        Ok(Self { column, attributes, claims, times, rows: None, counter: None })
-    }
-
-    /// Takes the samples of one sensor alone.
-    ///
-    /// # Errors
-    /// None is picked of several, or none that is there.
-    pub(super) fn pick(
-        &mut self,
-        picked: Option<&RowsOf>,
-        mut may_read: impl FnMut(&DatasetColumn) -> bool,
-    ) -> Result<(), Refusal> {
-        let named = picked.map(|picked| named_beside(&self.column, &picked.column)).transpose()?;
-        let beside = named.map_or_else(|| clocks::sensors_beside(&self.column), |named| vec![named]);
-        let mut beside = beside.iter().filter(|ids| ids.length == self.column.length && may_read(ids));
-        let sensors = beside.find_map(|ids| RecordSensors::by(ids, picked.is_some()));
-        let sensors = sensors.or_else(|| picked.map(|_| RecordSensors::default()));
-        let rows = sensors.map(|sensors| sensors.rows(picked)).transpose();
-        self.rows = rows.map_err(|fault| fault.at(&self.column.source))?;
-        Ok(())
-    }
-
-    /// Looks beside the samples for a counter of them that shows some to be missing.
-    pub(super) fn count_rows(&mut self, mut may_read: impl FnMut(&DatasetColumn) -> bool) {
-        let counter =
-            |column: DatasetColumn| RowCounter::of(&column.source, &column.samples().ok()?.into_f64());
-        let is_own = |other: &DatasetColumn| self.times.iter().any(|time| time.source == other.source);
-        let beside = clocks::counters_beside(&self.column).into_iter().filter(|other| !is_own(other));
-        let found = beside.filter(|column| may_read(column)).find_map(counter);
-        self.counter = found.filter(|counter| self.rows.is_none() && counter.shows_loss());
+        let claims = Claims { cask_hz: spec.sample_rate_hz, are_times_named: time.is_some(), stated };
+        let rows = sensors.map(|sensors| sensors.rows(spec.rows.as_ref())).transpose().map_err(at)?;
+        let is_other = |other: &DatasetColumn| times.iter().all(|time| time.source != other.source);
+        let counters = if rows.is_none() { clocks::counters_beside(&column) } else { Vec::new() };
+        let mut counters =
+            counters.into_iter().filter(|other| is_other(other) && account.has_for_a_while(other));
+        let counter = counters.find_map(|it| RowCounter::of(&it.source, &it.samples().ok()?.into_f64()));
+        let counter = counter.filter(RowCounter::shows_loss);
+        drop(counters);
+        Ok(Self { column, attributes, claims, times, rows, counter })
     }
 
     /// Its numbers, scaled.
@@ -110,21 +91,17 @@ impl DatasetChannel {
     }
 
     /// Its samples at their times, or at the rate that is stated; of others beside the times those are held
-    /// against them for which `may_read` has room.
+    /// against them for which there is room.
     ///
     /// # Errors
     /// Nothing says when the samples were taken, or what does contradicts itself.
-    pub(super) fn on_base(
-        &self,
-        samples: Samples,
-        mut may_read: impl FnMut(&DatasetColumn) -> bool,
-    ) -> Result<Based, Refusal> {
+    pub(super) fn on_base(&self, samples: Samples, account: &mut Account) -> Result<Based, Refusal> {
         let at = |fault: Refusal| fault.at(&self.column.source);
         // A rate that is stated tells the unit of times that state none.
         let stated_hz = self.claims.cask_hz.or(self.claims.stated.first().map(|stated| stated.rate_hz));
         let (mut others, mut unfit) = (self.times.iter(), None);
         while let Some(time) = others.next() {
-            if unfit.is_some() && !may_read(time) {
+            if unfit.is_some() && !account.has_for_a_while(time) {
                 continue;
             }
             let mut counted = clocks::counted(time).map_err(at)?;
@@ -155,7 +132,7 @@ impl DatasetChannel {
             uniform.issues.extend(told);
             // A rate that bears the times out decides between them and others.
             let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
-            for other in others.filter(|other| self.rows.is_none() && may_read(other)) {
+            for other in others.filter(|other| self.rows.is_none() && account.has_for_a_while(other)) {
                 let told = clocks::witness((time, &times_s), other, is_decided);
                 uniform.issues.extend(told.map_err(at)?);
             }
@@ -185,6 +162,23 @@ impl DatasetChannel {
         uniform.issues.extend(told);
         Ok(Based { uniform, start: start.clone() })
     }
+}
+
+/// The sensors by which the samples of a column are told apart: by what is `picked` for it, or by what stands
+/// beside it.
+///
+/// # Errors
+/// What is picked is not there.
+pub(super) fn sensors_of(
+    column: &DatasetColumn,
+    picked: Option<&RowsOf>,
+    account: &mut Account,
+) -> Result<Option<RecordSensors>, Refusal> {
+    let named = picked.map(|picked| named_beside(column, &picked.column)).transpose()?;
+    let beside = named.map_or_else(|| clocks::sensors_beside(column), |named| vec![named]);
+    let mut beside = beside.iter().filter(|ids| ids.length == column.length && account.has_for_a_while(ids));
+    let sensors = beside.find_map(|ids| RecordSensors::by(ids, picked.is_some()));
+    Ok(sensors.or_else(|| picked.map(|_| RecordSensors::default())))
 }
 
 /// What a cask file names; a bare name is looked for beside the samples first, in their own records before

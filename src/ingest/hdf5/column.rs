@@ -85,6 +85,12 @@ impl DatasetColumn {
         8 * self.length as u64
     }
 
+    /// How many values are unpacked to have them.
+    pub(super) fn values(&self) -> u64 {
+        let rows = (self.length as u64).saturating_mul(self.columns as u64);
+        rows.max(self.dataset.unpacked_bytes() / self.dataset.value_bytes.max(1))
+    }
+
     /// Memory of the largest block that the library must unpack, or that is read at once, to have them.
     pub(super) fn part_bytes(&self) -> u64 {
         let Storage::Chunked { shape: chunk, .. } = &self.dataset.storage else { return 0 };

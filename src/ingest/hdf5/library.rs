@@ -6,7 +6,7 @@ use super::answer::{
     StoredChunk, receive, send,
 };
 use super::tree::{
-    ELSEWHERE, LinkKind, MOST_BYTES, MOST_CHUNKS, MOST_VALUES, Members, Store, TEXT_BYTES, Tree, joined,
+    ELSEWHERE, LinkKind, MOST_BYTES, MOST_CHUNKS, MOST_VALUES, Members, Send, Store, TEXT_BYTES, Tree, joined,
 };
 use super::{names, types};
 use hdf5_metno::dataset::Layout;
@@ -49,7 +49,8 @@ pub(super) fn answer(
     to.flush()?;
     let mut tree = Tree::of(LibraryFile { file, grant }, is_walled);
     while let Ok((request, _)) = receive(from) {
-        tree.answer(request, to)?;
+        tree.answer(request, &mut |reply| send(to, &reply))?;
+        to.flush()?;
     }
     Ok(())
 }
@@ -92,13 +93,13 @@ impl Store for LibraryFile<'_> {
         self.file.dataset(path).ok().and_then(|dataset| value(&dataset))
     }
 
-    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
+    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, send: Send) -> io::Result<()> {
         let sent = if is_wide {
-            self.send_numbers(path, slab, |numbers| send(to, &Reply::Wide(numbers)))
+            self.send_numbers(path, slab, |numbers| send(Reply::Wide(numbers)))
         } else {
-            self.send_numbers(path, slab, |numbers| send(to, &Reply::Narrow(numbers)))
+            self.send_numbers(path, slab, |numbers| send(Reply::Narrow(numbers)))
         };
-        sent.or_else(|error| send(to, &Reply::Refused(words(&error))))
+        sent.or_else(|error| send(Reply::Refused(words(&error))))
     }
 }
 

@@ -1,26 +1,26 @@
 //! An HDF5 file to the list of its datasets and columns, each as reading would take it.
 
+use super::account::Account;
 use super::answer::Object;
-use super::channel::DatasetChannel;
-use super::clocks::{self, Clocks};
+use super::channel::{self, Based, DatasetChannel};
 use super::column::DatasetColumn;
 use super::fault;
 use super::find;
 use super::room::File;
 use super::sensors::RecordSensors;
-use super::starts::{self, Start};
-use crate::data::{AttributeFinding, ClockFinding, Finding, ListedChannel, Listing, RecordingFormat};
+use crate::data::{
+    AttributeFinding, ChannelSpec, ClockFinding, End, Finding, ListedChannel, Listing, RecordingFormat,
+    RowsOf,
+};
 use crate::ingest::listed::count_from_first;
 use crate::ingest::refusal::Refusal;
-use crate::ingest::{IngestError, Limits, Progress, ReadRequest};
+use crate::ingest::{IngestError, Progress, ReadRequest};
 use crate::numerics::as_f64;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// So many channels are listed at most.
 const MOST_CHANNELS: usize = 10_000;
-/// A longer column is not read: `inspect` should answer at once.
-const MOST_SAMPLES: usize = 20_000_000;
 /// So many values are read in all: names may stand for one large dataset many times over.
 const MOST_VALUES: u64 = 1 << 30;
 
@@ -30,13 +30,9 @@ const UNGUARDED: &str = ", which this system keeps from no other file or call: r
 /// What links are to what is not there or not followed; they stand behind the channels.
 const BROKEN: &str = "link";
 
-/// A list as it grows, and what it may still cost.
+/// A list as it grows, and what it costs.
 struct Lister {
-    limits: Limits,
-    values_left: u64,
-    clocks: Clocks,
-    /// What is said of the starts of channels that have a clock.
-    starts: Vec<(String, Start)>,
+    account: Account,
     listing: Listing,
 }
 
@@ -58,15 +54,14 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
         ..Listing::new(&file.path, file.bytes, RecordingFormat::Hdf5)
     };
     // No number takes fewer than four bytes once it is unpacked and turned.
-    let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
-    let (clocks, starts) = (Clocks::default(), Vec::new());
-    let mut lister = Lister { limits: file.limits, values_left, clocks, starts, listing };
+    let most_values = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
+    let mut lister = Lister { account: Account::for_listing(most_values), listing };
     let objects = file.walk();
     for (number, (path, object)) in objects.iter().enumerate() {
         lister.add(file, path, object);
         progress(as_f64(number + 1) / as_f64(objects.len()));
     }
-    if let Err(fault) = starts::require_common(&lister.starts) {
+    if let Err(fault) = lister.account.require_common_start() {
         lister.listing.issues.push(ClockFinding::Refused(fault.beside("")).into());
     }
     let mut listing = lister.listing;
@@ -112,13 +107,17 @@ impl Lister {
     }
 
     fn list(&mut self, column: &DatasetColumn) {
-        let beside: Vec<DatasetColumn> = clocks::sensors_beside(column);
-        let sensors =
-            beside.iter().filter(|ids| self.pays_for(ids)).find_map(|ids| RecordSensors::by(ids, false));
-        let all = sensors.map_or_else(|| vec![None], |sensors| sensors.all.into_iter().map(Some).collect());
+        let sensors = channel::sensors_of(column, None, &mut self.account).ok().flatten();
+        let all = sensors.iter().flat_map(|sensors| sensors.all.iter().cloned().map(Some));
+        let all: Vec<Option<RowsOf>> = if sensors.is_some() { all.collect() } else { vec![None] };
         for rows in all {
-            let mut listed = ListedChannel { rows, ..ListedChannel::new(&column.source, column.kind_name()) };
-            if let Err(fault) = self.fill(column.clone(), &mut listed) {
+            let mut listed = ListedChannel {
+                rows,
+                samples: Some(column.length as u64),
+                encoding: column.dataset.described(),
+                ..ListedChannel::new(&column.source, column.kind_name())
+            };
+            if let Err(fault) = self.fill(column.clone(), sensors.as_ref(), &mut listed) {
                 listed.unreadable = Some(why_unreadable(fault));
             }
             self.listing.channels.push(listed);
@@ -127,11 +126,15 @@ impl Lister {
 
     /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands
     /// in its place.
-    fn fill(&mut self, column: DatasetColumn, listed: &mut ListedChannel) -> Result<(), Refusal> {
-        let source = &listed.source.clone();
-        listed.samples = Some(column.length as u64);
-        listed.encoding = column.dataset.described();
-        let mut channel = match DatasetChannel::of(column, (None, false), None, &mut self.clocks) {
+    fn fill(
+        &mut self,
+        column: DatasetColumn,
+        sensors: Option<&RecordSensors>,
+        listed: &mut ListedChannel,
+    ) -> Result<(), Refusal> {
+        let (source, account) = (&listed.source.clone(), &mut self.account);
+        let spec = ChannelSpec { rows: listed.rows.clone(), ..ChannelSpec::new("", End::First, source, 0.0) };
+        let channel = match DatasetChannel::of(column, &spec, None, sensors, account) {
             Ok(channel) => channel,
             // What holds one value is no channel.
             Err(_) if listed.samples == Some(1) => return Ok(()),
@@ -140,19 +143,15 @@ impl Lister {
                 return Ok(());
             }
         };
-        if let Some(rows) = &listed.rows {
-            channel.pick(Some(rows), |ids| self.pays_for(ids))?;
-        }
-        channel.count_rows(|counter| self.pays_for(counter));
         let DatasetChannel { column, attributes, claims, times, .. } = &channel;
         listed.encoding += &attributes.scaling();
         listed.unit.clone_from(&attributes.unit);
+        let has_room = [column].into_iter().chain(times.first()).all(|it| account.has_for_a_while(it));
         if let Some(two) = &attributes.two_units {
             self.doubt(source, &two.clone().at(source), AttributeFinding::Refused);
         }
         self.listing.issues.extend(attributes.issues.iter().map(|issue| issue.clone().tag(source)));
-        let is_read = column.length <= MOST_SAMPLES && self.pays_for(column);
-        if !is_read || times.first().is_some_and(|time| !self.pays_for(time)) {
+        if !has_room {
             listed.sample_rate_hz = claims.stated.first().map(|stated| stated.rate_hz);
             return Ok(());
         }
@@ -163,30 +162,15 @@ impl Lister {
         if channel.has_no_clock() || count < 2 {
             return Ok(());
         }
-        match channel.on_base(samples, |other| self.pays_for(other)) {
+        match channel.on_base(samples, &mut self.account) {
             Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
-            Ok(based) => {
-                let uniform = based.uniform;
+            Ok(Based { uniform, start }) => {
                 uniform.list(listed);
-                self.starts.push((source.clone(), based.start));
+                self.account.begin(source, start);
                 self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.tag(source)));
             }
         }
         Ok(())
-    }
-
-    /// Whether a column may be read; it is then paid for.
-    fn pays_for(&mut self, column: &DatasetColumn) -> bool {
-        let values = (column.length as u64).saturating_mul(column.columns as u64);
-        let values = values.max(column.dataset.unpacked_bytes() / column.dataset.value_bytes.max(1));
-        let pays = column.held_bytes() <= self.limits.samples_bytes()
-            && column.part_bytes() <= self.limits.part_bytes()
-            && column.dataset.idle_bytes() <= self.limits.idle_bytes()
-            && values <= self.values_left;
-        if pays {
-            self.values_left -= values;
-        }
-        pays
     }
 
     /// That reading would refuse a channel, in its words.

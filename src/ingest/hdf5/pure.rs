@@ -7,9 +7,9 @@ mod words;
 
 use super::answer::{
     AttributeValue, Bytes, DEFLATE, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Reply, SHUFFLE, Slab,
-    Storage, StoredChunk, receive, send,
+    Storage, StoredChunk,
 };
-use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Store, Tree};
+use super::tree::{ELSEWHERE, MOST_CHUNKS, Members, Send, Store};
 use crate::numerics::to_f32;
 use attributes::type_of;
 use hdf5_reader::chunk_index::ChunkEntry;
@@ -20,9 +20,7 @@ use hdf5_reader::messages::filter_pipeline::FilterDescription;
 use hdf5_reader::messages::layout::DataLayout;
 use hdf5_reader::object_header::ObjectHeader;
 use hdf5_reader::{FilterRegistry, Hdf5File, OpenOptions};
-use std::cell::RefCell;
-use std::collections::VecDeque;
-use std::io::{self, Read, Write};
+use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
 use words::{beyond, words};
@@ -282,10 +280,10 @@ impl Store for InMemory {
         attributes::value(&self.file, &message, &values, dataset.num_elements().ok()?).ok()?
     }
 
-    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
+    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, send: Send) -> io::Result<()> {
         let mut numbers = match self.numbers(path, slab) {
             Ok(numbers) => numbers,
-            Err(words) => return send(to, &Reply::Refused(words)),
+            Err(words) => return send(Reply::Refused(words)),
         };
         loop {
             let next: Vec<f64> = numbers.by_ref().take(FRAME_NUMBERS).collect();
@@ -293,45 +291,8 @@ impl Store for InMemory {
                 return Ok(());
             }
             let narrow = |next: Vec<f64>| Reply::Narrow(next.into_iter().map(to_f32).collect());
-            send(to, &if is_wide { Reply::Wide(next) } else { narrow(next) })?;
+            send(if is_wide { Reply::Wide(next) } else { narrow(next) })?;
         }
-    }
-}
-
-/// Answers on the spot, in the place of a process, what is asked.
-pub(super) struct OnTheSpot {
-    tree: Tree<InMemory>,
-    asked: Vec<u8>,
-    answers: Answers,
-}
-
-/// What was answered and not yet heard.
-#[derive(Clone, Default)]
-pub(super) struct Answers(Rc<RefCell<VecDeque<u8>>>);
-
-impl OnTheSpot {
-    /// To be asked, and where the answers come from.
-    pub(super) fn of(store: InMemory) -> (Self, Answers) {
-        let answers = Answers::default();
-        (Self { tree: Tree::of(store, true), asked: Vec::new(), answers: answers.clone() }, answers)
-    }
-}
-
-impl Write for OnTheSpot {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.asked.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let (request, _) = receive(&mut &self.asked[..])?;
-        self.asked.clear();
-        self.tree.answer(request, &mut *self.answers.0.borrow_mut())
-    }
-}
-
-impl Read for Answers {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.0.borrow_mut().read(buffer)
     }
 }
 

@@ -14,12 +14,14 @@ use super::answer::{Object, Query, Reply, Slab, receive, send};
 use super::fault;
 use super::patience::{PATIENCE, ProcessEnd, Watched};
 #[cfg(any(not(feature = "native"), test, fuzzing))]
-use super::pure;
+use super::{answer::frame_bytes, pure, tree::Tree};
 use crate::data::Samples;
 use crate::ingest::refusal::Refusal;
 use crate::ingest::{Limits, RecordingFile};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
+#[cfg(any(not(feature = "native"), test, fuzzing))]
+use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -109,7 +111,7 @@ impl File {
         let known = || self.known.borrow().get(path).cloned();
         known()
             .or_else(|| {
-                self.ask(&Query::Look(path.to_owned()));
+                self.ask(Query::Look(path.to_owned()));
                 self.note();
                 known()
             })
@@ -118,7 +120,7 @@ impl File {
 
     /// Everything in the file, by path, in its order.
     pub(super) fn walk(&self) -> Vec<(String, Rc<Object>)> {
-        self.ask(&Query::Walk);
+        self.ask(Query::Walk);
         self.note()
     }
 
@@ -130,7 +132,7 @@ impl File {
         count: usize,
         is_wide: bool,
     ) -> Result<Samples, Refusal> {
-        self.ask(&Query::Read { path: path.to_owned(), is_wide, slab });
+        self.ask(Query::Read { path: path.to_owned(), is_wide, slab });
         let mut samples = if is_wide { Samples::F64(Vec::new()) } else { Samples::F32(Vec::new()) };
         while self.lost.get().is_none() {
             self.link.borrow().wait_for(count.saturating_mul(8) as u64);
@@ -152,7 +154,7 @@ impl File {
         Err(self.lose().clone())
     }
 
-    fn ask(&self, request: &Query) {
+    fn ask(&self, request: Query) {
         if self.lost.get().is_none() && self.link.borrow_mut().ask(request).is_err() {
             self.lose();
         }
@@ -207,19 +209,51 @@ pub(super) struct Opened {
 
 /// The way to the library and back.
 struct Link {
-    to: Box<dyn Write>,
-    from: Box<dyn Read>,
+    ask: Box<dyn FnMut(Query) -> io::Result<()>>,
+    /// The next answer, and its length in bytes.
+    answer: Box<dyn FnMut() -> io::Result<(Reply, usize)>>,
     process: Option<Watched>,
 }
 
 impl Link {
+    /// To another process or thread, in frames.
+    fn by_frames(
+        mut to: impl Write + 'static,
+        mut from: impl Read + 'static,
+        process: Option<Watched>,
+    ) -> Self {
+        let ask = move |query: Query| {
+            send(&mut to, &query)?;
+            to.flush()
+        };
+        Self { ask: Box::new(ask), answer: Box::new(move || receive(&mut from)), process }
+    }
+
+    /// To what answers at once.
+    #[cfg(any(not(feature = "native"), test, fuzzing))]
+    fn on_the_spot(mut tree: Tree<pure::InMemory>) -> Self {
+        let answers = Rc::new(RefCell::new(VecDeque::new()));
+        let unheard = answers.clone();
+        let ask = move |query| {
+            tree.answer(query, &mut |reply| {
+                answers.borrow_mut().push_back(reply);
+                Ok(())
+            })
+        };
+        let answer = move || {
+            let reply: Reply = unheard.borrow_mut().pop_front().ok_or(io::ErrorKind::UnexpectedEof)?;
+            let bytes = if let Reply::Found(..) = &reply { frame_bytes(&reply)? } else { 0 };
+            Ok((reply, bytes))
+        };
+        Self { ask: Box::new(ask), answer: Box::new(answer), process: None }
+    }
+
     fn opened(file: RecordingFile) -> Result<(Self, Opened), Refusal> {
         #[cfg(any(not(feature = "native"), test, fuzzing))]
         if let Some(bytes) = file.in_memory {
             let (store, user_block) = pure::opened(bytes).map_err(|words| fault::of_words(&words))?;
-            let (to, from) = pure::OnTheSpot::of(store);
-            let link = Self { to: Box::new(to), from: Box::new(from), process: None };
-            return Ok((link, Opened { user_block, library: pure::READER.into(), is_walled: true }));
+            let opened = Opened { user_block, library: pure::READER.into(), is_walled: true };
+            return Ok((Self::on_the_spot(Tree::of(store, true)), opened));
         }
         // The tests of this library are no program that could be started.
         #[cfg(any(test, fuzzing))]
@@ -237,15 +271,14 @@ impl Link {
         }
     }
 
-    fn ask(&mut self, request: &Query) -> io::Result<()> {
+    fn ask(&mut self, request: Query) -> io::Result<()> {
         self.wait_for(0);
-        send(&mut self.to, request)?;
-        self.to.flush()
+        (self.ask)(request)
     }
 
     /// An answer and its length in bytes.
     fn answer(&mut self) -> io::Result<(Reply, usize)> {
-        let answer = receive(&mut self.from)?;
+        let answer = (self.answer)()?;
         match (&self.process, &answer.0) {
             (Some(process), Reply::Done | Reply::Opened { .. }) => process.rest(),
             _ => self.wait_for(0),
@@ -310,7 +343,7 @@ impl Link {
         let mut child = command.spawn()?;
         let pipes = child.stdin.take().zip(child.stdout.take()).ok_or(io::ErrorKind::BrokenPipe)?;
         let (to, from) = (BufWriter::new(pipes.0), BufReader::with_capacity(1 << 16, pipes.1));
-        Ok(Self { to: Box::new(to), from: Box::new(from), process: Some(Watched::of(child)) })
+        Ok(Self::by_frames(to, from, Some(Watched::of(child))))
     }
 }
 

@@ -1,11 +1,11 @@
 //! What is asked about an HDF5 file to answers, whoever reads it: its groups are walked, links followed, and
 //! what stands beside samples is taken along.
 
-use super::answer::{AttributeValue, Bytes, Object, Query, Reply, Slab, send};
+use super::answer::{AttributeValue, Bytes, Object, Query, Reply, Slab};
 use super::names;
 use crate::ingest::vocabulary;
 use std::collections::{BTreeMap, HashMap};
-use std::io::{self, Write};
+use std::io;
 
 /// Groups deeper than this are not followed.
 const DEEPEST: usize = 32;
@@ -47,6 +47,9 @@ pub(super) enum LinkKind {
 /// The names in a group, and what bears each.
 pub(super) type Members = BTreeMap<String, LinkKind>;
 
+/// Where answers go, one after the other.
+pub(super) type Send<'a> = &'a mut dyn FnMut(Reply) -> io::Result<()>;
+
 /// An open file, by one library or another.
 pub(super) trait Store {
     /// What tells an object from all others, whatever names lead to it.
@@ -65,7 +68,7 @@ pub(super) trait Store {
     fn value(&mut self, path: &str) -> Option<AttributeValue>;
 
     /// Sends the numbers of a dataset, or why they cannot be read.
-    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()>;
+    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, send: Send) -> io::Result<()>;
 }
 
 /// A file that is asked.
@@ -87,24 +90,23 @@ impl<S: Store> Tree<S> {
     ///
     /// # Errors
     /// Nobody listens.
-    pub(super) fn answer(&mut self, request: Query, to: &mut impl Write) -> io::Result<()> {
+    pub(super) fn answer(&mut self, request: Query, send: Send) -> io::Result<()> {
         match request {
             Query::Look(path) => {
                 let object = self.object_with_values(&path);
-                send(to, &Reply::Found(path, object))?;
+                send(Reply::Found(path, object))?;
             }
             Query::Walk => {
                 self.walked.clear();
-                self.walk("", 0, &mut 0, to)?;
+                self.walk("", 0, &mut 0, send)?;
             }
-            Query::Read { path, is_wide, slab } => self.store.read(&path, is_wide, slab, to)?,
+            Query::Read { path, is_wide, slab } => self.store.read(&path, is_wide, slab, send)?,
         }
-        send(to, &Reply::Done)?;
-        to.flush()
+        send(Reply::Done)
     }
 
     /// Each group once, by the first name that is no soft link: those lead to what is walked through anyway.
-    fn walk(&mut self, group: &str, depth: usize, count: &mut usize, to: &mut impl Write) -> io::Result<()> {
+    fn walk(&mut self, group: &str, depth: usize, count: &mut usize, send: Send) -> io::Result<()> {
         let token = self.store.token(if group.is_empty() { "/" } else { group });
         self.walked.extend(token);
         for (name, link) in self.members(group).clone() {
@@ -119,9 +121,9 @@ impl<S: Store> Tree<S> {
             *count += 1;
             let object = self.object_with_values(&path);
             let is_group = matches!(object, Object::Group { .. });
-            send(to, &Reply::Found(path.clone(), object))?;
+            send(Reply::Found(path.clone(), object))?;
             if is_hard && is_group && depth < DEEPEST {
-                self.walk(&path, depth + 1, count, to)?;
+                self.walk(&path, depth + 1, count, send)?;
             }
         }
         Ok(())

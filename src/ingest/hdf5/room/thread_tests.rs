@@ -16,10 +16,10 @@ pub(in crate::ingest) fn answer_by(bytes: &[u8]) {
 
 pub(super) fn link(path: &Path) -> io::Result<Link> {
     if let Some(from) = ANSWERS.take() {
-        return Ok(Link { to: Box::new(io::sink()), from: Box::new(io::Cursor::new(from)), process: None });
+        return Ok(Link::by_frames(io::sink(), io::Cursor::new(from), None));
     }
     let ((mut requests, to), (from, mut answers)) = (io::pipe()?, io::pipe()?);
     let path = path.to_owned();
     std::thread::spawn(move || library::answer(&path, &mut requests, &mut answers, true, &mut |_, _| {}));
-    Ok(Link { to: Box::new(BufWriter::new(to)), from: Box::new(BufReader::new(from)), process: None })
+    Ok(Link::by_frames(BufWriter::new(to), BufReader::new(from), None))
 }
