@@ -5,7 +5,7 @@ use super::columns::HeldColumn;
 use super::complaint::no_table;
 use super::layout::Layout;
 use super::plan::ColumnPlan;
-use super::table::{CommonRows, Table, own_rows, picked};
+use super::table::{Table, picked};
 use super::wanted::Wanted;
 use crate::data::{
     ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
@@ -33,8 +33,7 @@ pub(in super::super) fn list(request: ReadRequest) -> Result<Listing, IngestErro
     // Times are listed as they stand there, before they are turned into s.
     let several = clocks.iter().flatten().filter(|_| clocks.len() > 1);
     let names: BTreeMap<usize, String> = several.map(|&time| (time, layout.unique_name(time))).collect();
-    let common = table.common_rows();
-    let of_column = |plan: &ColumnPlan| column(&table, plan, &common, &names);
+    let of_column = |plan: &ColumnPlan| column(&table, plan, &names);
     let mut channels: Vec<ListedChannel> = plans.par_iter().map(of_column).collect();
     let with_missing = blank.and_then(|()| place(&mut table, &mut channels, &mut issues));
     let with_missing = with_missing.unwrap_or_else(|refusal| {
@@ -91,18 +90,15 @@ fn plans(layout: &Layout, clocks: &[Option<usize>]) -> Vec<ColumnPlan> {
 }
 
 /// Lists a channel but for its clock; `clocks` are the names of the columns of times where there are several.
-fn column(
-    table: &Table,
-    plan: &ColumnPlan,
-    common: &CommonRows,
-    clocks: &BTreeMap<usize, String>,
-) -> ListedChannel {
+fn column(table: &Table, plan: &ColumnPlan, clocks: &BTreeMap<usize, String>) -> ListedChannel {
     let (layout, rows) = (table.layout, table.rows());
     let column = &layout.columns[plan.column];
     let values = table.values(plan.column);
-    let common = common[&plan.common_key()].as_ref().map_or(Some(&[][..]), Option::as_deref);
-    let own = own_rows(plan, &values, common);
-    let own = own.as_deref().or(common).map_or_else(|| values.clone(), |rows| picked(&values, rows).into());
+    let own = match table.rows_of(plan, &values) {
+        Ok(None) => values,
+        Ok(Some(is_own)) => picked(&values, &is_own).into(),
+        Err(_) => Vec::new().into(),
+    };
     let range = ListedChannel::value_range(own.iter().copied());
     let words = &table.words[plan.column];
     let tells_sensors = layout.tells_sensors(plan.column);

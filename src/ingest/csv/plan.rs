@@ -89,11 +89,6 @@ impl ColumnPlan {
         Ok(Self { rows, claims, ..plan })
     }
 
-    /// The times and the sensor by which some rows are its own.
-    pub(super) fn common_key(&self) -> (Option<usize>, Option<&(usize, String)>) {
-        (self.time_column, self.rows.as_ref())
-    }
-
     /// Whether the cask file says what to go by: a rate, or which column holds the times.
     pub(super) fn is_decided(&self) -> bool {
         self.claims.cask_hz.is_some() || self.claims.are_times_named

@@ -24,7 +24,6 @@ use crate::ingest::times::{self, Carrier, Scale};
 use crate::numerics::robust;
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// The wanted columns of a table, kept whole, with what is said of them.
 #[derive(Debug)]
@@ -305,33 +304,41 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// The rows that channels of one sensor with the same times have in common; `None` where these are all.
+    /// Which rows are samples of a channel with such `values` where not all are: those with a time, as in
+    /// `Time;A1;Time;A2` one pair may end before the other, of its own sensor, and with a value where each
+    /// topic has rows of its own.
     ///
     /// # Errors
     /// No row is of the sensor that the cask file names.
-    pub(super) fn common_rows(&self) -> CommonRows<'a> {
-        let keys: BTreeSet<CommonKey> = self.plans.iter().map(ColumnPlan::common_key).collect();
-        keys.into_par_iter().map(|key| (key, self.rows_with(key))).collect()
-    }
-
-    /// As in `Time;A1;Time;A2` one pair may end before the other, those with a time.
-    fn rows_with(&self, (time, sensor): CommonKey) -> Result<Option<Vec<usize>>, Refusal> {
-        let lacks_times = |time: usize| has_none(&self.columns[self.wanted.slot(time)].each);
-        if sensor.is_none() && !time.is_some_and(lacks_times) {
+    pub(super) fn rows_of(&self, plan: &ColumnPlan, values: &[f64]) -> Result<Option<Vec<bool>>, Refusal> {
+        let has_none = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count() > 0;
+        let each = |time: usize| &self.columns[self.wanted.slot(time)].each;
+        let lacks_times = plan.time_column.is_some_and(|time| has_none(each(time)));
+        let lacks_values = has_none(values) && plan.time_column != Some(plan.column);
+        if plan.rows.is_none() && !lacks_times && !lacks_values {
             return Ok(None);
         }
-        let times = time.map(|time| self.values(time));
-        let ids = sensor.map(|(column, is)| {
-            (self.values(*column), sensors::value(is.trim().as_bytes(), self.layout.dialect.decimal))
-        });
-        let has_time = |row: usize| times.as_ref().is_none_or(|times| !times[row].is_nan());
-        let is_own = |row: usize| ids.as_ref().is_none_or(|(ids, own)| ids[row].total_cmp(own).is_eq());
-        let count = times.as_ref().or(ids.as_ref().map(|ids| &ids.0)).map_or(0, |beside| beside.len());
-        let rows: Vec<usize> = (0..count).filter(|&row| has_time(row) && is_own(row)).collect();
-        match sensor {
-            Some((column, is)) if rows.is_empty() => Err(plan::no_such_sensor(self.layout, *column, is)),
-            _ => Ok(Some(rows)),
+        let times = plan.time_column.map(|time| self.values(time));
+        let mut is_own: Vec<bool> = match &times {
+            Some(times) => times.iter().map(|time| !time.is_nan()).collect(),
+            None => vec![true; values.len()],
+        };
+        if let Some((column, is)) = &plan.rows {
+            let own = sensors::value(is.trim().as_bytes(), self.layout.dialect.decimal);
+            let ids = self.values(*column);
+            is_own.iter_mut().zip(&*ids).for_each(|(is_own, id)| *is_own &= id.total_cmp(&own).is_eq());
+            if !is_own.contains(&true) {
+                return Err(plan::no_such_sensor(self.layout, *column, is));
+            }
         }
+        if lacks_values && times.is_some() && is_sparse(values, &is_own) {
+            is_own.iter_mut().zip(values).for_each(|(is_own, value)| *is_own &= !value.is_nan());
+        }
+        if times.is_none() && plan.ends_alone {
+            let end = values.iter().rposition(|value| !value.is_nan()).map_or(0, |last| last + 1);
+            is_own[end..].fill(false);
+        }
+        Ok(Some(is_own))
     }
 
     /// The samples of each channel on their base, for which they are taken out of the table.
@@ -339,7 +346,6 @@ impl<'a> Table<'a> {
     /// # Errors
     /// None of the rows is a channel's own, or their times make no record.
     pub(super) fn uniforms(&mut self) -> Vec<Result<Uniform, Refusal>> {
-        let rows = self.common_rows();
         let mut users = vec![0; self.columns.len()];
         for plan in self.plans {
             let beside = plan.time_column.into_iter().chain(plan.rows.as_ref().map(|rows| rows.0));
@@ -355,44 +361,16 @@ impl<'a> Table<'a> {
         let times = columns.iter().zip(&wanted.is_time);
         let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
         let base_of = |plan: &ColumnPlan| bases[wanted.slot(plan.time_column?)].as_ref();
-        let uniform = |(samples, plan): (Option<Vec<f64>>, &'a ColumnPlan)| {
-            let common = rows[&plan.common_key()].as_ref().map_err(Clone::clone)?.as_deref();
+        let uniform = |(samples, plan): (Option<Vec<f64>>, &ColumnPlan)| {
             let samples = samples.map_or_else(|| self.values(plan.column), Cow::Owned);
-            let own = own_rows(plan, &samples, common);
-            let Some(own) = own.as_deref().or(common) else {
+            let Some(is_own) = self.rows_of(plan, &samples)? else {
                 return on_base(samples.into_owned(), base_of(plan), plan);
             };
-            let times = plan.time_column.map(|time| picked(&self.values(time), own));
+            let times = plan.time_column.map(|time| picked(&self.values(time), &is_own));
             let base = times.as_deref().map(|times| Base::Each(ChannelTimes::new(times)));
-            on_base(picked(&samples, own), base.as_ref(), plan)
+            on_base(picked(&samples, &is_own), base.as_ref(), plan)
         };
         samples.into_par_iter().zip(*plans).map(uniform).collect()
-    }
-}
-
-/// What is told apart: a column of times, and the column and word of a sensor.
-pub(super) type CommonKey<'a> = (Option<usize>, Option<&'a (usize, String)>);
-
-/// Rows that channels have in common.
-pub(super) type CommonRows<'a> = BTreeMap<CommonKey<'a>, Result<Option<Vec<usize>>, Refusal>>;
-
-fn has_none(values: &[f64]) -> bool {
-    values.iter().filter(|value| value.is_nan()).count() > 0
-}
-
-/// Which of the rows in `common` are samples of a channel with such `values`, where not all are: those with a
-/// value where each topic has rows of its own, and those up to the last value where columns end apart.
-pub(super) fn own_rows(plan: &ColumnPlan, values: &[f64], common: Option<&[usize]>) -> Option<Vec<usize>> {
-    if plan.time_column == Some(plan.column) || !has_none(values) {
-        return None;
-    }
-    let all = 0..if common.is_some() { 0 } else { values.len() };
-    let rows = all.chain(common.into_iter().flatten().copied());
-    if plan.time_column.is_some() {
-        is_sparse(values, rows.clone()).then(|| rows.filter(|row| !values[*row].is_nan()).collect())
-    } else {
-        let end = values.iter().rposition(|value| !value.is_nan()).map_or(0, |last| last + 1);
-        plan.ends_alone.then(|| rows.filter(|row| *row < end).collect())
     }
 }
 
@@ -410,16 +388,17 @@ fn on_base(samples: Vec<f64>, base: Option<&Base>, plan: &ColumnPlan) -> Result<
 }
 
 /// The values of these rows.
-pub(super) fn picked(values: &[f64], rows: &[usize]) -> Vec<f64> {
-    rows.iter().map(|row| values[*row]).collect()
+pub(super) fn picked(values: &[f64], is_own: &[bool]) -> Vec<f64> {
+    values.iter().zip(is_own).filter(|(_, is_own)| **is_own).map(|(value, _)| *value).collect()
 }
 
 /// Whether rows without a value are those of other topics, and no samples that are missing.
-fn is_sparse(values: &[f64], rows: impl Iterator<Item = usize>) -> bool {
+fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
     let mut filled = sensors::Filled::default();
+    let values = picked(values, is_own);
     // A channel that begins late or ends early has no row of another's.
-    let present = rows.enumerate().filter(|(_, row)| !values[*row].is_nan());
-    present.for_each(|(place, _)| filled.take(place));
+    let present = values.iter().enumerate().filter(|(_, value)| !value.is_nan());
+    present.for_each(|(row, _)| filled.take(row));
     filled.lie_between()
 }
 
