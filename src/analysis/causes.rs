@@ -477,7 +477,7 @@ fn apply_correction(mistake: &Mistake, recording: &mut Recording, file: &mut Cas
         "cask.inertia_kg_m2" => correct(&mut cask.inertia_kg_m2),
         "drop.impact_velocity_m_s" => correct(&mut drop.impact_velocity_m_s),
         "drop.angular_velocity_deg_s" => {
-            *drop = drop.add_rotation(cask, offset - drop.angular_velocity_rad_s)
+            *drop = drop.add_rotation(cask, offset - drop.angular_velocity_rad_s);
         }
         "offset_m" => own.for_each(|c| correct(&mut c.offset_m)),
         "position_m" => own.for_each(|c| correct(&mut c.position_m)),

@@ -11,7 +11,7 @@ const ROUNDS: usize = 3;
 /// contact.
 const CONVERGED_S: f64 = 2e-5;
 
-/// Further rounds if the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted over
+/// Further rounds if the last one moved the slap-down by more than [`SETTLED_S`]: its flight was last_fit over
 /// a wrong interval.
 const FURTHER_ROUNDS: usize = 3;
 const SETTLED_S: f64 = 1e-3;
@@ -134,7 +134,7 @@ struct SearchState {
     /// Largest number of modes of its fit.
     most_modes: usize,
     /// The last fit of the flight, and its interval.
-    fitted: Option<(FlightFit, motion::Window)>,
+    last_fit: Option<(FlightFit, motion::Window)>,
     /// The other fits over that interval, the best first.
     others: Vec<FlightFit>,
 }
@@ -261,7 +261,7 @@ impl Search<'_> {
             self.remove_ringing(ends, &attempt, &flight);
             let (left_s, end_s) = (attempt.separation.time_s, attempt.end_s);
             self.find_events(ends, &mut attempt, &flight);
-            attempt = SearchState { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
+            attempt = SearchState { last_fit: Some((flight, window)), others: fits.collect(), ..attempt };
             let (left_by_s, end_by_s) =
                 ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
             // A search that has not converged determines the slap-down no better than it still moves.
@@ -303,7 +303,7 @@ impl Search<'_> {
             free_s: rough_s.max(clearance_end_s).max(impulse_end_s.unwrap_or(clearance_end_s)),
             end_s,
             most_modes,
-            fitted: None,
+            last_fit: None,
             others: Vec::new(),
         }
     }
@@ -312,7 +312,7 @@ impl Search<'_> {
     /// first.
     fn fit(&self, attempt: &SearchState) -> (motion::Window, Vec<FlightFit>) {
         let cog_m = self.file.cask.cog_m;
-        let before = attempt.fitted.as_ref().map(|(flight, _)| flight);
+        let before = attempt.last_fit.as_ref().map(|(flight, _)| flight);
         let before_rad_s = self.file.drop.angular_velocity_rad_s;
         let window = motion::Window {
             from_s: attempt.free_s,
@@ -371,9 +371,9 @@ impl Search<'_> {
 
     /// Concludes the last round; the separation is refined by the impulse.
     fn conclude(&self, (first, second): &Ends, attempt: SearchState) -> FoundFlight {
-        let SearchState { mut separation, mut slap_down, fitted, others, .. } = attempt;
+        let SearchState { mut separation, mut slap_down, last_fit, others, .. } = attempt;
         let contact_s = self.integrated.contact_s;
-        let (flight, window) = fitted.unzip();
+        let (flight, window) = last_fit.unzip();
         let calm_s = separation.time_s;
         if let (Some(flight), Some(struck)) = (&flight, slap_down) {
             let calm_m_s2 = calm_m_s2(second, flight);
@@ -399,7 +399,7 @@ impl Search<'_> {
             free_s: stage_s + STAGE_FADES_S,
             end_s: self.flight_end_s(*slap_down),
             most_modes: FEW_MODES,
-            fitted: flight.clone().zip(*window),
+            last_fit: flight.clone().zip(*window),
             others: Vec::new(),
         };
         let (window, fits) = self.fit(&attempt);

@@ -59,15 +59,15 @@ pub(super) fn find_clipped(
         if is_noise { 0.0 } else { *step }
     };
     let band = noise.max(least + step_beyond(noise));
+    let is_new = |known: &[Span], span: &Span| known.iter().all(|s| s.to <= span.from || span.to <= s.from);
     for extreme in [low, high] {
         if extreme.abs() < 4.0 * band {
             continue;
         }
         for span in find_runs(force, |f| (f - extreme).abs() <= band) {
-            let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
             let is_limit =
                 |span| is_flat_top(force, span, band, *step) && !carries_noise(force, span, roughness);
-            if span.to - span.from >= LEAST_RUN && !is_known && is_limit(span) {
+            if span.to - span.from >= LEAST_RUN && is_new(&spans, &span) && is_limit(span) {
                 spans.push(span);
             }
         }
@@ -75,10 +75,9 @@ pub(super) fn find_clipped(
     if channel.axis == Axis::Transverse {
         // Noise of the converter is added after a limit of the amplifier: only these levels show such a
         // limit.
-        let limits = LimitSearch::new(force, noise_m_s2, step_beyond(noise_m_s2).max(least)).find();
-        let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
-        let further: Vec<Span> = limits.into_iter().filter(|s| !is_known(s)).collect();
-        spans.extend(further);
+        let mut limits = LimitSearch::new(force, noise_m_s2, step_beyond(noise_m_s2).max(least)).find();
+        limits.retain(|span| is_new(&spans, span));
+        spans.extend(limits);
         spans.extend(find_limited_flanks(force, roughness, peak));
     }
     spans.sort_by_key(|s| s.from);

@@ -168,8 +168,8 @@ mod tests {
             ("0:90:5,k=0:1:0.1", "once for each variable"),
             ("k=0:1:0.1,angle=0:90:1", "once for each variable"),
         ] {
-            let told = parse(text).unwrap_err();
-            assert!(told.contains(words), "{text}: {told}");
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }
