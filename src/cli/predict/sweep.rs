@@ -5,8 +5,8 @@ use crate::data::SweepVariable::{Angle, DropHeight, Friction, K, Length};
 use crate::data::shown::round_off;
 use crate::data::{Sweep, SweepVariable};
 
-/// Most predictions of one run, and so values of one sweep: nobody reads a longer table, and it fills
-/// hundreds of megabytes.
+/// Largest number of predictions of one run, and so of values of one sweep: nobody reads a longer table, and
+/// it fills hundreds of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
 
 /// A variable that can be swept, with its names on the command line.
