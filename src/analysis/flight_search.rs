@@ -11,7 +11,7 @@ const ROUNDS: usize = 3;
 /// contact.
 const CONVERGED_S: f64 = 2e-5;
 
-/// Further rounds if the last one moved the slap-down by more than [`SETTLED_S`]: its flight was last_fit over
+/// Further rounds if the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted over
 /// a wrong interval.
 const FURTHER_ROUNDS: usize = 3;
 const SETTLED_S: f64 = 1e-3;
@@ -40,7 +40,7 @@ const MANY_MODES: usize = 6;
 const FIRST_ENDS: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
 
 /// Largest residual of a flight fit, as a share of v0, with which a departure from it shows the slap-down.
-const LEAST_SHOWN_SHARE: f64 = 0.05;
+const SHOWN_SHARE: f64 = 0.05;
 
 /// Residual RMS below which a flight fit has explained its channel, m/s: 1.5 % of a 9 m fall.
 const EXPLAINED_M_S: f64 = 0.2;
@@ -352,7 +352,7 @@ impl Search<'_> {
         let contact_s = self.integrated.contact_s;
         // The ringing of a well-explained flight hides no slap-down, and a poorly fitted one can imitate a
         // slap-down.
-        let most_residual_m_s = EXPLAINED_M_S.max(LEAST_SHOWN_SHARE * self.file.drop.impact_velocity_m_s);
+        let most_residual_m_s = EXPLAINED_M_S.max(SHOWN_SHARE * self.file.drop.impact_velocity_m_s);
         let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_residual_m_s);
         if is_shown {
             let calm_m_s2 = calm_m_s2(second, flight);
