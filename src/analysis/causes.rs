@@ -7,8 +7,8 @@ use crate::data::shown::digits;
 use crate::data::{
     Analysis, Axis, CaskFile, Channel, ChannelFinding, ChannelSpec, DECISIVE_CHI_SQUARE, DropFinding,
     DropResult, Effect, End, Events, Finding, FindingKind, FlightFit, IssueCode, Mistake, OpenedInput,
-    Recording, RecordingFormat, Remedy, ResultPart, STANDARD_GRAVITY_M_S2 as G, Samples, Severity,
-    StatedCause,
+    Recording, RecordingFormat, ResultPart, STANDARD_GRAVITY_M_S2 as G, Samples, Severity, StatedCause,
+    StatedRemedy,
 };
 use crate::numerics::robust;
 use crate::{events, judge};
@@ -51,6 +51,9 @@ const ROUNDS: usize = 2;
 const MOST_NAMED: usize = 2;
 /// Likely factors of a scale or a clock that do not come from a unit.
 const LIKELY_FACTOR: RangeInclusive<f64> = 0.1..=10.0;
+
+/// A remedy, and the inconsistency that remains with it.
+type RatedRemedy = (Inconsistency, StatedRemedy);
 
 /// Adds the explanations if something contradicts the analysis: the usual mistakes whose correction makes
 /// everything consistent, else the stated numbers of which another one does.
@@ -109,7 +112,7 @@ impl CauseSearch<'_> {
         analyse_once(&recording, &file, effort)
     }
 
-    fn try_mistakes(&self, mistakes: Vec<Mistake>) -> Option<(Inconsistency, Remedy)> {
+    fn try_mistakes(&self, mistakes: Vec<Mistake>) -> Option<RatedRemedy> {
         let analysis = self.analyze_corrected(&mistakes, SearchEffort::FirstStart);
         is_remedied(&analysis, [MOST_U95_K, MOST_U95_SPEED]).then(|| self.remedy(mistakes, &analysis))
     }
@@ -141,7 +144,7 @@ impl CauseSearch<'_> {
     }
 
     /// Tries a clock, and sets it again from the answers that the channels then give to the first impact.
-    fn try_clock(&self, mut mistake: Mistake) -> Option<(Inconsistency, Remedy)> {
+    fn try_clock(&self, mut mistake: Mistake) -> Option<RatedRemedy> {
         for _ in 0..ROUNDS {
             let analysis = self.analyze_corrected(std::slice::from_ref(&mistake), SearchEffort::FirstStart);
             if is_remedied(&analysis, [MOST_U95_K, MOST_U95_SPEED]) {
@@ -153,7 +156,7 @@ impl CauseSearch<'_> {
     }
 
     /// Tries another number, and again the number that the new analysis suggests, with the same effort.
-    fn try_number(&self, (mut mistake, effort): (Mistake, SearchEffort)) -> Option<(Inconsistency, Remedy)> {
+    fn try_number(&self, (mut mistake, effort): (Mistake, SearchEffort)) -> Option<RatedRemedy> {
         for _ in 0..ROUNDS {
             let analysis = self.analyze_corrected(std::slice::from_ref(&mistake), effort);
             // All checks and steps are met: only intervals that say nothing are too wide.
@@ -171,14 +174,14 @@ impl CauseSearch<'_> {
         None
     }
 
-    fn remedy(&self, mistakes: Vec<Mistake>, analysis: &Analysis) -> (Inconsistency, Remedy) {
+    fn remedy(&self, mistakes: Vec<Mistake>, analysis: &Analysis) -> RatedRemedy {
         let (speed, k) = (analysis.result.slap_down.speed, analysis.result.k);
         let cause = |mistake: &Mistake| {
             let [stated, explains] = self.numbers(mistake).map_or([None; 2], |numbers| numbers.map(Some));
             StatedCause { key: mistake.key, names: mistake.names.clone(), stated, explains, speed, k }
         };
         let causes = mistakes.iter().map(cause).collect();
-        (Inconsistency::measure(analysis), Remedy { mistakes, causes })
+        (Inconsistency::measure(analysis), StatedRemedy { mistakes, causes })
     }
 
     /// Lists other numbers that come near to explaining the drop, and offsets to the other side, which change
@@ -292,12 +295,12 @@ fn is_doubted_place(result: &DropResult, name: &str) -> bool {
     result.quality.iter().any(|f| doubts(f) && f.channel.as_deref() == Some(name))
 }
 
-fn compare_remedies((a, _): &(Inconsistency, Remedy), (b, _): &(Inconsistency, Remedy)) -> Ordering {
+fn compare_remedies((a, _): &RatedRemedy, (b, _): &RatedRemedy) -> Ordering {
     a.partial_cmp(b).unwrap_or(Ordering::Equal)
 }
 
 /// Keeps the remedies that are as good as the best, in order.
-fn keep_best(mut tried: Vec<(Inconsistency, Remedy)>) -> Vec<Remedy> {
+fn keep_best(mut tried: Vec<RatedRemedy>) -> Vec<StatedRemedy> {
     tried.sort_by(compare_remedies);
     let Some(&(least, _)) = tried.first() else { return Vec::new() };
     let most = Inconsistency { chi_square: least.chi_square + DECISIVE_CHI_SQUARE, ..least };
@@ -477,7 +480,7 @@ fn apply_correction(mistake: &Mistake, recording: &mut Recording, file: &mut Cas
         "cask.inertia_kg_m2" => correct(&mut cask.inertia_kg_m2),
         "drop.impact_velocity_m_s" => correct(&mut drop.impact_velocity_m_s),
         "drop.angular_velocity_deg_s" => {
-            *drop = drop.add_rotation(cask, offset - drop.angular_velocity_rad_s)
+            *drop = drop.add_rotation(cask, offset - drop.angular_velocity_rad_s);
         }
         "offset_m" => own.for_each(|c| correct(&mut c.offset_m)),
         "position_m" => own.for_each(|c| correct(&mut c.position_m)),

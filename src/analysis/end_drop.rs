@@ -12,10 +12,10 @@ use crate::numerics::quadrature::running_integral;
 use crate::numerics::{as_f64, robust};
 use crate::{events, judge};
 
-/// Time over which the velocity after the contact is averaged, s, or as long as the contact if that is
-/// longer: five periods of the first axial mode of a cask of 5 m.
+/// Shortest time over which the velocity after the contact is averaged, s, five periods of the first axial
+/// mode of a cask of 5 m; a longer contact is averaged over its own length.
 const FLIGHT_S: f64 = 0.01;
-/// Start of the integral before first contact, s: the free fall in it adds only noise.
+/// Time before first contact at which the integral starts, s: the free fall in it adds only noise.
 const CLEAR_S: f64 = 1e-3;
 /// Share of the contact's length after which its force has faded.
 const FADING_SHARE: f64 = 0.25;

@@ -90,7 +90,8 @@ mod tests {
     use super::*;
     use crate::data::example;
 
-    /// 10 kHz: rest to 1 s, a fall to 2 s, an impact of 5 ms with 400 m/s² and rest again, on noise of 0.5.
+    /// Simulates at 10 kHz: rest to 1 s, a fall to 2 s, an impact of 5 ms with 400 m/s² and rest again, on
+    /// noise of 0.5.
     fn dropped(sign: f64) -> Channel {
         let force = |i: u32| match f64::from(i) / 1e4 {
             t if t < 1.0 => 9.81,

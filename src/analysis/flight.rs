@@ -88,7 +88,7 @@ fn fit_flight(
         findings.push(DropFinding::ShortFlight.into());
         return None;
     }
-    // A ringing seat delays the begin and the end of the contact.
+    // A ringing seat delays the start and the end of the contact.
     events.first_contact = Some(At { u_s: impact.contact.u_s.hypot(found.seat_s), ..impact.contact });
     events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(found.seat_s) });
     events.slap_down = found.slap_down.filter(|_| shows_slap_down);
@@ -116,7 +116,7 @@ fn reconstruct(
     events: &Events,
 ) -> Option<FlightResult> {
     let signals = &impact.signals;
-    let (setup, friction) = contact(file, integrated, &flight, events);
+    let (setup, friction) = resolve_contact(file, integrated, &flight, events);
     let contact_s = impact.contact.time_s;
     let events_s = [contact_s, events.separation_s().unwrap_or(contact_s)];
     let turning_rad_s = motion::spin_rad_s(signals, &flight, file.drop.angular_velocity_rad_s, events_s);
@@ -200,7 +200,7 @@ fn corner_speed(motion: &Motion, rigid: Estimate, ringing: CornerRinging) -> Opt
 
 /// Decides how the axial velocity is determined: by measurement, or by a friction that the cask file states
 /// or leaves open.
-pub(super) fn contact(
+pub(super) fn resolve_contact(
     file: &CaskFile,
     integrated: &Integrated,
     flight: &FlightFit,

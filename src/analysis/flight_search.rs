@@ -40,7 +40,7 @@ const MANY_MODES: usize = 6;
 const FIRST_ENDS: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
 
 /// Largest residual of a flight fit, as a share of v0, with which a departure from it shows the slap-down.
-const LEAST_SHOWN_SHARE: f64 = 0.05;
+const SHOWN_SHARE: f64 = 0.05;
 
 /// Residual RMS below which a flight fit has explained its channel, m/s: 1.5 % of a 9 m fall.
 const EXPLAINED_M_S: f64 = 0.2;
@@ -134,7 +134,7 @@ struct SearchState {
     /// Largest number of modes of its fit.
     most_modes: usize,
     /// The last fit of the flight, and its interval.
-    fitted: Option<(FlightFit, motion::Window)>,
+    last_fit: Option<(FlightFit, motion::Window)>,
     /// The other fits over that interval, the best first.
     others: Vec<FlightFit>,
 }
@@ -261,7 +261,7 @@ impl Search<'_> {
             self.remove_ringing(ends, &attempt, &flight);
             let (left_s, end_s) = (attempt.separation.time_s, attempt.end_s);
             self.find_events(ends, &mut attempt, &flight);
-            attempt = SearchState { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
+            attempt = SearchState { last_fit: Some((flight, window)), others: fits.collect(), ..attempt };
             let (left_by_s, end_by_s) =
                 ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
             // A search that has not converged determines the slap-down no better than it still moves.
@@ -303,7 +303,7 @@ impl Search<'_> {
             free_s: rough_s.max(clearance_end_s).max(impulse_end_s.unwrap_or(clearance_end_s)),
             end_s,
             most_modes,
-            fitted: None,
+            last_fit: None,
             others: Vec::new(),
         }
     }
@@ -312,7 +312,7 @@ impl Search<'_> {
     /// first.
     fn fit(&self, attempt: &SearchState) -> (motion::Window, Vec<FlightFit>) {
         let cog_m = self.file.cask.cog_m;
-        let before = attempt.fitted.as_ref().map(|(flight, _)| flight);
+        let before = attempt.last_fit.as_ref().map(|(flight, _)| flight);
         let before_rad_s = self.file.drop.angular_velocity_rad_s;
         let window = motion::Window {
             from_s: attempt.free_s,
@@ -352,7 +352,7 @@ impl Search<'_> {
         let contact_s = self.integrated.contact_s;
         // The ringing of a well-explained flight hides no slap-down, and a poorly fitted one can imitate a
         // slap-down.
-        let most_residual_m_s = EXPLAINED_M_S.max(LEAST_SHOWN_SHARE * self.file.drop.impact_velocity_m_s);
+        let most_residual_m_s = EXPLAINED_M_S.max(SHOWN_SHARE * self.file.drop.impact_velocity_m_s);
         let is_shown = flight.plateaus.iter().all(|p| p.residual_m_s < most_residual_m_s);
         if is_shown {
             let calm_m_s2 = calm_m_s2(second, flight);
@@ -371,9 +371,9 @@ impl Search<'_> {
 
     /// Concludes the last round; the separation is refined by the impulse.
     fn conclude(&self, (first, second): &Ends, attempt: SearchState) -> FoundFlight {
-        let SearchState { mut separation, mut slap_down, fitted, others, .. } = attempt;
+        let SearchState { mut separation, mut slap_down, last_fit, others, .. } = attempt;
         let contact_s = self.integrated.contact_s;
-        let (flight, window) = fitted.unzip();
+        let (flight, window) = last_fit.unzip();
         let calm_s = separation.time_s;
         if let (Some(flight), Some(struck)) = (&flight, slap_down) {
             let calm_m_s2 = calm_m_s2(second, flight);
@@ -399,7 +399,7 @@ impl Search<'_> {
             free_s: stage_s + STAGE_FADES_S,
             end_s: self.flight_end_s(*slap_down),
             most_modes: FEW_MODES,
-            fitted: flight.clone().zip(*window),
+            last_fit: flight.clone().zip(*window),
             others: Vec::new(),
         };
         let (window, fits) = self.fit(&attempt);

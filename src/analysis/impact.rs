@@ -25,8 +25,8 @@ pub(super) struct ImpactSearch {
     pub waves_s: [f64; 2],
 }
 
-/// Kind of impact: on the edge of an end with a slap-down as early as the angle predicts, or later, or on an
-/// end face, which the axial channels show.
+/// Kind of impact: on the edge of an end with a slap-down no later than the angle allows, or with a later
+/// one, or on an end face, which the axial channels show.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum ImpactKind {
     Usual,

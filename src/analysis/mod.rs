@@ -2,16 +2,16 @@
 //!
 //! A sound recording is analysed once. Some are analysed again:
 //!
-//! - a channel answers later or earlier than on any cask, and the flight shows a slow mode: once more, with the
-//!   wave of that mode (`find_impact_and_flight`);
+//! - a channel answers later or earlier than on any cask, and the flight shows a slow mode: once more, with
+//!   the wave of that mode (`find_impact_and_flight`);
 //! - there is no slap-down, and the record continues: with a longer search (`analyse_once`);
 //! - a drop onto an end has no slap-down: the first impact alone, along the axis (`end_drop`);
 //! - there is an angular-rate sensor, and no rotation is stated: once before, for the rotation
 //!   (`add_measured_rotation`);
 //! - the result contradicts itself, with at least three transverse channels: without each of them
 //!   (`second_look`);
-//! - a contradiction remains, or only ringing removes the motion: with each usual mistake corrected; for another
-//!   contradiction also with each number that would explain it, up to twice (`causes`).
+//! - a contradiction remains, or only ringing removes the motion: with each usual mistake corrected; for
+//!   another contradiction also with each number that would explain it, up to twice (`causes`).
 
 mod causes;
 mod check;

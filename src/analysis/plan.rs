@@ -146,7 +146,7 @@ impl ExpectedDrop {
     }
 
     fn quantities(mut self, file: &CaskFile, specs: &[ChannelSpec]) -> Option<Quantities> {
-        let (setup, friction) = flight::contact(file, &self.integrated, &self.flight, &self.events);
+        let (setup, friction) = flight::resolve_contact(file, &self.integrated, &self.flight, &self.events);
         let reconstruct = |flight: &FlightFit, events: &Events, setup: &_| {
             motion::outcome(&self.integrated, flight, events, setup)
         };

@@ -80,7 +80,7 @@ fn join_recorders(recording: &mut Recording, file: &CaskFile, limits: Limits) ->
         };
         let mut joined = join_clocks(main, own, file.cask.length_m);
         shift_times(&mut second, joined.shift_s);
-        // The absolute times in both files are included.
+        // The stated shift refers to the absolute times in both files.
         joined.shift_s += match (recording.start_unix_ns, second.start_unix_ns) {
             (Some(first_ns), Some(second_ns)) => {
                 let apart_s = Duration::from_nanos(first_ns.abs_diff(second_ns)).as_secs_f64();

@@ -16,6 +16,7 @@ const SAME_RATE: f64 = 0.01;
 
 /// Reads the levels of the channels at rest from the file that the cask file names, if it names one.
 ///
+/// # Errors
 /// [`IngestError`] if that file cannot be read, or does not hold the same sensors at rest.
 pub(super) fn read_rest_file(
     recording: &mut Recording,

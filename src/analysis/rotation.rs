@@ -1,5 +1,4 @@
-//! Measures the rotation by angular-rate sensors beside the accelerometers, which the motion is compared
-//! with.
+//! Measures the rotation of the cask with angular-rate sensors; the motion is compared with it.
 
 use super::impact::Impact;
 use crate::data::{
@@ -7,7 +6,7 @@ use crate::data::{
 };
 use crate::{condition, judge, motion};
 
-/// Measures the rotation by each sensor, without those that cannot be right.
+/// Measures the rotation with each sensor; omits those that cannot be right.
 pub(super) fn measure_rotations(
     impact: &Impact,
     file: &CaskFile,
@@ -19,7 +18,7 @@ pub(super) fn measure_rotations(
     read.filter(|rotation| judge::judge_rotation(rotation, gained_rad_s).is_none()).collect()
 }
 
-/// Measures the rotation by one channel, if it is an angular-rate sensor.
+/// Measures the rotation with one channel, if it is an angular-rate sensor.
 fn read(channel: &Channel, file: &CaskFile, events: &Events, flight: &FlightFit) -> Option<MeasuredRotation> {
     let spec = file.others.iter().find(|spec| spec.read.name == channel.name)?;
     let usual_s = condition::Reach::for_drop(&file.cask, &file.drop).before_s;

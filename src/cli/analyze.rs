@@ -118,6 +118,7 @@ pub fn analyze(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::R
 
 /// Writes the report of an analysis into `folder`, as `--out` does.
 ///
+/// # Errors
 /// Those of the command: the folder is another program's, holds another recording's report, or cannot be
 /// written.
 pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
@@ -153,7 +154,8 @@ pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> 
     if folder.is_some() {
         cask_file = ingest::cask_file::with_photos(cask_file)?;
     }
-    let earlier_disabled = earlier.as_ref().map(|e| DisabledCorrections { without: e.disabled() });
+    let earlier_disabled =
+        earlier.as_ref().map(|e| DisabledCorrections { without: e.disabled_corrections() });
     let disabled = earlier_disabled.as_ref().unwrap_or(&arguments.disabled);
     disabled.apply_to(&mut cask_file);
     let limits = arguments.bounds.limits();
@@ -199,6 +201,7 @@ pub fn run(arguments: &Arguments, words: Vec<String>) -> miette::Result<Ending> 
 
 /// Writes the files of `--out`, and notes if an older PDF remains among them.
 ///
+/// # Errors
 /// Also if no browser prints the report that `--pdf` asks for; all other files are written.
 fn write_report(arguments: &Arguments, analysis: &Analysis, folder: &Folder) -> miette::Result<()> {
     let mut files = report::files(analysis)?;

@@ -50,7 +50,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE|-")]
     jsonl: Option<PathBuf>,
     /// Only each N-th recording from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = parse_shard, default_value = "0/1", hide_default_value = true)]
+    #[arg(long, value_name = "I/N", value_parser = parse_shard, default_value = "0/1",
+        hide_default_value = true)]
     shard: (usize, usize),
     /// Go on with what an earlier run of the same words has left: what is done is not done again
     #[arg(long)]

@@ -58,13 +58,13 @@ pub enum CannotWrite {
     StandardOutput { source: io::Error },
 }
 
-fn shown(path: &Path) -> String {
+fn display(path: &Path) -> String {
     path.display().to_string()
 }
 
 /// Refuses a path, for the reason `why`, if something `is_wrong` with it.
 fn refuse_if(is_wrong: bool, why: fn(String) -> CannotWrite, path: &Path) -> Result<(), CannotWrite> {
-    if is_wrong { Err(why(shown(path))) } else { Ok(()) }
+    if is_wrong { Err(why(display(path))) } else { Ok(()) }
 }
 
 /// Returns the operating system's message without its error number and without names of intermediate files.
@@ -95,7 +95,7 @@ impl Folder {
             ancestor = match ancestor.parent() {
                 Some(parent) if !parent.as_os_str().is_empty() => parent,
                 // This drive or network share of Windows does not exist.
-                _ if ancestor.has_root() => return Err(CannotWrite::NoFolder(shown(ancestor))),
+                _ if ancestor.has_root() => return Err(CannotWrite::NoFolder(display(ancestor))),
                 _ => Path::new("."),
             };
         }
@@ -110,7 +110,7 @@ impl Folder {
         }
         let is_ours = names.iter().find(|name| is_json(name)).is_none_or(|n| is_own_json(&path.join(n)));
         match present.first() {
-            Some(first) if !is_ours => Err(CannotWrite::Foreign(shown(first))),
+            Some(first) if !is_ours => Err(CannotWrite::Foreign(display(first))),
             _ => Ok(Self { path: path.to_path_buf() }),
         }
     }
@@ -123,7 +123,7 @@ impl Folder {
             let input = there.pointer(input).unwrap_or(&serde_json::Value::Null);
             let [other, recording] = ["recording_sha256", "recording"].map(|key| &input[key]);
             if !other.is_null() && other != sha256 {
-                let (folder, recording) = (shown(&self.path), recording.to_string());
+                let (folder, recording) = (display(&self.path), recording.to_string());
                 return Err(CannotWrite::OtherReport { folder, recording });
             }
         }
@@ -137,7 +137,7 @@ impl Folder {
 
     /// Returns the path of one of the files, for a reader.
     pub fn file(&self, name: &str) -> String {
-        shown(&self.path.join(name))
+        display(&self.path.join(name))
     }
 
     /// Writes every file under a temporary name and moves all to their places when they are complete.
@@ -158,10 +158,10 @@ impl JsonTarget {
         let Some(path) = path.filter(|_| !target.is_standard_output()) else { return Ok(target) };
         refuse_if(is_input(path, inputs), CannotWrite::Input, path)?;
         match fs::metadata(path) {
-            Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder(shown(path))),
+            Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder(display(path))),
             // A pipe or a device accepts the bytes directly.
             Ok(there) if !there.is_file() => return Ok(target),
-            _ if path.is_symlink() => return Err(CannotWrite::Link(shown(path))),
+            _ if path.is_symlink() => return Err(CannotWrite::Link(display(path))),
             Ok(there) => refuse_if(there.len() > 0 && !is_own_json(path), CannotWrite::Foreign, path)?,
             Err(_) => {}
         }
@@ -188,7 +188,7 @@ impl JsonTarget {
 }
 
 fn write_error(path: &Path) -> impl Fn(io::Error) -> CannotWrite + '_ {
-    move |source| CannotWrite::Failed { path: shown(path), source: without_details(&source) }
+    move |source| CannotWrite::Failed { path: display(path), source: without_details(&source) }
 }
 
 /// Writes or replaces a file, whole or not at all.
@@ -271,11 +271,9 @@ fn ignore_closed_reader(written: io::Result<()>) -> Result<(), CannotWrite> {
 }
 
 fn check_writable(folder: &Path) -> Result<(), CannotWrite> {
-    tempfile::Builder::new()
-        .prefix(TEMP_PREFIX)
-        .tempfile_in(folder)
-        .map(drop)
-        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source: without_details(&source) })
+    tempfile::Builder::new().prefix(TEMP_PREFIX).tempfile_in(folder).map(drop).map_err(|source| {
+        CannotWrite::NotWritable { path: display(folder), source: without_details(&source) }
+    })
 }
 
 fn is_input(path: &Path, inputs: &[&Path]) -> bool {

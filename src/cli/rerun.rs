@@ -81,7 +81,7 @@ impl EarlierResult {
     }
 
     /// Lists the corrections that its command line disabled, by their keys.
-    pub fn disabled(&self) -> Vec<String> {
+    pub fn disabled_corrections(&self) -> Vec<String> {
         let corrections = self.result["settings"]["corrections"].as_object().into_iter().flatten();
         corrections.filter(|(_, entry)| entry["from"] == "command line").map(|(key, _)| key.clone()).collect()
     }

@@ -59,15 +59,15 @@ pub(super) fn find_clipped(
         if is_noise { 0.0 } else { *step }
     };
     let band = noise.max(least + step_beyond(noise));
+    let is_new = |known: &[Span], span: &Span| known.iter().all(|s| s.to <= span.from || span.to <= s.from);
     for extreme in [low, high] {
         if extreme.abs() < 4.0 * band {
             continue;
         }
         for span in find_runs(force, |f| (f - extreme).abs() <= band) {
-            let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
             let is_limit =
                 |span| is_flat_top(force, span, band, *step) && !carries_noise(force, span, roughness);
-            if span.to - span.from >= LEAST_RUN && !is_known && is_limit(span) {
+            if span.to - span.from >= LEAST_RUN && is_new(&spans, &span) && is_limit(span) {
                 spans.push(span);
             }
         }
@@ -75,10 +75,9 @@ pub(super) fn find_clipped(
     if channel.axis == Axis::Transverse {
         // Noise of the converter is added after a limit of the amplifier: only these levels show such a
         // limit.
-        let limits = LimitSearch::new(force, noise_m_s2, step_beyond(noise_m_s2).max(least)).find();
-        let is_known = |s: &Span| spans.iter().any(|known: &Span| known.from < s.to && s.from < known.to);
-        let further: Vec<Span> = limits.into_iter().filter(|s| !is_known(s)).collect();
-        spans.extend(further);
+        let mut limits = LimitSearch::new(force, noise_m_s2, step_beyond(noise_m_s2).max(least)).find();
+        limits.retain(|span| is_new(&spans, span));
+        spans.extend(limits);
         spans.extend(find_limited_flanks(force, roughness, peak));
     }
     spans.sort_by_key(|s| s.from);
@@ -193,13 +192,13 @@ mod tests {
         let [flank] = limited(&pulse(1e9), 30.0)[..] else { panic!("one flank") };
         assert!(flank.from > 300 && flank.to - flank.from > 60, "{flank:?}");
         assert_eq!(limited(&pulse(1e9), 1e9), []);
-        // Through 0 into a deeper trough behind it, and out of that.
+        // The second force passes through 0 into a deeper trough and rises again.
         let through = |most: f64| {
             let swing = |i: u32| if i < 100 { 2500.0 } else { 4000.0 } * (f64::from(i) * 0.031_416).sin();
             limited(&(0..200).map(swing).collect::<Vec<_>>(), most)
         };
         assert_eq!((through(60.0).len(), through(1e9).len()), (2, 0));
-        // A limiter rises in a straight line to its plateau, and lets go more and more.
+        // An impact limiter rises in a straight line to its plateau, and releases gradually.
         let crush = |i: u32| (75.0 * f64::from(i)).min(3000.0) * (1.0 - (f64::from(i) / 200.0).powi(8));
         assert_eq!(limited(&(0..200).map(crush).collect::<Vec<_>>(), 1e9), []);
     }
@@ -242,7 +241,7 @@ mod tests {
                 for range in [3.0, 4.1, 5.9, 8.3, 11.7, 16.9, 23.0, 30.0] {
                     assert!(found(range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
                 }
-                // Ringing parts the flat top of the shortest.
+                // Ringing divides the flat top of the shortest pulse.
                 for range in if length > 20 { &[0.4, 0.5, 0.8][..] } else { &[0.4] } {
                     assert!(!found(*range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
                 }
@@ -252,7 +251,7 @@ mod tests {
 
     #[test]
     fn three_samples_about_a_smooth_peak_are_no_flat_top() {
-        // The peak, samples 0.02 of the pulse apart, as flat as a second and a fourth power make it.
+        // Samples of the peak, 0.02 of the pulse apart, that falls with the second and with the fourth power.
         let top = |power: i32| -> Vec<f64> {
             (-25..=25).map(|i| 4000.0 * (1.0 - (f64::from(i) / 25.0).abs().powi(power))).collect()
         };
@@ -269,7 +268,8 @@ mod tests {
     #[test]
     fn samples_moved_to_other_times_keep_the_converters_steps() {
         let moved = Channel { time_jitter_s: 1e-5, ..channel(None) };
-        // Cubics at a place that wanders between the samples, no farther than those reach.
+        // The values are interpolated by cubics at varying positions between the samples, within the range of
+        // those.
         let between = |force: &[f64]| -> Vec<f64> {
             let (low, high) = reduce::extremes(force, 0.0);
             let cubic = |(w, i): (&[f64], i32)| {
@@ -320,8 +320,8 @@ mod tests {
             limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
         let along = Channel { axis: Axis::Axial, ..channel(None) };
         assert!(find_clipped(&along, &crushing, 0.0, 5.0, 100).is_empty());
-        // Across the axis a force that a limiter keeps level rings with the body, by 2 % of it here; what has
-        // noise alone, as a converter behind the limit makes it, is a limit.
+        // A constant force of an impact limiter rings with the body in a transverse channel, by 2 % of it
+        // here; a level with noise alone, which a converter adds after the limit, is a limit.
         let rings = |i: u32| if i < 100 { 0.0 } else { 60.0 * (0.15 * f64::from(i)).sin() };
         let ringing: Vec<f64> = crushing.iter().zip(0..).map(|(f, i)| f + rings(i)).collect();
         assert!(find_clipped(&channel(None), &ringing, 0.0, 5.0, 100).is_empty());

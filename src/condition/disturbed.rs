@@ -185,7 +185,7 @@ fn is_rounded(force: &[f64], run: Range<usize>) -> bool {
 }
 
 /// Finds the runs of at least [`LEAST_RUN`] equal samples, from the first step between them to just after the
-/// last: each contains every `LEAST_RUN − 1`-th step, so the others need no test.
+/// last: each has a step whose index is a multiple of `LEAST_RUN − 1`, so that the others need no test.
 fn find_repeats(force: &[f64]) -> Vec<Span> {
     #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
     let repeats = |&i: &usize| force.get(i).zip(force.get(i + 1)).is_some_and(|(a, b)| a == b);
@@ -229,7 +229,7 @@ mod tests {
     fn a_pulse_has_neither() {
         assert!(find_spikes(&[pulse()], 0, 20.0).is_none());
         assert!(mark_dropouts(&mut pulse(), 1.0, 0.04).is_none());
-        // Nor a pulse of five samples, and ringing of fifteen samples a period.
+        // A pulse of five samples, and ringing of fifteen samples per period, are no spikes either.
         let mut short = pulse();
         short.force_m_s2[300..305].copy_from_slice(&[2000.0, 3600.0, 4000.0, 3500.0, 1900.0]);
         assert!(find_spikes(&[short], 0, 1.5).is_none());
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_wave_that_another_channel_shows_as_sharp_is_no_spike() {
-        // A bell of a bending wave through a recorder's filter.
+        // A bending wave after a recorder's filter is a pulse of a few samples.
         let struck = |at: usize, share: f64| {
             let mut struck = pulse();
             for (f, wave) in struck.force_m_s2[at..].iter_mut().zip([-10.0, -600.0, -1100.0, -650.0, -20.0]) {

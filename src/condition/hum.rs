@@ -203,7 +203,7 @@ mod tests {
     fn noise_has_no_hum() {
         for seed in 0..20 {
             assert!(treat(&mut channel(|_| 0.0, seed), 0.2, true).is_none(), "{seed}");
-            // A slow swing of the hook and a drift are no mains.
+            // A slow swing of the hook and a drift are not mains hum.
             let slow = |t: f64| 8.0 * (TAU * 4.0 * t).sin() + 30.0 * t;
             assert!(treat(&mut channel(slow, seed), 0.2, true).is_none(), "{seed}");
         }

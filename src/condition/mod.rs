@@ -152,8 +152,7 @@ mod tests {
 
     #[test]
     fn an_ac_coupled_step_is_put_back() {
-        // y = e^(−t/T) is what a high-pass makes of a step; the inverse gives 1 back to the trapezoid's h²/12
-        // T².
+        // A high-pass turns a step into y = e^(−t/T); the inverse restores 1 within the trapezoid's h²/12 T².
         let (rate, constant) = (10_000.0, 0.3);
         let mut y: Vec<f64> = (0..5000).map(|i| (-f64::from(i) / rate / constant).exp()).collect();
         y[0] = 1.0;

@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_long_fall_of_few_samples_is_no_late_start() {
-        // Times in ms that were taken for seconds.
+        // The times are in ms and were read as seconds.
         let mut slow = signal(vec![0.0; 300]);
         slow.sample_rate_hz = 20.0;
         let findings = treat(&mut slow, 0.25, true);

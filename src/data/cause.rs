@@ -42,7 +42,7 @@ pub struct Mistake {
 
 /// Mistakes that make everything consistent when corrected together, and the result with these corrections.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Remedy {
+pub struct StatedRemedy {
     /// One mistake, or two.
     pub mistakes: Vec<Mistake>,
     /// The causes, one per mistake.
@@ -66,7 +66,7 @@ pub struct StatedCause {
     pub k: Option<Estimate>,
 }
 
-impl Remedy {
+impl StatedRemedy {
     /// Names the keys and their corrections, as "`position_m` of A1 0.15 in place of 0.65".
     pub(crate) fn keys(&self) -> String {
         let words = |Mistake { key, names, correction, .. }: &Mistake| match &names[..] {

@@ -53,7 +53,7 @@ mod tests {
         assert!(named.contains("+0.50 ±"), "{named}");
         assert!(gaining(-50.0, 0.0).is_some());
         assert_eq!(gaining(25.0, 0.0), None, "0.25 m/s are not");
-        // The flight makes up for the contact: 0.5 m/s in its beginning, 0.2 on the mean.
+        // The flight compensates for the contact: 0.5 m/s at its start, 0.2 in the mean.
         assert_eq!(gaining(50.0, -20.0), None);
     }
 }

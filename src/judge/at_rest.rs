@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::data::{FindingKind, example};
 
-    /// The cause for a transverse channel at 15° that reads this, beside an axial one that reads right.
+    /// Cause for a transverse channel at 15° that reads this, beside an axial one that reads correctly.
     fn of(reads_g: f64) -> Option<RestCause> {
         let drop = Drop::from_height(9.0, 15_f64.to_radians());
         let at_rest = |level_g: f64| AtRest {

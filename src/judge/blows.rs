@@ -282,7 +282,7 @@ mod tests {
         let (cask, flight) = (example::cask(1.0, 5.0, 0.0), example::flight(0.025, 0.1, vec![]));
         let events = example::events(0.02, 0.29);
         let sharp = |at_s| is_sharp(std::slice::from_ref(&signal), &flight, &events, &cask, at_s);
-        // Before the first prediction nothing speaks against a shock.
+        // Before the first prediction nothing contradicts a shock.
         assert!(sharp(0.061) && sharp(0.022));
     }
 

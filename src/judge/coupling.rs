@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn droops_in_proportion_are_a_coupling() {
-        // T = 0.3 s: 19/0.3 and −7/0.3, less what has drooped already.
+        // T = 0.3 s: 19/0.3 and −7/0.3, less the droop so far.
         let both = found((19.0, -61.0), (-7.0, 23.0), &[]);
         assert_eq!(both.len(), 2);
         let FindingKind::Channel(ChannelFinding::AcUnstated { time_constant_s, .. }) = both[0] else {

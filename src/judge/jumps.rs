@@ -169,7 +169,8 @@ mod tests {
     use crate::data::example::noise;
     use std::f64::consts::{PI, TAU};
 
-    /// A contact of 10 ms from 20 ms on and ringing of 200 Hz behind it, at 20 kHz; `more` at each time, s.
+    /// Simulates a contact of 10 ms from 20 ms on with ringing of 200 Hz after it, at 20 kHz, plus `more` at
+    /// each time, s.
     fn channel(name: &str, size: f64, more: impl Fn(f64) -> f64) -> Signal {
         let force = |i: u32| {
             let t = f64::from(i) / 2e4 - 0.02;
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_channel_that_a_break_leaves_with_its_noise_alone_is_electrical() {
-        // Behind a filter that spreads the break over some samples, to zero and to a rail.
+        // A filter spreads the break over some samples, to zero and to a supply rail.
         for level in [0.0, 900.0] {
             let broken = |name: &str| {
                 let mut channel = channel(name, 4000.0, |_| 0.0);
@@ -210,7 +211,7 @@ mod tests {
             };
             let sound = channel("A2", -1500.0, |_| 0.0);
             assert_eq!(named(&broken("A1"), &sound), [Some("A1".to_owned())], "{level}");
-            // What both do at once is a body that comes to rest.
+            // A change of both channels at once is a body that comes to rest.
             assert!(named(&broken("A1"), &broken("A2")).is_empty(), "{level}");
         }
     }

@@ -123,7 +123,7 @@ mod tests {
         };
         assert!(are(from_s, to_s), "{}", found.message);
         assert!(judge_force_pause(&[twice], &events(0.014)).is_none(), "one contact");
-        // A limiter that yields and then bottoms out never lets go.
+        // An impact limiter that yields and then bottoms out never releases.
         let staged = signal(&[(0.01, 400.0), (0.0125, 400.0), (0.015, 3000.0)]);
         assert!(judge_force_pause(&[staged], &events(0.019)).is_none());
     }

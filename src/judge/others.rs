@@ -14,8 +14,8 @@ const NOTABLE_NOISE: f64 = 0.05;
 /// Smallest rotation by the first impact that is used to judge a sensor, rad/s: a tenth of that of a
 /// slap-down.
 const LEAST_RAD_S: f64 = 0.3;
-/// A measured share of the rotation within this distance of the share that a cause makes is explained by it;
-/// a share below the smallest one by no signal.
+/// Relative tolerance within which a measured share of the rotation is explained by a cause; a share below
+/// that of the smallest cause means that the sensor reads nothing.
 const CAUSE_SHARE: f64 = 0.2;
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// Codes and severities of what is found.
+    /// Returns codes and severities of the findings.
     fn judged(issues: &[Finding], summary: &OtherSummary) -> Vec<(IssueCode, Severity)> {
         let events = Events { first_contact: Some(At::exact(1.0)), ..Events::default() };
         judge_other(&example::other(vec![20.0; 8]), issues, summary, &events)

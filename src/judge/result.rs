@@ -348,7 +348,7 @@ mod tests {
         };
         assert_eq!(found(15.0, 13.3), Some(IssueCode::Swings));
         assert_eq!(found(30.0, 13.3), None);
-        // A hundredth of the speed of the fall is within the interval.
+        // A hundredth of the speed of the fall lies within the interval.
         assert_eq!(found(15.0, 130.0), None);
     }
 

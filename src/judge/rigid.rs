@@ -138,7 +138,7 @@ mod tests {
         named_at(0.26, off_m_s, places_m)
     }
 
-    /// The same of a drop at this angle, rad.
+    /// Judges the steps of a drop at this angle, rad.
     fn named_at(angle_rad: f64, off_m_s: f64, places_m: &[f64]) -> Option<String> {
         let names = ["A1", "A2", "A3", "A4"];
         let signals: Vec<Signal> = names
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn two_channels_are_always_a_line() {
         assert_eq!(named(3.0, &[0.2, 4.8]), None);
-        // Three at one place say nothing of a line either.
+        // Three channels at one place do not define a line either.
         assert_eq!(named(0.0, &[0.2, 0.2, 0.2]), None);
     }
 }

@@ -170,7 +170,7 @@ mod tests {
     use super::*;
     use crate::data::{At, IssueCode, example};
 
-    /// What `force` says from 20 ms on, sampled at a rate, with the two events.
+    /// Samples `force` from 20 ms on at a rate, with the two events.
     fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {
         let count = 100_000;
         let force_m_s2 = (0..count).map(|i| f64::from(i) / rate_hz - 0.020_04).take_while(|t| *t < 0.2);
@@ -191,7 +191,7 @@ mod tests {
         if t < length_s { 5000.0 * (PI * t / length_s).sin() } else { 0.0 }
     }
 
-    /// A mode as strong as the pulse that goes on ringing after it.
+    /// A mode as strong as the pulse that continues to ring after it.
     fn ringing(t: f64, length_s: f64, frequency_hz: f64) -> f64 {
         half_sine(t, length_s) + 2500.0 * (-40.0 * t).exp() * (2.0 * PI * frequency_hz * t).sin()
     }
@@ -230,7 +230,7 @@ mod tests {
             move |t: f64| half_sine(t, 0.005) + height * (-300.0 * t).exp() * (2.0 * PI * f * t).sin()
         };
         assert_eq!(codes(1e4, 0.005, resonance(4600.0, 2000.0)), [IssueCode::Aliasing]);
-        // A third of the rate, within what a filter at a quarter to 40 % of the rate lets through.
+        // A third of the rate, which a filter at a quarter to 40 % of the rate passes.
         assert!(codes(1e4, 0.005, resonance(2800.0, 800.0)).is_empty());
     }
 }

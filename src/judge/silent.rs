@@ -179,7 +179,8 @@ mod tests {
             judge_at_stop(&all[1], &all).map(|(from, _)| from)
         };
         assert_eq!(torn(-320.0, 20_000), Some(6000));
-        // A plateau that ends, rest after a drop, and a level below what the channel reads.
+        // None of these is a stop: a plateau that ends, rest after a drop, and a level below other readings
+        // of the channel.
         assert_eq!(
             [(320.0, 19_000), (10.0, 20_000), (250.0, 20_000)].map(|(level, until)| torn(level, until)),
             [None; 3]

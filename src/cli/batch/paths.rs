@@ -119,7 +119,8 @@ mod tests {
         assert_eq!(recordings(&twice).unwrap().len(), 3);
         assert_eq!(recordings(&[folder.path().join("*.mcap")]).unwrap().len(), 1);
         assert!(recordings(&[folder.path().join("*.none")]).is_err());
-        // An earlier campaign's table and a manifest are none, a recording of its name is one.
+        // The table of an earlier campaign and a manifest are not recordings; a recording with such a name
+        // is.
         let table = Batch::default().csv_head().unwrap();
         let manifest = b"id,recording,cask\na,b,c\n".to_vec();
         for (content, count) in [(table, 2), (manifest, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {

@@ -13,7 +13,7 @@ const CURVE_STEP_DEG: f64 = 0.5;
 /// Fewest swept angles that set the range of the curves; fewer are single points.
 const LEAST_CURVE_ANGLES: usize = 10;
 
-/// Most steps of a curve: more are closer than the dots of a picture.
+/// Largest number of steps of a curve: more are closer than the dots of a picture.
 const MOST_CURVE_STEPS: f64 = 1800.0;
 
 /// Returns the request, with the cask file's values unless an option states others.
@@ -213,7 +213,7 @@ mod tests {
     fn monte_carlo_draws_from_ranges_sweeps_and_options_in_this_order() {
         let usual = predict::default_uncertain(&file());
         assert_eq!((usual.k, usual.seed), ((0.0, 1.0), 1), "--help states other defaults");
-        // The page asks by the same.
+        // The page uses the same request.
         assert_eq!(asked("").unwrap(), predict::usual_request(&file()));
         for (options, k, friction) in [
             ("", usual.k, Some((0.3, 0.3))),

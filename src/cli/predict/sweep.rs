@@ -5,8 +5,8 @@ use crate::data::SweepVariable::{Angle, DropHeight, Friction, K, Length};
 use crate::data::shown::round_off;
 use crate::data::{Sweep, SweepVariable};
 
-/// Most predictions of one run, and so values of one sweep: nobody reads a longer table, and it fills
-/// hundreds of megabytes.
+/// Largest number of predictions of one run, and so of values of one sweep: nobody reads a longer table, and
+/// it fills hundreds of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
 
 /// A variable that can be swept, with its names on the command line.
@@ -168,8 +168,8 @@ mod tests {
             ("0:90:5,k=0:1:0.1", "once for each variable"),
             ("k=0:1:0.1,angle=0:90:1", "once for each variable"),
         ] {
-            let told = parse(text).unwrap_err();
-            assert!(told.contains(words), "{text}: {told}");
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::data::{Contact, LONGEST_CONTACT_S, SHORTEST_CONTACT_S};
 /// Largest half-width of angle and geometry, in degrees and percent: a larger one would draw another cask.
 const LARGEST_TOLERANCE: f64 = 20.0;
 
-/// Most draws: a million take minutes, and more change no quantile that a person reads.
+/// Largest number of draws: a million take minutes, and more change no quantile that a person reads.
 const MOST_DRAWS: u32 = 1_000_000;
 
 /// Parses a finite number with a decimal point or comma: no list is written with commas here.

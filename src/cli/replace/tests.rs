@@ -1,4 +1,4 @@
-//! Sets of files into folders of every kind, interrupted and not, to what stands there afterwards.
+//! Tests of writing sets of files into folders of every kind, with and without interruption.
 
 use super::*;
 
@@ -58,13 +58,13 @@ fn what_a_stopped_run_left_is_made_good_by_the_next() {
     let folder = place.path().join("report");
     replace_set(&folder, &set("old")).unwrap();
     fs::create_dir(folder.join("photos")).unwrap();
-    // Stopped between two moves: the JSON is there, the rest is on its way.
+    // The run was stopped between two moves: the JSON is in place, the other files are not.
     let unfinished = folder.join(UNFINISHED);
     fs::create_dir(&unfinished).unwrap();
     fs::write(folder.join("result.json"), "newer").unwrap();
     fs::write(unfinished.join("report.html"), "newer").unwrap();
     fs::write(unfinished.join("of-another-set.svg"), "newer").unwrap();
-    // Killed while it staged, beside the folder and in it.
+    // The run was killed while it staged files, beside the folder and in it.
     for stale in [place.path().join(".dropcheck-dead"), folder.join(".dropcheck-dead")] {
         fs::create_dir(&stale).unwrap();
         fs::write(stale.join("report.html"), "half").unwrap();
@@ -126,12 +126,12 @@ fn a_reader_sees_one_set_or_the_other() {
             is_done.store(true, order);
         });
         while !is_done.load(order) {
-            // Through one handle on the folder, so that all names are of one moment.
+            // One handle on the folder is used, so that all names belong to one moment.
             let Ok(handle) = File::open(&folder) else { panic!("the folder is gone for a moment") };
             let through = format!("/proc/self/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&handle));
             let found = contents(Path::new(&through));
-            // A set that was replaced in the meantime is on its way out: what is left of it is of one set
-            // too.
+            // A set that was replaced in the meantime is being removed: its remaining files still belong to
+            // one set.
             let mut kinds: Vec<&String> = found.iter().filter(|content| !content.is_empty()).collect();
             kinds.dedup();
             assert!(kinds.len() <= 1, "{found:?}");

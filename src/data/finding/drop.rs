@@ -4,7 +4,7 @@ use super::{Finding, IssueCode as Code, Severity};
 use crate::data::keys::quantity_words;
 use crate::data::shown::digits;
 use crate::data::{
-    CheckKind, CoarseEvent, Comparison, Consistency, Drop, End, Estimate, ObservedBeside, Remedy,
+    CheckKind, CoarseEvent, Comparison, Consistency, Drop, End, Estimate, ObservedBeside, StatedRemedy,
 };
 
 findings! {
@@ -214,14 +214,14 @@ pub enum DropFinding of Drop {
          join(closures, |c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.largest_residual()), ", "));
     /// With the correction of a likely mistake everything is consistent; or with either of two, and nothing
     /// decides between them.
-    UsualMistake { remedies: Vec<Remedy>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
+    UsualMistake { remedies: Vec<StatedRemedy>, severity: Severity } => (Code::UsualSlip, *severity, Hint),
         ("{}: check this first; it has not been applied", join(remedies, remedy_words, "; "));
     /// With one of these numbers in place of the stated one everything is consistent.
-    OneNumber { remedies: Vec<Remedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
+    OneNumber { remedies: Vec<StatedRemedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
         ("if all else is as stated, {}: check this first; it has not been applied", join(remedies, remedy_words, "; "));
     /// More than two causes explain it as well.
-    SeveralCauses { remedies: Vec<Remedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
-        ("several mistakes would explain it, each alone: {}: check these", join(remedies, Remedy::keys, "; "));
+    SeveralCauses { remedies: Vec<StatedRemedy>, severity: Severity } => (Code::Geometry, *severity, Hint),
+        ("several mistakes would explain it, each alone: {}: check these", join(remedies, StatedRemedy::keys, "; "));
 }
 }
 
@@ -234,7 +234,7 @@ fn closure_code(closure: CheckKind) -> Code {
 }
 
 /// Formats "with `drop.height_m` in ft everything is consistent, at 20.49 ± 0.11 m/s and k = 0.56 ± 0.01".
-fn remedy_words(remedy: &Remedy) -> String {
+fn remedy_words(remedy: &StatedRemedy) -> String {
     let (speed, k) = remedy.causes.first().map_or((None, None), |cause| (cause.speed, cause.k));
     format!("with {} everything is consistent, at {}", remedy.keys(), numbers(speed, k))
 }

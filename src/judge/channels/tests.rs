@@ -1,4 +1,4 @@
-//! Made-up channels to what `worth` says of them.
+//! Tests of the judgement of single channels.
 
 use super::*;
 use crate::data::{At, Contact, Drop, IssueCode, Plateau, example};
@@ -8,7 +8,7 @@ fn cask_file() -> CaskFile {
     CaskFile::new(cask, Drop { impact_velocity_m_s: 13.29, ..Drop::from_height(9.0, 0.25) }, Contact::Rough)
 }
 
-/// A half sine of 5 ms from 20 ms on at 10 kHz; white noise of 1 m/s² is said, none is there.
+/// Simulates a half sine of 5 ms from 20 ms on at 10 kHz; white noise of 1 m/s² is stated, but not present.
 fn signal(name: &str, end: End, position_m: f64, peak: f64) -> Signal {
     let force = |i: u32| {
         let x = (f64::from(i) - 200.0) / 50.0;
@@ -101,7 +101,7 @@ fn a_record_that_begins_in_the_impact_is_named() {
     for (cut, wanted) in [(199, 0), (225, 1)] {
         let mut late = pair().map(|s| s.cut(cut, 1000));
         for s in &mut late {
-            // Nothing quiet is left to take noise from.
+            // No quiet part remains that shows the noise.
             s.noise_spectrum.clear();
         }
         let mut events =
