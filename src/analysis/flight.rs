@@ -155,7 +155,7 @@ fn reconstruct(
     let tabulate =
         |second: Option<&SecondImpact>| impacts::tabulate(file, integrated, &method, second, u_late_s);
     let tables = tabulate(second.as_ref())
-        .filter(ImpactTables::has_second)
+        .filter(|tables| tables.tables[1].is_some())
         .or_else(|| tabulate(find(true).as_ref()))
         .or_else(|| tabulate(None))
         .map(|t| if impact.is_one_ended() { t.without_course() } else { t });

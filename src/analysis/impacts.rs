@@ -23,8 +23,8 @@ const U_RINGING_SHARE: f64 = 0.07;
 const U_BENDING_SHARE: f64 = 0.7;
 const MOST_U_BENDING: f64 = 0.1;
 /// Standard uncertainty of the second crush from the bending of the cask under the force that stops R, as a
-/// share of the deceleration of R over the square of the first angular frequency: the crush of 94 drawn elastic
-/// bodies exceeds the true one by 0.2 to 0.6 of it in the mean.
+/// share of the deceleration of R over the square of the first angular frequency: the crush of 94 drawn
+/// elastic bodies exceeds the true one by 0.2 to 0.6 of it in the mean.
 const U_BENT_SHARE: f64 = 0.4;
 
 /// Possible range of the restitution: no end rebounds faster than it struck, nor is drawn in.
@@ -38,7 +38,7 @@ const CURVE_POINTS: usize = 40;
 /// Tables of both impacts, as far as the motion determines them.
 pub(super) struct ImpactTables {
     /// First impact, and second if it is determined; times and channels are added later.
-    tables: [Option<ImpactTable>; 2],
+    pub tables: [Option<ImpactTable>; 2],
     /// Time at which R leaves, s.
     left_s: Option<f64>,
     /// First touch of the first contact, if that may be two touches.
@@ -61,11 +61,6 @@ impl ImpactTables {
             table.force_over_crush = ForceOverCrush::default();
         }
         self
-    }
-
-    /// True if the second impact is determined, as a whole or up to its greatest crush.
-    pub fn has_second(&self) -> bool {
-        self.tables[1].is_some()
     }
 
     /// Reports a force of the first contact that falls between two maxima as if L touched twice.
@@ -171,29 +166,27 @@ pub(super) fn tabulate(
     };
     let second_numbers = known.get(1).filter(|_| is_one).filter(is_passive);
     let second_table = after.zip(second_numbers).map(|(course, numbers)| {
-        let table = impacts.table(End::Second, &course, numbers);
-        if is_open { keep_until_crush(table) } else { table }
+        let mut table = impacts.table(End::Second, &course, numbers);
+        if is_open {
+            // No flight tells what the contact gives in all.
+            table.numbers = ImpactNumbers {
+                duration: None,
+                velocity_change: None,
+                impulse_x: None,
+                impulse_z: None,
+                restitution: None,
+                friction: None,
+                energy_after: None,
+                ..table.numbers
+            };
+        }
+        table
     });
     Some(ImpactTables {
         left_s: second.map(|s| s.left.time_s),
         touch: first.contact.first_touch(method.quantities.k.value, impacts.cutoff_hz, integrated),
         tables: [Some(impacts.table(End::First, &first, known.first()?)), second_table],
     })
-}
-
-/// Removes the numbers of the whole contact, if no flight after it determines them.
-fn keep_until_crush(mut table: ImpactTable) -> ImpactTable {
-    table.numbers = ImpactNumbers {
-        duration: None,
-        velocity_change: None,
-        impulse_x: None,
-        impulse_z: None,
-        restitution: None,
-        friction: None,
-        energy_after: None,
-        ..table.numbers
-    };
-    table
 }
 
 impl BothImpacts<'_> {
@@ -256,12 +249,10 @@ impl BothImpacts<'_> {
                 *u = u.hypot(U_RINGING_SHARE * share * *value);
             }
             let bends_m = U_BENDING_SHARE * bends_s * own.velocity_change.0;
-            own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_U_BENDING * own.crush.0));
-            let slowest = method.taken.flight.modes.iter().map(|m| TAU * m.frequency_hz).reduce(f64::min);
-            if let Some(slowest_rad_s) = slowest.filter(|_| i == 1) {
-                let bent_m = own.at_struck_end.0 / slowest_rad_s.powi(2);
-                own.crush.1 = own.crush.1.hypot(U_BENT_SHARE * bent_m);
-            }
+            let modes_rad_s = method.taken.flight.modes.iter().map(|m| TAU * m.frequency_hz);
+            let bent_m = own.at_struck_end.0 / modes_rad_s.fold(f64::INFINITY, f64::min).powi(2);
+            let u_bent_m = if i == 1 { U_BENT_SHARE * bent_m } else { 0.0 };
+            own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_U_BENDING * own.crush.0)).hypot(u_bent_m);
         }
         for (by, share) in U_OTHER_COURSES {
             let others = self.numbers(&method.taken, by)?;

@@ -105,14 +105,10 @@ fn cut_stuck_ends(recording: &Recording) -> Cow<'_, Recording> {
     }
     let mut cut = recording.clone();
     let cut_channel = |(mut channel, stuck): (Channel, Option<(usize, Finding)>)| {
-        let Some((from, finding)) = stuck else { return Some(channel) };
-        let is_left_out = matches!(
-            finding.what,
-            FindingKind::Channel(ChannelFinding::AtStop { is_beside_others: true, .. })
-        );
+        let Some((kept, finding)) = stuck else { return Some(channel) };
         cut.issues.push(finding);
-        channel.samples.truncate(from);
-        (!is_left_out).then_some(channel)
+        channel.samples.truncate(kept);
+        (kept > 0).then_some(channel)
     };
     cut.channels = std::mem::take(&mut cut.channels).into_iter().zip(stuck).filter_map(cut_channel).collect();
     Cow::Owned(cut)

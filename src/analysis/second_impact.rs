@@ -113,22 +113,23 @@ fn find_flight(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFi
     is_determined.then_some((left, flight))
 }
 
-/// Time at which the corner of R stands still once the force on R has ended, and the integrals there: a contact
-/// that no flight follows is followed until then.
+/// Time at which the corner of R stands still once the force on R has ended, and the integrals there: the end
+/// of a contact that no flight follows.
 fn standstill(integrated: &Integrated, setup: &Setup) -> Option<(At, FlightFit)> {
     let to_s = flight_search::record_end_s(&integrated.signals).min(integrated.contact_s + LONGEST_CRUSH_S);
     let struck = transverse(&integrated.signals, End::First)?;
     let force_end_s = events::first_separation(struck, integrated.contact_s, to_s);
     let from_s = force_end_s.unwrap_or(integrated.contact_s + CRUSH_STEP_S);
-    let end = |time_s| (At { time_s, u_s: 0.0 }, motion::flight_at(integrated, time_s));
-    let is_still = |(left, flight): &(At, FlightFit)| {
-        let first_contact = Some(At { time_s: integrated.contact_s, u_s: 0.0 });
-        let times = Events { first_contact, separation: Some(*left), ..Events::default() };
-        let moved = motion::outcome(integrated, flight, &times, setup);
-        moved.is_some_and(|motion| motion.rebound_m_s > -STILL * setup.impact_velocity_m_s)
-    };
-    let steps = (0_u32..).map(|i| from_s + f64::from(i) * CRUSH_STEP_S).take_while(|time_s| *time_s < to_s);
-    steps.map(end).find(is_still)
+    let mut steps =
+        (0_u32..).map(|i| from_s + f64::from(i) * CRUSH_STEP_S).take_while(|time_s| *time_s < to_s);
+    steps.find_map(|time_s| {
+        let [first_contact, separation] = [integrated.contact_s, time_s].map(|at_s| Some(At::exact(at_s)));
+        let times = Events { first_contact, separation, ..Events::default() };
+        let flight = motion::flight_at(integrated, time_s);
+        let motion = motion::outcome(integrated, &flight, &times, setup)?;
+        let is_still = motion.rebound_m_s > -STILL * setup.impact_velocity_m_s;
+        is_still.then_some((At::exact(time_s), flight))
+    })
 }
 
 impl Mirror {

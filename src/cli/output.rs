@@ -108,7 +108,8 @@ impl Folder {
             let is_folder = target.is_dir() && !target.is_symlink();
             refuse_if(is_folder, CannotWrite::IsAFolder, target)?;
         }
-        let is_ours = names.iter().find(|name| is_json(name)).is_none_or(|n| is_own_json(&path.join(n)));
+        let is_json = |name: &&&str| Path::new(name).extension().is_some_and(|ending| ending == "json");
+        let is_ours = names.iter().find(is_json).is_none_or(|n| is_own_json(&path.join(n)));
         match present.first() {
             Some(first) if !is_ours => Err(CannotWrite::Foreign(display(first))),
             _ => Ok(Self { path: path.to_path_buf() }),
@@ -279,10 +280,6 @@ fn check_writable(folder: &Path) -> Result<(), CannotWrite> {
 fn is_input(path: &Path, inputs: &[&Path]) -> bool {
     let Ok(path) = fs::canonicalize(path) else { return false };
     inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == path))
-}
-
-fn is_json(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|ending| ending == "json")
 }
 
 fn is_own_json(path: &Path) -> bool {

@@ -153,7 +153,8 @@ fn flight_method(measured: &FitData, propagated: Propagated, closures: &[Consist
     let residual = format!("{left_m_s:.3} m/s about {name}; {}", name_worst(closures));
     // A lost step is so uncertain that no check counts as failed, however wrong the step is: the checks then
     // confirm nothing.
-    let consistent = are_consistent(closures) && !has_lost_step(measured);
+    let agree = closures.iter().all(|c| c.largest_residual() <= CONSISTENT_U);
+    let consistent = agree && !has_lost_step(measured);
     step(Method::Flight, propagated, consistent, residual)
 }
 
@@ -192,10 +193,6 @@ fn joint_method(
         residual = format!("{residual}, intervals widened {widened:.1} times: {why}");
     }
     step(Method::Joint, propagated, true, residual)
-}
-
-fn are_consistent(closures: &[Consistency]) -> bool {
-    closures.iter().all(|c| c.largest_residual() <= CONSISTENT_U)
 }
 
 /// Names the check with the largest miss.

@@ -60,11 +60,8 @@ pub(super) fn find_silent(
         };
         let untested = Untested { moves, ..of_key };
         let with_it = linearity(own, &untested);
-        silent.extend(std::iter::once(untested).chain(with_it).map(|untested| SilentMistake {
-            input: Some(input),
-            wrong_u,
-            untested,
-        }));
+        let silent_mistake = |untested| SilentMistake { input: Some(input), wrong_u, untested };
+        silent.extend(std::iter::once(untested).chain(with_it).map(silent_mistake));
     }
     let round = rounded_corner(measured, stated);
     silent.extend(round.map(|untested| SilentMistake { input: None, wrong_u: 0.0, untested }));
@@ -75,8 +72,8 @@ pub(super) fn find_silent(
 /// touches is less than that of the sharp corner by Δk = ω ρ (cos φ − sin φ)/v0.
 fn rounded_corner(measured: &FitData, stated: &Quantities) -> Option<Untested> {
     let (sin, cos) = measured.setup.angle_rad.sin_cos();
-    let rolls_m_s = stated.angular_velocity.value * ROUNDING_M * (cos - sin);
-    let k = (rolls_m_s / stated.impact_velocity.value).abs();
+    let turning_rad_s = stated.angular_velocity.value;
+    let k = (turning_rad_s * ROUNDING_M * (cos - sin) / stated.impact_velocity.value).abs();
     (WRONG_HALF_WIDTHS * stated.k.u95 <= MOST_USUAL * k).then(|| Untested {
         what: "radius of the first end's corner".into(),
         key: "cask.height_m".into(),

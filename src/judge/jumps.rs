@@ -61,9 +61,10 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
             let begins_s = contact_s + ONSET_SAMPLES / signal.sample_rate_hz;
             let is_between = |at_s| at_s > begins_s && is_inside(at_s, RELEASE);
             let is_break = |at: &&usize| jumps.len() > 1 || is_between(signal.time_s(**at));
-            let size = |at: usize| step(&signal.force_m_s2, at);
-            let at = *jumps.iter().filter(is_break).max_by(|a, b| size(**a).total_cmp(&size(**b)))?;
-            Some((at, signal.force_m_s2[at + 1] - signal.force_m_s2[at]))
+            let force = &signal.force_m_s2;
+            let breaks = jumps.iter().filter(is_break);
+            let at = *breaks.max_by(|a, b| step(force, **a).total_cmp(&step(force, **b)))?;
+            Some((at, force[at + 1] - force[at]))
         };
         let stops_alone = |at_s| is_inside(at_s, STOP) && others().all(|other| !stops_about(other, at_s));
         let (at, size_m_s2) = jump().or_else(|| first_stop(signal, within.clone(), stops_alone))?;
@@ -128,16 +129,10 @@ fn stop_m_s2(signal: &Signal, least: f64, i: usize) -> Option<f64> {
 }
 
 /// First sample of a range after which a channel stops, and the change of the channel, m/s².
-fn first_stop(
-    signal: &Signal,
-    mut within: Range<usize>,
-    alone: impl Fn(f64) -> bool,
-) -> Option<(usize, f64)> {
+fn first_stop(signal: &Signal, within: Range<usize>, alone: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
     let least = (LEAST_CHANGE * signal.noise_m_s2).max(LEAST_CHANGE_SHARE * reduce::peak(&signal.force_m_s2));
-    within.find_map(|i| {
-        let change = stop_m_s2(signal, least, i).filter(|_| alone(signal.time_s(i)))?;
-        Some((i, change))
-    })
+    let mut stops = within.filter_map(|i| Some((i, stop_m_s2(signal, least, i)?)));
+    stops.find(|(i, _)| alone(signal.time_s(*i)))
 }
 
 /// True if a channel also stops about a time.

@@ -29,8 +29,8 @@ const WITHIN_SHARE: f64 = 1e-3;
 /// Largest share by which a reading exceeds the stop: the level at rest after a drop is far below the impact.
 const BEYOND_STOP: f64 = 0.1;
 
-/// Returns the first of the samples that stand at the channel's stop to its end, with the finding; `all` are
-/// the recording's channels.
+/// Returns the number of samples to keep of a channel that stands at its stop to its end, with the finding:
+/// those before, none of a channel beside others of its kind; `all` are the recording's channels.
 pub fn judge_at_stop(channel: &Channel, all: &[Channel]) -> Option<(usize, Finding)> {
     let count = channel.samples.len();
     let last = count.checked_sub(LEAST_AT_STOP.max(as_count(AT_STOP_S * channel.sample_rate_hz)))?;
@@ -41,34 +41,32 @@ pub fn judge_at_stop(channel: &Channel, all: &[Channel]) -> Option<(usize, Findi
     let from = (0..count).rev().take_while(stands).last().filter(|from| (1..=last).contains(from))?;
     let [low, high] = channel.extremes()?.map(|extreme| extreme.value);
     let is_stop = high.max(-low) < (1.0 + BEYOND_STOP) * level.abs() && level.abs() > SILENT_SPREADS * within;
-    let is_like = |o: &&Channel| (o.end, o.axis) == (channel.end, channel.axis) && o.name != channel.name;
-    let is_beside_others = all.iter().any(|other| is_like(&other));
+    let is_beside_others = all.iter().filter(|o| (o.end, o.axis) == (channel.end, channel.axis)).count() > 1;
     let finding = ChannelFinding::AtStop { level_m_s2: level * channel.scale_m_s2, is_beside_others };
     let [from_s, to_s] = [from, count - 1].map(|i| channel.time_s(i));
-    is_stop.then(|| (from, finding.tag(&channel.name).span(from_s, to_s)))
+    let kept = if is_beside_others { 0 } else { from };
+    is_stop.then(|| (kept, finding.tag(&channel.name).span(from_s, to_s)))
 }
 
 /// Reports each transverse channel of the second end that reads nothing but noise as that end strikes, while
 /// another channel is struck.
 pub fn judge_quiet(signals: &[Signal], events: &Events) -> Vec<Finding> {
-    let Some((contact_s, struck_s)) = events.first_contact_s().zip(events.slap_down_s()) else {
-        return Vec::new();
+    let times = events.first_contact_s().zip(events.slap_down_s());
+    let Some((contact_s, struck_s)) = times else { return Vec::new() };
+    let range = |s: &Signal| {
+        let to_s = struck_s + STRIKES_S;
+        let within = s.force_m_s2.get(s.index_from(struck_s)..s.index_from(to_s)).unwrap_or_default();
+        let (low, high) = reduce::extremes(within, within.first().copied().unwrap_or_default());
+        (within.len() >= LEAST_AT_STOP && !s.overlaps(&s.gaps, struck_s, to_s)).then_some(high - low)
     };
-    let excursions = signals.iter().filter(|s| s.axis == Axis::Transverse).filter_map(|signal| {
-        let (from, to) = (signal.index_from(struck_s), signal.index_from(struck_s + STRIKES_S));
-        let is_lost = signal.overlaps(&signal.gaps, struck_s, struck_s + STRIKES_S);
-        let within = signal.force_m_s2.get(from..to).filter(|within| within.len() >= LEAST_AT_STOP && !is_lost)?;
-        let (low, high) = reduce::extremes(within, robust::median(&mut within.to_vec()));
-        Some((signal, high - low))
-    });
-    let excursions: Vec<(&Signal, f64)> = excursions.collect();
-    let loudest = excursions.iter().filter(|(signal, range)| *range > LOUD_SPREADS * signal.noise_m_s2);
-    let Some(loudest_m_s2) = loudest.map(|(_, range)| *range).reduce(f64::max) else { return Vec::new() };
-    let is_quiet = |(signal, range): &&(&Signal, f64)| {
-        signal.end == End::Second && *range < 2.0 * SILENT_SPREADS * signal.noise_m_s2
+    let across = || signals.iter().filter(|s| s.axis == Axis::Transverse);
+    let others_m_s2 = across().filter_map(range).fold(0.0, f64::max);
+    let is_quiet = |s: &&Signal| {
+        let is_noise = range(s).is_some_and(|range| range < 2.0 * SILENT_SPREADS * s.noise_m_s2);
+        s.end == End::Second && is_noise && others_m_s2 > LOUD_SPREADS * s.noise_m_s2
     };
-    let finding = ChannelFinding::Quiet { after_s: struck_s - contact_s, others_m_s2: loudest_m_s2 };
-    excursions.iter().filter(is_quiet).map(|(signal, _)| finding.clone().tag(&signal.name)).collect()
+    let finding = ChannelFinding::Quiet { after_s: struck_s - contact_s, others_m_s2 };
+    across().filter(is_quiet).map(|s| finding.clone().tag(&s.name)).collect()
 }
 
 /// Largest deviation of a channel from its median, m/s², and the spread of its samples where it is quietest,

@@ -36,10 +36,6 @@ const ROWS: [ImpactRow; 14] = [
     ImpactRow("deceleration at the struck end", "g", G, |i| i.rigid_body_deceleration.at_struck_end),
 ];
 
-fn in_g(estimate: Option<Estimate>) -> String {
-    scaled_words(estimate, G, "")
-}
-
 fn scaled_words(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String {
     estimate.map_or_else(|| MISSING.to_owned(), |e| pair(factor * e.value, factor * e.u95, unit))
 }
@@ -65,7 +61,7 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
     chapter
         .then(ChapterPart::text(filter_words(result)))
         .then(table)
-        .then(filter_table(result, in_g))
+        .then(filter_table(result, |estimate| scaled_words(estimate, G, "")))
         .with_all(missing_notes(result, &["impacts[0]", "impacts[1]"]))
         .with_all(energy_words(result).map(ChapterPart::text))
 }

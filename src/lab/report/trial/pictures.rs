@@ -120,7 +120,8 @@ pub(super) fn failures(trial: &Trial) -> Picture {
          half-widths of the interval."
     );
     let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
-    maps.sort_by_key(|map| std::cmp::Reverse(worst_fate(map)));
+    let worst = |map: &TrialMap| map.sizes.iter().flat_map(|size| &size.drops).map(|drop| drop.fate).max();
+    maps.sort_by_key(|map| std::cmp::Reverse(worst(map)));
     let words = |map: &&TrialMap| RowWords {
         left: sizes_words(map),
         right: format!("{}; {}", fate_words(map).trim_end_matches(&map.unit).trim_end(), largest_words(map)),
@@ -135,11 +136,6 @@ pub(super) fn failures(trial: &Trial) -> Picture {
     };
     panel.fills = FATES.map(fill).into();
     Figure::new("failures", "What becomes of damages", caption).picture(&[panel])
-}
-
-/// The worst fate of a drop of the map: silence is the worst.
-fn worst_fate(map: &TrialMap) -> Option<TrialFate> {
-    map.sizes.iter().flat_map(|size| &size.drops).map(|drop| drop.fate).max()
 }
 
 /// The stripes of one fate in the row with this middle.
