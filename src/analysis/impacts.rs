@@ -161,9 +161,7 @@ pub(super) fn tabulate(
     let is_one = turning.all(|closure| closure.miss_in_u.abs() <= MISSED_U);
     let is_open = second.is_some_and(|second| second.is_open);
     let range = if is_open { STANDSTILL_RANGE } else { RESTITUTION_RANGE };
-    let is_passive = |numbers: &&ImpactNumbers<(f64, f64)>| {
-        range.contains(&numbers.restitution.0) && numbers.duration.0 > 0.0
-    };
+    let is_passive = |n: &&ImpactNumbers<(f64, f64)>| range.contains(&n.restitution.0) && n.duration.0 > 0.0;
     let second_numbers = known.get(1).filter(|_| is_one).filter(is_passive);
     let second_table = after.zip(second_numbers).map(|(course, numbers)| {
         let mut table = impacts.table(End::Second, &course, numbers);
@@ -251,7 +249,8 @@ impl BothImpacts<'_> {
             let bends_m = U_BENDING_SHARE * bends_s * own.velocity_change.0;
             let modes_rad_s = method.taken.flight.modes.iter().map(|m| TAU * m.frequency_hz);
             let bent_m = own.at_struck_end.0 / modes_rad_s.fold(f64::INFINITY, f64::min).powi(2);
-            let u_bent_m = if i == 1 { U_BENT_SHARE * bent_m } else { 0.0 };
+            // In a contact shorter than the mode the cask bends at most as far as its corner is crushed.
+            let u_bent_m = if i == 1 { U_BENT_SHARE * bent_m.min(own.crush.0) } else { 0.0 };
             own.crush.1 = own.crush.1.hypot(bends_m.min(MOST_U_BENDING * own.crush.0)).hypot(u_bent_m);
         }
         for (by, share) in U_OTHER_COURSES {

@@ -153,8 +153,8 @@ fn flight_method(measured: &FitData, propagated: Propagated, closures: &[Consist
     let residual = format!("{left_m_s:.3} m/s about {name}; {}", name_worst(closures));
     // A lost step is so uncertain that no check counts as failed, however wrong the step is: the checks then
     // confirm nothing.
-    let agree = closures.iter().all(|c| c.largest_residual() <= CONSISTENT_U);
-    let consistent = agree && !has_lost_step(measured);
+    let consistent =
+        closures.iter().all(|c| c.largest_residual() <= CONSISTENT_U) && !has_lost_step(measured);
     step(Method::Flight, propagated, consistent, residual)
 }
 

@@ -72,8 +72,7 @@ pub(super) fn find_silent(
 /// touches is less than that of the sharp corner by Δk = ω ρ (cos φ − sin φ)/v0.
 fn rounded_corner(measured: &FitData, stated: &Quantities) -> Option<Untested> {
     let (sin, cos) = measured.setup.angle_rad.sin_cos();
-    let turning_rad_s = stated.angular_velocity.value;
-    let k = (turning_rad_s * ROUNDING_M * (cos - sin) / stated.impact_velocity.value).abs();
+    let k = (stated.angular_velocity.value * ROUNDING_M * (cos - sin) / stated.impact_velocity.value).abs();
     (WRONG_HALF_WIDTHS * stated.k.u95 <= MOST_USUAL * k).then(|| Untested {
         what: "radius of the first end's corner".into(),
         key: "cask.height_m".into(),

@@ -52,8 +52,12 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let jumps = across().filter_map(|signal| {
         let within = signal.index_from(contact_s - BEFORE_S)..signal.index_from(to_s);
         let others = || across().filter(|other| other.name != signal.name);
-        let is_inside =
-            |at_s: f64, share| !events.separation.is_some_and(|left| is_end(left, at_s, share, contact_s));
+        // A stiff end without damping releases within a sample.
+        let is_inside = |at_s: f64, share: f64| {
+            let is_end =
+                |left: At| (at_s - left.time_s).abs() < share * (left.time_s - contact_s) + 2.0 * left.u_s;
+            !events.separation.is_some_and(is_end)
+        };
         let is_alone = |size, at_s| others().all(|other| !is_struck(other, at_s, size));
         let jump = || {
             let jumps = find_jumps(signal, within.clone(), is_alone);
@@ -74,11 +78,6 @@ pub fn judge_jumps(signals: &[Signal], events: &Events) -> Vec<Finding> {
     jumps.collect()
 }
 
-/// True if a jump is the end of the contact: a stiff end without damping releases within a sample.
-fn is_end(left: At, at_s: f64, share: f64, contact_s: f64) -> bool {
-    (at_s - left.time_s).abs() < share * (left.time_s - contact_s) + 2.0 * left.u_s
-}
-
 /// Returns the samples before the jumps in a range whose size and time are `alone`.
 fn find_jumps(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) -> bool) -> Vec<usize> {
     let force = &signal.force_m_s2;
@@ -87,7 +86,7 @@ fn find_jumps(signal: &Signal, within: Range<usize>, alone: impl Fn(f64, f64) ->
     let is_jump = |&i: &usize| {
         let level = |samples: Range<usize>| robust::median(&mut force[samples].to_vec());
         let lasting = level(i + 1..i + 1 + AROUND) - level(i + 1 - AROUND..i + 1);
-        is_isolated(force, i, ISOLATED_FACTOR, 1)
+        is_isolated(force, i, ISOLATED_FACTOR)
             && lasting * (force[i + 1] - force[i]).signum() > LASTING_SHARE * step(force, i)
             && !has_lost(signal, (i + 1).saturating_sub(AROUND)..i + AROUND + 1)
             && alone(step(force, i), signal.time_s(i))
@@ -100,7 +99,7 @@ fn is_struck(signal: &Signal, at_s: f64, size: f64) -> bool {
     let force = &signal.force_m_s2;
     let at = signal.index_from(at_s);
     steps_with_sides(force, at.saturating_sub(1)..at + 2)
-        .any(|i| step(force, i) > OTHER_SHARE * size && is_isolated(force, i, STRUCK_FACTOR, 0))
+        .any(|i| step(force, i) > OTHER_SHARE * size && is_isolated(force, i, STRUCK_FACTOR))
 }
 
 /// True if samples of a range are missing or stand at a limit.
@@ -151,10 +150,13 @@ fn step(force: &[f64], i: usize) -> f64 {
 }
 
 /// True if the step after a sample is this many times the largest beside it, except the adjacent ones, to
-/// which a filter spreads the jump, and except `others`: a short break jumps back.
-fn is_isolated(force: &[f64], i: usize, times: f64, others: usize) -> bool {
+/// which a filter spreads the jump, and except one by which a short break jumps back.
+fn is_isolated(force: &[f64], i: usize, times: f64) -> bool {
     let beside = (i - AROUND..i - 1).chain(i + 2..i + AROUND);
-    beside.filter(|beside| step(force, i) <= times * step(force, *beside)).count() <= others
+    let large: Vec<usize> = beside.filter(|beside| step(force, i) <= times * step(force, *beside)).collect();
+    let jump = |i: usize| force[i + 1] - force[i];
+    let returns = |at: usize| at.abs_diff(i) > FALL_SAMPLES && -2.0 * jump(at) / jump(i) > 1.0;
+    large.is_empty() || large.len() == 1 && returns(large[0])
 }
 
 #[cfg(test)]
@@ -177,7 +179,11 @@ mod tests {
     }
 
     fn named(first: &Signal, second: &Signal) -> Vec<Option<String>> {
-        let found = judge_jumps(&[first.clone(), second.clone()], &example::events(0.02, 0.06));
+        named_with(&example::events(0.02, 0.06), first, second)
+    }
+
+    fn named_with(events: &Events, first: &Signal, second: &Signal) -> Vec<Option<String>> {
+        let found = judge_jumps(&[first.clone(), second.clone()], events);
         found.into_iter().map(|found| found.channel).collect()
     }
 
@@ -190,6 +196,24 @@ mod tests {
         assert_eq!(named(&channel("A1", 4000.0, trigger), &sound), alone);
         let cut = |t: f64| if (0.0162..0.03).contains(&t) { 900.0 } else { 0.0 };
         assert_eq!(named(&channel("A1", 4000.0, cut), &sound), alone);
+    }
+
+    #[test]
+    fn a_break_that_returns_is_electrical_within_a_dozen_samples_and_at_the_contacts_end() {
+        let sound = channel("A2", -1500.0, |_| 0.0);
+        let between = |from: f64, to: f64| move |t: f64| if (from..to).contains(&t) { 900.0 } else { 0.0 };
+        let short = channel("A1", 4000.0, between(0.00411, 0.00451));
+        assert_eq!(named(&short, &sound), [Some("A1".to_owned())]);
+        // The separation is found where the break ends: a contact ends once.
+        let broken = channel("A1", 4000.0, between(0.0162, 0.03));
+        let ends =
+            |left_s: f64| Events { separation: Some(At::exact(left_s)), ..example::events(0.02, 0.06) };
+        assert_eq!(named_with(&ends(0.05), &broken, &sound), [Some("A1".to_owned())]);
+        let ended = channel("A1", 4000.0, between(0.0162, 1.0));
+        assert_eq!(named_with(&ends(0.03), &ended, &sound), [Some("A1".to_owned())]);
+        assert!(named_with(&ends(0.0362), &ended, &sound).is_empty());
+        // So does its beginning.
+        assert!(named(&channel("A1", 4000.0, between(7.5e-5, 1.0)), &sound).is_empty());
     }
 
     #[test]

@@ -86,8 +86,8 @@ pub fn judge_silent(channels: &[&Channel]) -> Vec<Finding> {
     let all: Vec<_> = channels.iter().zip(&excursions).collect();
     let (silent, heard): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, r)| loudest > 0.0 && is_silent(r));
     let is_beside = |channel: &Channel| {
-        let is_like = |other: &Channel| other.end == channel.end && other.axis == channel.axis;
-        channel.axis == Axis::Axial || heard.iter().any(|(other, _)| is_like(other))
+        channel.axis == Axis::Axial
+            || heard.iter().any(|(o, _)| (o.end, o.axis) == (channel.end, channel.axis))
     };
     let judge_dead = |(channel, r): &(&&Channel, &Excursion)| {
         let finding =
@@ -169,20 +169,40 @@ mod tests {
 
     #[test]
     fn a_channel_that_stands_at_its_stop_to_the_end_is_torn() {
-        let torn = |level: f64, until: u32| {
+        let torn_at = |end: End, level: f64, until: u32| {
             let reads = move |i: u32| {
                 if (6000..until).contains(&i) { level + example::noise(i, 5) } else { pulse(300.0)(i) }
             };
-            let all = [channel("A1", pulse(300.0)), channel("A2", reads)];
-            judge_at_stop(&all[1], &all).map(|(from, _)| from)
+            let all = [channel("A1", pulse(300.0)), Channel { end, ..channel("A2", reads) }];
+            judge_at_stop(&all[1], &all).map(|(kept, _)| kept)
         };
+        let torn = |level: f64, until: u32| torn_at(End::Second, level, until);
         assert_eq!(torn(-320.0, 20_000), Some(6000));
+        // Nothing remains of a channel beside another of its end and axis.
+        assert_eq!(torn_at(End::First, -320.0, 20_000), Some(0));
         // None of these is a stop: a plateau that ends, rest after a drop, and a level below other readings
         // of the channel.
         assert_eq!(
             [(320.0, 19_000), (10.0, 20_000), (250.0, 20_000)].map(|(level, until)| torn(level, until)),
             [None; 3]
         );
+    }
+
+    #[test]
+    fn a_second_end_that_reads_its_noise_as_it_strikes_is_named() {
+        let signal = |name: &str, end: End, struck_m_s2: f64| {
+            let force = |i: u32| noise(i) + if (1200..1230).contains(&i) { struck_m_s2 } else { 0.0 };
+            let signal = example::signal(2e4, (0..2000).map(force).collect());
+            Signal { name: name.into(), end, noise_m_s2: 0.3, ..signal }
+        };
+        let named = |first_m_s2: f64, second_m_s2: f64| {
+            let signals = [signal("A1", End::First, first_m_s2), signal("A2", End::Second, second_m_s2)];
+            let found = judge_quiet(&signals, &example::events(0.02, 0.06));
+            found.into_iter().filter_map(|finding| finding.channel).collect::<Vec<String>>()
+        };
+        assert_eq!(named(300.0, 0.0), ["A2"]);
+        // The first end may read nothing at its centre of percussion, and a quiet record names nobody.
+        assert!(named(300.0, 900.0).is_empty() && named(0.0, 900.0).is_empty() && named(0.0, 0.0).is_empty());
     }
 
     #[test]

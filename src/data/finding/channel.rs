@@ -262,9 +262,8 @@ pub enum ChannelFinding {
     /// The channel reads nothing but its noise as its end slaps down, and another up to a range.
     Quiet { after_s: f64, others_m_s2: f64 } => (Code::Electrical, Warning, Motion),
         ("reads nothing but its noise as its end strikes, {:.1} ms after first contact, where another channel \
-         reads {:.0} g: a cable that is torn before that time; k and the slap-down speed are not determined; \
-         fasten cable and connector, or leave the channel out if another is at that end",
-         1e3 * after_s, others_m_s2 / G);
+         reads {:.0} g: its cable is torn; k and the slap-down speed are not determined; fasten cable and \
+         connector, or leave the channel out if another is at that end", 1e3 * after_s, others_m_s2 / G);
     /// The channel alone jumps in the flight, with the numbers of `Struck`.
     JumpsAlone { after_s: Vec<f64>, far: f64 } => (Code::Electrical, Warning, Motion),
         ("jumps in the flight, at {} ms after first contact, by {far:.0} times what ringing and noise leave, \
