@@ -62,8 +62,8 @@ pub fn judge_quiet(signals: &[Signal], events: &Events) -> Vec<Finding> {
     let across = || signals.iter().filter(|s| s.axis == Axis::Transverse);
     let others_m_s2 = across().filter_map(range).fold(0.0, f64::max);
     let is_quiet = |s: &&Signal| {
-        let is_noise = range(s).is_some_and(|range| range < 2.0 * SILENT_SPREADS * s.noise_m_s2);
-        s.end == End::Second && is_noise && others_m_s2 > LOUD_SPREADS * s.noise_m_s2
+        let is_struck = s.end == End::Second && others_m_s2 > LOUD_SPREADS * s.noise_m_s2;
+        is_struck && range(s).is_some_and(|range| range < 2.0 * SILENT_SPREADS * s.noise_m_s2)
     };
     let finding = ChannelFinding::Quiet { after_s: struck_s - contact_s, others_m_s2 };
     across().filter(is_quiet).map(|s| finding.clone().tag(&s.name)).collect()
